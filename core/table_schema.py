@@ -21,7 +21,7 @@ from core.key_declaration import (
     get_declared_keys,
 )
 from core.message import CodedError, Message, find_similar_word
-from core.secret_keys import _REMOVED, format_toml_value, format_without_secrets
+from core.secret_values import _REMOVED, format_toml_value, format_without_secrets
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from core.machine.hardware_model import AnalogInputModel, Hardware, HomingModel
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import (
     DriverDeclaration,
     DriverTable,

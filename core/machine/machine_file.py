@@ -27,7 +27,7 @@ from core.machine.machine_reading import MachineReading
 from core.machine.mill_kinematics import KinematicsTableReader
 from core.machine.station_rules import check_handwheel, check_jog_buttons, check_palm_buttons
 from core.message import Message
-from core.secret_keys import format_without_secrets
+from core.secret_values import format_without_secrets
 from core.table_schema import DriverDeclaration, FileFinding, MachineFileError, MachineFileReading, join_path
 
 _MAX_BYTES = 16 * 1024 * 1024

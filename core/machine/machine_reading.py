@@ -14,7 +14,7 @@ from core.machine import axis_tables, machine_tables
 from core.machine.driver_tables import list_driver_subtables
 from core.machine.machine_model import InputModel, OutputModel
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import (
     DriverDeclaration,
     FileFinding,

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from core.key_declaration import FileUnit, KeyRange, NumberTriple, declare_key, make_key_table
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import FileFinding, FileValues, read_table
 
 KINEMATICS_TABLE = "kinematics"

@@ -8,7 +8,7 @@ from core.machine.hardware_model import LAMP_NAMES, LAMP_PREFIX, RED
 from core.machine.machine_reading import MachineReading
 from core.machine.machine_tables import FIXED_M_CODES, LANGUAGES
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import DriverDeclaration, FileFinding, FileValues, MachineFileReading
 
 DEVICE_PREFIXES = ("pendant.",)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import FileFinding, MachineFileReading
 
 HANDWHEEL_INPUT = "handwheel"

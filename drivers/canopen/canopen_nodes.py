@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TypeGuard
 
 from core.key_declaration import KeyRange, declare_key, make_key_table
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import (
     FileFinding,
     MachineFileReading,

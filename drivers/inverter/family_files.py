@@ -16,7 +16,7 @@ from core.input_file import BYTES_PER_MB, parse_toml, read_input_text
 from core.key_declaration import get_declared_keys
 from core.message import Message, join_messages
 from core.ports import DriverError
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import FileFinding, FileValues, join_path, make_table_finding, read_table
 from drivers.inverter import family_rules
 from drivers.inverter.family_table import (

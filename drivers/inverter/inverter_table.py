@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from core.key_declaration import FileUnit, KeyRange, declare_key, make_key_table
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import DriverDeclaration, DriverTable, FileFinding, MachineFileReading
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from core.key_declaration import FileUnit, KeyRange, declare_key, make_key_table
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import (
     DriverDeclaration,
     DriverTable,

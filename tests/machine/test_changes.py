@@ -9,7 +9,7 @@ import pytest
 import resources
 from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_file import MISSING_VALUE, compare_machine_files
-from core.secret_keys import SECRET_MASK
+from core.secret_values import SECRET_MASK
 from core.table_schema import MachineFileError
 
 SHIPPED = resources.read_machine_file("gt75.toml")

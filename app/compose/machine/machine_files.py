@@ -11,7 +11,7 @@ from app.compose.machine.driver_modules import load_all_drivers, load_used_drive
 from core.machine import machine_file
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import FileFinding, MachineFileError
 
 DEFAULT_MACHINE_FILE = "gt75.toml"

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 from core.key_declaration import FileUnit, KeyRange, Words, declare_key, make_key_table
 from core.message import Message
-from core.secret_keys import SECRET_MASK, format_toml_value
+from core.secret_values import SECRET_MASK, format_toml_value
 from core.table_schema import DriverDeclaration, DriverTable, FileFinding, MachineFileReading
 
 MIN_TOKEN_LENGTH = 12  # characters

@@ -10,7 +10,7 @@ from pathlib import PurePath
 from typing import NamedTuple
 
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import FileFinding
 from drivers.hal.boards.board_table import BoardTable
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from core.key_declaration import declare_key, make_key_table
 from core.message import Message
-from core.secret_keys import format_toml_value
+from core.secret_values import format_toml_value
 from core.table_schema import DriverDeclaration, DriverTable, FileFinding, MachineFileReading
 
 SYN, KEY, REL, ABS = 0x00, 0x01, 0x02, 0x03

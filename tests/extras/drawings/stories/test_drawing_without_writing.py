@@ -27,7 +27,7 @@ def test_a_program_is_made_of_a_drawing(story: Story, way: str) -> None:
     if way == "keys":
         operator.key("F6")
     else:
-        hand.press("PROGRAMS", "_Tiles")
+        hand.press("PROGRAMS", "_MenuTiles")
     operator.opens("PROGRAMS")
     operator.sees("axle.svg")
     if way == "keys":
