@@ -106,7 +106,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "spindle": _hand(lambda hands, word: hands.set_spindle_pot(_percent(word))),
     "input": lambda peers, name, word: peers.machine.set_input(name, _on(word)),
     "jam": _jam,
-    "cable": lambda peers, word: peers.cable(disconnected=not _on(word)),
+    "cable": lambda peers, word: peers.cable(is_disconnected=not _on(word)),
 }
 
 _CYCLE_S = 0.001  # s
