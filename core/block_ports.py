@@ -63,7 +63,7 @@ class BlockState(NamedTuple):
     last_done_ticket: int  # every ticket up to this one has been moved to its end
     active_ticket: int  # the ticket that is being moved, 0 unknown or none
     is_at_rest: bool  # nothing moves, and nothing is left in the controller
-    is_in_feed_hold: bool  # at rest inside its queue: ``resume`` goes on
+    is_in_feed_hold: bool  # at rest inside its queue: ``resume`` continues
     start_refusal: str = ""
 
 

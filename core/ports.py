@@ -259,12 +259,12 @@ class SpindleGear(Protocol):
     def mesh(self, cam: Cam) -> None:
         """Follow the spindle with a cam.
 
-        If a cam is already active, the call replaces all of it from ``cam.way.t[0]`` on. Raises DriverError
-        unless the cam starts at or after the position that the spindle will reach within the sink's commit
-        time, continues the remaining motion, and ends at rest. The sink's ``demand_at`` and ``horizon``
-        then predict from the present speed, up to the end of the cam. Its ``splice`` releases a gear that
-        has not moved an axis yet and is rejected otherwise. Its ``stop`` brakes from the present position
-        of the axes.
+        If a cam is already active, the call replaces all of it from ``cam.segments.t[0]`` on. Raises
+        DriverError unless the cam starts at or after the position that the spindle will reach within the
+        sink's commit time, continues the remaining motion, and ends at rest. The sink's ``demand_at`` and
+        ``horizon`` then predict from the present speed, up to the end of the cam. Its ``splice`` releases a
+        gear that has not moved an axis yet and is rejected otherwise. Its ``stop`` brakes from the present
+        position of the axes.
         """
         ...
 
@@ -310,10 +310,10 @@ class StationState:
     spindle_pot: float = 1.0  # 0…1
     feed_pot: float = 1.0  # 0…1.5 where the machine has one
     handwheel: int = 0  # counts since power-up, where the machine has one
-    age: float = 0.0  # seconds since the station last spoke
-    trouble: str = ""  # what of it is gone and holds the cycle, in a sentence: a pendant pulled out
-    wheel_trouble: str = ""  # why its handwheel and jog buttons are not to be believed now
-    spindle_load: float | None = None  # per cent, where the machine has such an input
+    age: float = 0.0  # seconds since the last report of the station
+    trouble: str = ""  # the reason for a feed hold, such as a disconnected pendant
+    wheel_trouble: str = ""  # the reason why handwheel and jog buttons are ignored now
+    spindle_load: float | None = None  # percent, if the machine has such an input
 
 
 class Station(Protocol):
@@ -401,21 +401,22 @@ class MachinePorts:
     station: Station
     warnings: Sequence[str] = ()
     gear: SpindleGear | None = None  # None: threads follow the spindle by setpoints in time
-    lock: SpindleCAxis | None = None  # None: C has a drive of its own, or needs no change-over
+    lock: SpindleCAxis | None = None  # None if C has a separate drive or does not change over
     orientation: OrientingSpindle | None = None  # None: the spindle stops anywhere
-    blocks: BlockController | None = None  # a controller that plans by itself: it takes no setpoints
+    blocks: BlockController | None = None  # controller that plans motion from blocks, not setpoints
     trip_monitor: faults.TrippingDriverHost | None = (
-        None  # None: nothing switches off by itself when the control is silent
+        None  # None if nothing trips when the control does not respond
     )
-    untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move
-    wakeup: WakeupSignal | None = None  # None: it is looked at in every tick, at rest too
-    samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
-    # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
-    # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.
+    untraced: str = ""  # the reason why the drives follow only the end of each move
+    wakeup: WakeupSignal | None = None  # None if the executor polls in every tick, also at rest
+    samples: SampleSource | None = None  # None if the scope records the axes at each tick
+    # Parts whose state is unknown now. The ports still return the last known values, which must not be used
+    # as present values: a spindle that does not report may turn. A new report makes the state known again.
     unknown: Callable[[], frozenset[UnknownPart]] = frozenset
-    # Seconds by which a slow wire delays a command to the spindle and the measured speed that shows it.
+    # Seconds by which a slow line delays a spindle command and the measured speed.
     spindle_lag: Callable[[], float] = float
-    touch: TouchInput | None = None  # None: where a touch was is known to a tick of the executor
-    # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
-    # and again, when the executor is dead or stuck. It never waits for what the executor may hold.
+    touch: TouchInput | None = None  # None if a touch is detected only at a tick of the executor
+    # Stops axes and spindle and switches the outputs to their safe states. The watchdog calls this function
+    # repeatedly from its thread if the executor has ended or is stuck. It never waits for locks of the
+    # executor.
     halt_machine: Callable[[], None] | None = None

@@ -283,7 +283,7 @@ def _run_request(request: WorkRequest) -> Callable[[], None] | None:
         return request.run_work(request)
     except AbandonedError:
         return None
-    except BaseException as error:  # noqa: BLE001 - whatever it is, it is told where it was asked for
+    except BaseException as error:  # noqa: BLE001 - any error is raised where the result is read
         if _is_defect(error):
             _log.error("on the worker %s", request.worker.name, exc_info=error)
         why = describe_error(error)

@@ -49,7 +49,7 @@ def find_data_folder() -> Path:
     try:
         if named:
             return Path(named).expanduser().absolute()
-        from platformdirs import user_data_path  # noqa: PLC0415  asked only where nobody has named a folder
+        from platformdirs import user_data_path  # noqa: PLC0415  needed only if no folder is specified
 
         return user_data_path("turndesk", appauthor=False)
     except RuntimeError as error:

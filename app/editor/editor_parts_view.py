@@ -106,9 +106,9 @@ class EditorPathView(PathView):
 
     def make_pan_actions(self) -> dict[int, Callable[[], None]]:
         """Return the actions that pan the path, by arrow key."""
-        ways = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
-        ways[Qt.Key.Key_Down] = (0, 1)
-        return {key: partial(self.pan_view, *way) for key, way in ways.items()}
+        steps = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
+        steps[Qt.Key.Key_Down] = (0, 1)
+        return {key: partial(self.pan_view, *step) for key, step in steps.items()}
 
     def _set_measured_point(self) -> None:
         """Set a point of the measurement at the crosshair."""

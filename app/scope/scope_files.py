@@ -34,8 +34,8 @@ class ScopeFiles:
         if not len(cut.times_s):
             self.scope_model.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return None
-        told = {**cut.about, ZERO_INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
-        return replace(cut, about=told)
+        metadata = {**cut.about, ZERO_INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
+        return replace(cut, about=metadata)
 
     def save_visible(self) -> None:
         """Save the visible window as a record."""

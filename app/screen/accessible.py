@@ -120,7 +120,7 @@ class AccessiblePanel(AccessiblePart):
 
 
 class _PressAction(QAccessibleActionInterface):
-    """Action that presses a target in the same way as a touch."""
+    """Action that presses a target as a touch does."""
 
     def __init__(self, spot: AccessibleTarget) -> None:
         super().__init__()

@@ -85,7 +85,7 @@ class _Startup:
             self._window.show_model(desk)
             load_first_program(desk, self._program)
             self._listen_later()
-        except Exception as error:  # noqa: BLE001 - raised into Qt's loop nobody could catch it
+        except Exception as error:  # noqa: BLE001 - an exception in Qt's loop cannot be caught
             self._trouble = error
             QApplication.exit(1)
 

@@ -279,7 +279,7 @@ class MachineReader:
         The state of a switch that is not wired is None.
         """
 
-        def told(name: str, on: str, off: str) -> ReadingValue:
+        def read_signal(name: str, on: str, off: str) -> ReadingValue:
             if name not in self.machine.inputs or UnknownPart.INPUTS in snapshot.unknown:
                 return None
             return on if name in snapshot.inputs else off
@@ -287,10 +287,10 @@ class MachineReader:
         # commanded to close but not closed yet
         opened = "UNLATCHED" if "collet" in snapshot.outputs else "OPEN"
         return {
-            "chuck": told("collet_closed", "CLOSED", opened),
-            "door": told("guard", "CLOSED", "OPEN"),
-            "endbar": told("end_of_bar", "YES", "NO"),
-            "part": told("part", "PRESENT", "NOT_PRESENT"),
+            "chuck": read_signal("collet_closed", "CLOSED", opened),
+            "door": read_signal("guard", "CLOSED", "OPEN"),
+            "endbar": read_signal("end_of_bar", "YES", "NO"),
+            "part": read_signal("part", "PRESENT", "NOT_PRESENT"),
         }
 
 

@@ -122,7 +122,7 @@ def _find_path_points(block: Block, swivel: PlanePosition) -> list[Vector]:
 
     Arcs are replaced by chords.
     """
-    curve = None if block.travel is None else block.travel.way
+    curve = None if block.travel is None else block.travel.curved_move
     if not isinstance(curve, HelixMove):
         return [swivel.end]
     count = max(1, math.ceil(abs(math.degrees(curve.arc.sweep_rad)) / _CHORD_ANGLE_DEG))

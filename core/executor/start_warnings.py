@@ -29,8 +29,10 @@ class StartWarnings:
         spindle = self._context.spindle
         rpm, by_hand = spindle.waiting_start_rpm, self._status.state in MANUAL_STATES
         if rpm and (by_hand or (self._status.state in STOPPED_STATES and not spindle.start_inhibit_reason)):
-            way = "FORWARD" if rpm > 0.0 else "REVERSE"
-            text = Message("SPINDLE STARTS AT {rpm} RPM {direction}", rpm=f"{abs(rpm):.0f}", direction=way)
+            direction = "FORWARD" if rpm > 0.0 else "REVERSE"
+            text = Message(
+                "SPINDLE STARTS AT {rpm} RPM {direction}", rpm=f"{abs(rpm):.0f}", direction=direction
+            )
             yield AnnouncedStart(
                 SPINDLE_FUNCTION,
                 text if spindle.is_auto else Message("SET SPINDLE SWITCH TO AUTO: {start}", start=text),

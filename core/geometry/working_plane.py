@@ -180,15 +180,15 @@ class AxisMove:
     """A move from ``start`` to ``end``, which are machine positions of all axes in the machine's order.
 
     Linear axes are first, in mm. Rotary axes are in degrees and continuous. ``length`` is the length to
-    which the feed applies, in mm, or in degrees if only rotary axes turn. ``way`` is the curved move if the
-    axes do not move proportionally; it has the same length. ``slides`` is True if a linear axis is
-    programmed to move.
+    which the feed applies, in mm, or in degrees if only rotary axes turn. ``curved_move`` is the curved
+    move if the axes do not move proportionally; it has the same length. ``slides`` is True if a linear axis
+    is programmed to move.
     """
 
     start: tuple[float, ...]
     end: tuple[float, ...]
     length: float
-    way: CurvedMove | None = None
+    curved_move: CurvedMove | None = None
     slides: bool = True
 
     def reach(self) -> tuple[FloatArray, FloatArray]:
@@ -196,7 +196,7 @@ class AxisMove:
 
         For straight moves, only the end is returned.
         """
-        if self.way is None:
+        if self.curved_move is None:
             return np.array(self.end), np.array(self.end)
-        points = self.way.compute_machine_positions(np.linspace(0.0, 1.0, _SAMPLES))
+        points = self.curved_move.compute_machine_positions(np.linspace(0.0, 1.0, _SAMPLES))
         return points.min(axis=0), points.max(axis=0)

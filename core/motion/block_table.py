@@ -109,9 +109,9 @@ class BlockTable:
     spindle centerline, from which radii are measured. ``locked`` (m,) is True while the spindle is engaged
     as the C axis; the revolutions of C then count for a feed per revolution. ``surface`` (m,) is the
     surface speed in mm/s, or NaN without a surface speed. ``min_rpm`` and ``max_rpm`` (m,) are the limits
-    of the spindle speed for this surface speed. ``way`` has m entries: a curved move on which the axes are
-    not proportional, such as a move of the virtual mill, or None. ``length`` (m,) is specified for blocks
-    that contain all axes. It is NaN for blocks of a lathe, whose length follows from X, Z and C.
+    of the spindle speed for this surface speed. ``curved_moves`` has m entries: a curved move on which the
+    axes are not proportional, such as a move of the virtual mill, or None. ``length`` (m,) is specified for
+    blocks that contain all axes. It is NaN for blocks of a lathe, whose length follows from X, Z and C.
     """
 
     n: FloatArray
@@ -130,7 +130,7 @@ class BlockTable:
     surface: FloatArray
     min_rpm: FloatArray
     max_rpm: FloatArray
-    way: tuple[CurvedMove | None, ...]
+    curved_moves: tuple[CurvedMove | None, ...]
     length: FloatArray
 
 
@@ -171,7 +171,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
         surface=surface,
         min_rpm=lo,
         max_rpm=hi,
-        way=tuple(_way(block) for block in blocks),
+        curved_moves=tuple(_way(block) for block in blocks),
         length=length,
     )
 
@@ -185,7 +185,7 @@ def _find_rapids(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
 
 
 def _way(block: MotionBlock) -> CurvedMove | None:
-    return block.plane if block.travel is None else block.travel.way
+    return block.plane if block.travel is None else block.travel.curved_move
 
 
 def _travel_columns(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:

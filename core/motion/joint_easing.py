@@ -26,12 +26,12 @@ Points = npt.NDArray[np.complex128]
 class _Window(NamedTuple):
     """The range of neighbors of each of m joints.
 
-    The sum over a window of ``size`` joints is the running sum at ``behind`` minus the running sum at
+    The sum over a window of ``size`` joints is the running sum at ``last_index`` minus the running sum at
     ``first``. ``size`` (2m,) has two equal values for each joint.
     """
 
     first: IntArray
-    behind: IntArray
+    last_index: IntArray
     size: FloatArray
 
     @classmethod
@@ -46,7 +46,7 @@ class _Window(NamedTuple):
         sums = np.zeros(len(points) + 1, dtype=np.complex128)
         np.subtract(points, base, out=sums[1:])
         np.cumsum(sums, out=sums)
-        mean = sums.take(self.behind)
+        mean = sums.take(self.last_index)
         mean -= sums.take(self.first)
         flat = view_coordinates(mean)
         flat /= self.size
@@ -72,7 +72,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
     that smoothing never crosses a corner.
     """
     window = _Window.create(np.minimum(_clear(is_free), MAX_NEIGHBOR_COUNT))
-    last = window.behind - 1
+    last = window.last_index - 1
     span = _twice(np.maximum(distances[last] - distances[window.first], 1e-12))
     off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 

@@ -1,7 +1,7 @@
 """The path as pieces with their limits and blocks, including blocks in which C also turns.
 
 C moves together with X and Z in moves of a virtual mill, and when a feed per revolution counts the
-revolutions of C. The length of such a piece is measured in the same way as its feed: along the path of the
+revolutions of C. The length of such a piece is measured like its feed: along the path of the
 mill or along the path of X and Z. The ``direction`` of the piece is the motion of X, Z and C per unit of
 length. Limits, corners, look-ahead and feed hold therefore work as for any other line. A curved move is
 divided into chords in X, Z and C. The reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
@@ -64,8 +64,8 @@ BLOCK_GAP_TOLERANCE = 1e-6  # mm or degrees between the end of a block and the s
 def find_divided_blocks(table: BlockTable) -> BoolArray:
     """Return a mask (m,) of the blocks that are divided into several pieces."""
     parted = _find_c_fed_moves(table)
-    if table.way.count(None) < len(table.way):
-        parted = parted | np.array([travel is not None for travel in table.way], dtype=bool)
+    if table.curved_moves.count(None) < len(table.curved_moves):
+        parted = parted | np.array([travel is not None for travel in table.curved_moves], dtype=bool)
     return parted
 
 
@@ -75,7 +75,7 @@ def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, in
     These are chords, or a move of X and Z followed by the remaining rotation of C. Raises MotionError if C
     turns too little for the move of X and Z.
     """
-    piece, move = pieces[index : index + 1], table.way[index]
+    piece, move = pieces[index : index + 1], table.curved_moves[index]
     if move is None:
         return _divide_c_fed_move(piece, table, index)
     if move.length <= SAME_POINT_TOLERANCE:

@@ -93,7 +93,7 @@ class ToolShape:
         return self.kind is ToolKind.BORING or on_a_bar
 
     @property
-    def behind(self) -> bool:
+    def is_rear_tool(self) -> bool:
         """Return whether the tool works at negative X, as specified or as its tip quadrant implies."""
         across = TIP_DIRECTIONS[self.tip][1]
         return self.rear or (across != 0 and (across > 0) is not self.internal)

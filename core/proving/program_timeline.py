@@ -363,7 +363,9 @@ class Timeline:
         collet = self._machine.collet
         if isinstance(action, Dwell):
             return action.seconds
-        if isinstance(action, SpindleLock) or (isinstance(action, SpindleStop) and action.stands):
+        if isinstance(action, SpindleLock) or (
+            isinstance(action, SpindleStop) and action.waits_for_standstill
+        ):
             return self._until_still()
         if isinstance(action, SpindlePositioning):
             return self._until_still() + calculate_max_orientation_time_s(self._machine.spindle, action.sense)

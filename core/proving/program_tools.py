@@ -179,7 +179,7 @@ class ProgramTools:
         lines = make_outline(shape)
         body = lines.body_outlines if self.is_specified(number) else ()
         return Cutter(
-            lines.cutting_outlines, body, _side(shape), is_rear=shape.behind, is_drill=shape.is_rotating
+            lines.cutting_outlines, body, _side(shape), is_rear=shape.is_rear_tool, is_drill=shape.is_rotating
         )
 
     @property
@@ -283,7 +283,7 @@ def _side(shape: ToolShape) -> CutSide:
         return CutSide.BORE
     if shape.direction == (-1, 0) and shape.kind is not ToolKind.TURNING:
         return CutSide.FACE
-    across = shape.direction[1] * (-1 if shape.behind else 1)
+    across = shape.direction[1] * (-1 if shape.is_rear_tool else 1)
     return CutSide.BORE if across > 0 else CutSide.OUTSIDE
 
 

@@ -276,7 +276,7 @@ class StoreWriter:
             return
         try:
             self._in_transaction(self._unwritten.write_all)
-        except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
+        except Exception as error:  # noqa: BLE001 - any error becomes the result; the thread continues
             failure = self._failed(error)
             self._backlog = self._unwritten.count_entries(self._trouble or str(failure))
             self._tell(lambda future: future.set_exception(failure))
@@ -303,7 +303,7 @@ class StoreWriter:
             return
         try:
             answer = self._in_transaction(operation)
-        except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
+        except Exception as error:  # noqa: BLE001 - any error becomes the result; the thread continues
             future.set_exception(self._failed(error))
             return
         self._trouble = self._trouble if self._unwritten else ""

@@ -92,11 +92,11 @@ def make_arc_path(
         sweep -= math.tau
     first = math.atan2(x0, z0)
 
-    def way(s: float) -> Position:
+    def find_position(s: float) -> Position:
         angle = first + math.copysign(s / radius, sweep)
         return center[0] + radius * math.sin(angle), center[1] + radius * math.cos(angle)
 
-    return radius * abs(sweep), way
+    return radius * abs(sweep), find_position
 
 
 class GrblMotion:

@@ -110,7 +110,7 @@ class ModalState:
             return 20
         return 0
 
-    def told(self, rpm: float, feed: float, outputs: dict[str, bool], *, is_lathe_mode: bool) -> str:
+    def format_modes(self, rpm: float, feed: float, outputs: dict[str, bool], *, is_lathe_mode: bool) -> str:
         """Return the modal state as text, in the format of the reply to ``$G``."""
         spindle = "M5" if not rpm else "M3" if rpm > 0.0 else "M4"
         coolant = "M7 " * outputs.get("mist", False) + "M8 " * outputs.get("flood", False) or "M9 "
@@ -233,7 +233,7 @@ class LineInterpreter:
     def format_modes(self) -> str:
         """Return the text of the reply to ``$G``."""
         m = self._m
-        return self.modes.told(
+        return self.modes.format_modes(
             m.programmed_rpm, self._f, m.output_states, is_lathe_mode=m.registers.is_lathe_mode
         )
 

@@ -36,8 +36,8 @@ def _shown(block: Block) -> str:
             return f"rest {seconds:g}"
         case SpindleRun(rpm=rpm):
             return f"turn {rpm:g}"
-        case SpindleStop(stands=stands):
-            return "stands" if stands else "stop"
+        case SpindleStop(waits_for_standstill=waits_for_standstill):
+            return "stands" if waits_for_standstill else "stop"
         case ProgramStop(message=message):
             return message
         case None:

@@ -30,7 +30,7 @@ def end(block: Block) -> tuple[float, ...]:
 def on_the_way(block: Block, count: int = 33) -> np.ndarray:
     """Points of the working plane along an arc."""
     assert block.travel is not None
-    way = block.travel.way
+    way = block.travel.curved_move
     assert isinstance(way, HelixMove)
     return way.compute_workpiece_points(way.compute_machine_positions(np.linspace(0.0, 1.0, count)))
 

@@ -242,8 +242,8 @@ def test_move_keeps_it_all_the_way(words: str, depth: float) -> None:
     ran = run(f"L X+5 Y+8 Z+50 R0 FMAX\nPLANE AXIAL A+45 C+90 {words}")
     travel = ran.planes[0].travel
     assert travel is not None
-    assert travel.way is not None
-    for x, y, z, a, c in travel.way.compute_machine_positions(np.linspace(0.0, 1.0, 11)).tolist():
+    assert travel.curved_move is not None
+    for x, y, z, a, c in travel.curved_move.compute_machine_positions(np.linspace(0.0, 1.0, 11)).tolist():
         ca, sa = math.cos(math.radians(a)), math.sin(math.radians(a))
         cc, sc = math.cos(math.radians(c)), math.sin(math.radians(c))
         dy, dz = y - 250.0, z - depth + 430.0

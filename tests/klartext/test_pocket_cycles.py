@@ -38,8 +38,10 @@ def way(block: Block) -> Points:
     """Points of the tip a tenth of a millimetre apart, in the program's coordinates."""
     assert block.swivel is not None
     share = np.linspace(0.0, 1.0, max(2, math.ceil(block.length / 0.1)))
-    if block.travel is not None and isinstance(block.travel.way, HelixMove):
-        return block.travel.way.compute_workpiece_points(block.travel.way.compute_machine_positions(share))
+    if block.travel is not None and isinstance(block.travel.curved_move, HelixMove):
+        return block.travel.curved_move.compute_workpiece_points(
+            block.travel.curved_move.compute_machine_positions(share)
+        )
     start, end = np.array(block.swivel.start), np.array(block.swivel.end)
     straight: Points = start + share[:, None] * (end - start)
     return straight

@@ -23,8 +23,8 @@ def ran_of(text: str, begin: str = HERE) -> Ran:
 def tips(block: Block, count: int = 9) -> np.ndarray:
     """Where the tip is on the workpiece along a block, by the tests' own matrices."""
     assert block.travel is not None
-    assert block.travel.way is not None
-    rows = block.travel.way.compute_machine_positions(np.linspace(0.0, 1.0, count))
+    assert block.travel.curved_move is not None
+    rows = block.travel.curved_move.compute_machine_positions(np.linspace(0.0, 1.0, count))
     found = []
     for row in rows.tolist():
         at = dict(zip(AC.axis_names, row, strict=True))

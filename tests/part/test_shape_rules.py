@@ -163,4 +163,4 @@ def test_other_texts_are_names(text: str) -> None:
 def test_tool_behind_the_spindle_is_known_by_its_tip(
     kind: ToolKind, tip: int, rear: bool, behind: bool
 ) -> None:
-    assert ToolShape(kind, tip=tip, rear=rear).behind is behind
+    assert ToolShape(kind, tip=tip, rear=rear).is_rear_tool is behind

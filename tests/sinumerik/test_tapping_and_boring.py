@@ -84,7 +84,7 @@ def test_boring_with_the_edge_lifted() -> None:
 @pytest.mark.parametrize("call", ["CYCLE87(5,0,2,-20,,3)", "CYCLE88(5,0,2,-20,,0,3)"])
 def test_boring_that_stops_for_the_operator(call: str) -> None:
     actions = [b.action for b in blocks(call) if b.action is not None]
-    assert actions == [SpindleStop(stands=True), ProgramStop(optional=False)]
+    assert actions == [SpindleStop(waits_for_standstill=True), ProgramStop(optional=False)]
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ def make_path_table(title: str, found: Found, metric: bool, marked: int) -> Tabl
         TableRow(
             (
                 str(each.line),
-                *(formats.format_length(way, metric) for way in (each.distance_mm, *each.position)),
+                *(formats.format_length(value, metric) for value in (each.distance_mm, *each.position)),
             )
         )
         for each in found.worst_deviations
@@ -117,20 +117,20 @@ def make_ball_bar_table(title: str, ball: BallBarResult, found: Found, metric: b
             else formats.NO_VALUE
         )
 
-    def told(value: float) -> str:
+    def format_deviation(value: float) -> str:
         return _length(value, metric) if math.isfinite(value) else formats.NO_VALUE
 
     rows = (
-        TableRow((tr("ROUNDNESS"), told(ball.circularity_mm))),
-        TableRow((tr(Message("BACKLASH {axis}", axis=u)), told(ball.backlash_mm[0]))),
-        TableRow((tr(Message("BACKLASH {axis}", axis=v)), told(ball.backlash_mm[1]))),
-        TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=u)), told(ball.reversal_spike_mm[0]))),
-        TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=v)), told(ball.reversal_spike_mm[1]))),
+        TableRow((tr("ROUNDNESS"), format_deviation(ball.circularity_mm))),
+        TableRow((tr(Message("BACKLASH {axis}", axis=u)), format_deviation(ball.backlash_mm[0]))),
+        TableRow((tr(Message("BACKLASH {axis}", axis=v)), format_deviation(ball.backlash_mm[1]))),
+        TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=u)), format_deviation(ball.reversal_spike_mm[0]))),
+        TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=v)), format_deviation(ball.reversal_spike_mm[1]))),
         TableRow((tr("SQUARENESS ERROR"), lean(ball.squareness_error_mm_m))),
         TableRow(
             (tr(Message("SCALE OF {value} RELATIVE TO {v}", value=u, v=v)), lean(ball.scale_error_mm_m))
         ),
-        TableRow((tr("RADIUS ERROR"), told(ball.size_error_mm))),
+        TableRow((tr("RADIUS ERROR"), format_deviation(ball.size_error_mm))),
     )
     number, count, line = found.selected_arc
     notes = (

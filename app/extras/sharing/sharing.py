@@ -40,8 +40,8 @@ _PATIENCE = 2.0  # seconds that closing waits; a thread that hangs in a dead net
 class SharingThread:
     """Thread that synchronizes shared programs at regular intervals.
 
-    The ``interval_s`` parameter is the interval in seconds. The ``heard`` parameter is called with each
-    result.
+    The ``interval_s`` parameter is the interval in seconds. The ``result_handler`` parameter is called with
+    each result.
     """
 
     def __init__(

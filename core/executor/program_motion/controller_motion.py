@@ -273,7 +273,7 @@ class ControllerMotion:
         self._apply_overrides()
         self._hand_over()
 
-    def resume(self, last_executed_block: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
+    def resume(self, last_executed_block: Block | None) -> None:  # noqa: ARG002  it always continues where it rests
         """Resume from rest within the path section, by releasing the hold or sending the next block."""
         self._last, self._dry, self._seen = None, False, self._context.now
         if not self._still:

@@ -139,9 +139,9 @@ def _stop_spindle(
             return _lock_spindle(context, orient=orient)
         case SpindlePositioning(angle=angle, sense=sense):
             return _orient_spindle(context, angle, sense)
-        case SpindleStop(stands=stands):
+        case SpindleStop(waits_for_standstill=waits_for_standstill):
             context.spindle.stop()
-            return _make_spindle_stop_wait(context) if stands else None
+            return _make_spindle_stop_wait(context) if waits_for_standstill else None
 
 
 def _start_spindle(block: Block, context: MachineContext) -> None:

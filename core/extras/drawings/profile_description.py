@@ -202,4 +202,4 @@ def propose_bar_diameter(profile: ContourProfile, *, is_metric: bool) -> float:
 def find_first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:
     """Return the number of the first tool of a kind in the tool data, or 0."""
     fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is is_inside)
-    return next((n for n in fits if not shapes[n].behind), 0)
+    return next((n for n in fits if not shapes[n].is_rear_tool), 0)

@@ -33,7 +33,9 @@ def make_tool_field(*kinds: ToolKind) -> ShapeField:
         inside = values.get("SIDE") == "BORE" or kinds == (ToolKind.BORING,)
         sheets = sorted(setting.shop.tools.items())
         fits = [n for n, shape in sheets if shape.kind in kinds and shape.internal is inside]
-        fits = [n for n in fits if setting.shop.tools[n].behind is (values.get("SIDE") == "REAR")] or fits
+        fits = [
+            n for n in fits if setting.shop.tools[n].is_rear_tool is (values.get("SIDE") == "REAR")
+        ] or fits
         fresh = [n for n in fits if n not in setting.used]
         return float((fresh or fits)[0] if fits else find_next_tool(setting))
 

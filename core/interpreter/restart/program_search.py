@@ -282,7 +282,7 @@ class _PassState:
             self.skipped_lines = first, block.line
             if block.travel is not None:
                 self.moves_rotary_axes = (
-                    self.moves_rotary_axes or block.has_angular_feed or block.travel.way is not None
+                    self.moves_rotary_axes or block.has_angular_feed or block.travel.curved_move is not None
                 )
                 tip = block.travel.start[2] - self.tool_length_mm
                 self.max_skipped_z = max(self.max_skipped_z, tip)

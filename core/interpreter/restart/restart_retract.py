@@ -102,7 +102,7 @@ class _Search:
         # the tool is within the row and not at its end
         self.is_inside_row = left > _END and position.block_number <= int(cut_record.block_number[row])
 
-    def find_retract(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
+    def find_retract(self) -> Retract:  # noqa: PLR0911 - one result for each position of the tool in the part
         how = self.move_kind
         if how & (FACE | SIDE):
             return self._mill_retract(how & (FACE | SIDE))

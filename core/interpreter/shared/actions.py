@@ -23,13 +23,13 @@ class SpindleRun(PlainValue):
 class SpindleStop(PlainValue):
     """Action that stops the spindle (M05).
 
-    With ``stands``, the next block waits until the spindle is at rest.
+    With ``waits_for_standstill``, the next block waits until the spindle is at rest.
     """
 
-    __slots__ = __match_args__ = ("stands",)
+    __slots__ = __match_args__ = ("waits_for_standstill",)
 
-    def __init__(self, stands: bool = False) -> None:
-        self.stands: Final = stands
+    def __init__(self, waits_for_standstill: bool = False) -> None:
+        self.waits_for_standstill: Final = waits_for_standstill
 
 
 class SpindleLock(PlainValue):

@@ -172,7 +172,7 @@ class Block:
         travel = self.travel
         if travel is None or not self.moves:
             return False
-        return not travel.slides if travel.way is None else travel.way.is_feed_in_degrees
+        return not travel.slides if travel.curved_move is None else travel.curved_move.is_feed_in_degrees
 
     @property
     def moves(self) -> bool:

@@ -39,6 +39,6 @@ class MissingAxes:
         axis = "Y" if _ARC_IN_Y.search(finding.message) else match[1] if match else ""
         if not axis:
             return False
-        told = axis in self._missing_axes
+        is_reported = axis in self._missing_axes
         self._missing_axes.add(axis)
-        return told
+        return is_reported

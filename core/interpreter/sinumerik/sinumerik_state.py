@@ -146,7 +146,7 @@ class State:
         self.names: list[str] = []  # names of tools that are not in the table, in order of use
         # a position was read after a program stop, at which the operator may move the axes
         self.is_after_program_stop = self.is_position_assumed = False
-        self.told: set[str] = set()  # functions whose notes and warnings were already logged
+        self.logged_functions: set[str] = set()  # functions whose notes and warnings were already logged
         self.variables = Variables()
         self.variables.r_parameters.update((f"R{number}", value) for number, value in setup.r.items())
         self.modal_call_line: LexedBlock | None = None  # of MCALL
@@ -234,8 +234,10 @@ class State:
 
     def _warn_unset(self, finding: Diagnostic) -> None:
         """Log a warning, once, for each R parameter without a value, which is treated as 0."""
-        if finding.hint not in self.told:  # the hint identifies the parameter, independent of the line
-            self.told.add(finding.hint)
+        if (
+            finding.hint not in self.logged_functions
+        ):  # the hint identifies the parameter, independent of the line
+            self.logged_functions.add(finding.hint)
             self.log.add_finding(replace(finding, severity=Severity.WARNING))
 
     def compute_rpm_at(self, x: float) -> float:

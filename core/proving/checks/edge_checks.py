@@ -253,7 +253,7 @@ def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
     A tool that is mounted upside down cuts along Z opposite to its hand and is not checked.
     """
     upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
-    return shape.kind in INSERT_TOOLS and upright and not shape.behind and rpm < 0.0
+    return shape.kind in INSERT_TOOLS and upright and not shape.is_rear_tool and rpm < 0.0
 
 
 def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:

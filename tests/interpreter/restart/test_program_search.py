@@ -307,7 +307,7 @@ def test_whole_turns_that_were_interrupted_count_as_uncut(turn: float) -> None:
     assert block.travel is not None
     start = (*block.travel.start[:3], 0.0, 0.0)
     end = (*block.travel.start[:3], 0.0, turn)
-    travel = replace(block.travel, start=start, end=end, length=turn, way=None)
+    travel = replace(block.travel, start=start, end=end, length=turn, curved_move=None)
     turned = block._replace(travel=travel) if hasattr(block, "_replace") else replace(block, travel=travel)
     assert _is_uncut(turned, Interruption(block.n, 5, start, block.n))
 

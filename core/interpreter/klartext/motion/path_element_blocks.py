@@ -41,12 +41,12 @@ def _make_arc_block(state: State, each: PathElement, arc: Arc) -> Block:
             convert_to_plane_order(each.axis_order, at)[2] * state.transformation.scale_factor
             for at in (each.start, each.end)
         )
-        way = HelixMove(state.plane_transform, arc, w0, w1, state.axis_positions, columns, frame)
+        helix_move = HelixMove(state.plane_transform, arc, w0, w1, state.axis_positions, columns, frame)
     else:
         z0, z1 = (
             state.transformation.convert_to_plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2])
         )
-        way = HelixMove(
+        helix_move = HelixMove(
             state.plane_transform,
             state.transformation.transform_arc(arc),
             z0,
@@ -56,4 +56,4 @@ def _make_arc_block(state: State, each: PathElement, arc: Arc) -> Block:
         )
     goals = dict(zip(LINEAR_AXES, state.convert_to_machine_position(each.end), strict=True))
     rate = None if each.feed is None else state.convert_feed_to_mm_s(each.feed)
-    return state.make_move_block(BlockKind.PLANE_ARC, goals, rate, way)
+    return state.make_move_block(BlockKind.PLANE_ARC, goals, rate, helix_move)

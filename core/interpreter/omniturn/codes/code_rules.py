@@ -31,7 +31,7 @@ def refused(
 ) -> ProgramError:
     """Return the error for an error template.
 
-    ``told`` contains the values of further placeholders.
+    ``values`` contains the values of further placeholders.
     """
     values = {
         "code": code.name,

@@ -111,8 +111,8 @@ def note_ineffective_cycle(state: State, log: DiagnosticLog, line: LexedBlock) -
     if line.called_name == SWIVEL_CYCLE and any(each.is_specified for each in line.arguments or ()):
         text = "CYCLE800: this lathe has no swivel head."
         raise line.make_error(line.call_column, "not-in-subset", text, "Remove this text from the program.")
-    if line.called_name not in state.told:
-        state.told.add(line.called_name)
+    if line.called_name not in state.logged_functions:
+        state.logged_functions.add(line.called_name)
         why = Message(
             "{name} has no effect because {why}.",
             name=line.called_name,

@@ -286,7 +286,10 @@ def stop(cycle: CycleCall) -> Iterator[Block]:
     At the bottom, the spindle stops and the program stops with M0. The tool then retracts at rapid.
     """
     hole = read_hole(cycle)
-    rest = [make_action_step(SpindleStop(stands=True), 0), make_action_step(ProgramStop(optional=False))]
+    rest = [
+        make_action_step(SpindleStop(waits_for_standstill=True), 0),
+        make_action_step(ProgramStop(optional=False)),
+    ]
     return cycle.make_blocks([*_steps_to_bottom(cycle, hole), *rest, hole.make_step(hole.retract_z)])
 
 

@@ -45,8 +45,8 @@ def switch_transformation(state: State, log: DiagnosticLog, statement: Statement
         state.set_modal(state.modal._replace(c_locked=True))
         yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
     _end_transformation(state)
-    if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
-        state.told.add("DIAMON")
+    if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.logged_functions:
+        state.logged_functions.add("DIAMON")
         text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
         log.add_finding(
             statement.make_warning(word, "transmit-diameter", text, "Write DIAMOF before this block.")

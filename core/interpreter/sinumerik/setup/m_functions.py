@@ -84,9 +84,9 @@ def _warn_missing_function(state: State, statement: Statement, code: int, word: 
 
     Without the function, the machine does not start.
     """
-    if f"M{code}" in state.told:
+    if f"M{code}" in state.logged_functions:
         return
-    state.told.add(f"M{code}")
+    state.logged_functions.add(f"M{code}")
     what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
     text = Message("{what}, so the machine will not start.", what=what)
     hint = format_binding_lines(code)

@@ -213,8 +213,8 @@ def note_ineffective_words(state: State, statement: Statement) -> None:
 
 def note_ineffective_word(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
     """Log a note, once, that a function has no effect because of ``reason``."""
-    if reason and name not in state.told:
-        state.told.add(name)
+    if reason and name not in state.logged_functions:
+        state.logged_functions.add(name)
         found = statement.make_warning(
             word, "no-effect", Message("{name} has no effect because {why}.", name=name, why=reason), ""
         )

@@ -398,8 +398,8 @@ def _live_speed(state: State, statement: Statement, word: Word) -> None:
     state.live_speed_rpm = value
     if state.live_rpm:
         state.live_rpm = value
-    if "live-speed" not in state.told:
-        state.told.add("live-speed")
+    if "live-speed" not in state.logged_functions:
+        state.logged_functions.add("live-speed")
         text = Message(
             "{word}: this machine only switches the live tool on and off; the speed is set at "
             "the drive of the live tool.",
