@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
     around = read_context(args)
     source = read_source(path, args)
     timeline = Timeline.from_program(source, around.setup, around.machine, is_ideal=args.ideal)
-    output_module = importlib.import_module(f"app.cli.figures.{source.dialect}_output")
+    output_module = importlib.import_module(f"app.cli.outputs.{source.dialect}_output")
     if not args.json:
         sys.stdout.write(output_module.TABLE_HEAD)
     with ProgressBar(f"expanding {path.name}", len(source.lines)) as progress:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.figures.units import MM_PER_INCH
+from app.cli.outputs.units import MM_PER_INCH
 from app.cli.program_options import STDIN_NAME, read_context, read_source
 from app.desk.command_errors import CommandError
 from app.desk.stored_part import make_stock_absolute

@@ -195,7 +195,7 @@ def _prove_and_print(
 
 
 def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Namespace) -> ProofFindings:
-    from app.cli.figures.proof_output import count_stops, make_report_json
+    from app.cli.outputs.proof_output import count_stops, make_report_json
     from app.cli.proofs.proof_work import prove_with_findings
 
     with ProgressBar(f"proving {path.name}", len(source.lines)) as progress:
@@ -211,7 +211,7 @@ def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Name
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
         sys.stdout.write(_silenced_text(report))
         if compare is not None:
-            from app.cli.figures.comparison_output import format_comparison
+            from app.cli.outputs.comparison_output import format_comparison
 
             sys.stdout.write(format_comparison(compare, is_metric=report.is_metric, dialect=report.dialect))
     return found
@@ -226,7 +226,7 @@ def _silenced_text(report: ProofReport) -> str:
 def _limits_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
     """Return the travel limits of the program as text, X and Z on a lathe and all axes on a mill."""
     if report.mill_results is not None:
-        from app.cli.figures.klartext_output import format_machine_limits
+        from app.cli.outputs.klartext_output import format_machine_limits
 
         return format_machine_limits(report.mill_results)
     (x0, x1), (z0, z1) = report.ranges.x_range, report.ranges.z_range
@@ -258,8 +258,8 @@ def _paths_text(report: ProofReport) -> str:
 
 def _proof_text(path: Path, report: ProofReport, part: PartReport | None) -> str:
     """Return the proof as text for the terminal."""
-    from app.cli.figures.proof_output import format_stock
-    from app.cli.figures.units import MM_PER_INCH, round_millimeters, to_inches, to_inches_per_minute
+    from app.cli.outputs.proof_output import format_stock
+    from app.cli.outputs.units import MM_PER_INCH, round_millimeters, to_inches, to_inches_per_minute
     from core.language.source import Dialect
 
     inch = report.dialect is Dialect.OMNITURN

@@ -191,11 +191,11 @@ def _final_position(report: ProofReport, outcome: RunOutcome | None) -> dict[str
 
     X is a radius. Lengths are in inches for OmniTurn programs, and otherwise in mm.
     """
-    from app.cli.figures.units import get_length_converter, round_degrees
+    from app.cli.outputs.units import get_length_converter, round_degrees
     from core.language.source import Dialect
 
     if report.mill_results is not None:
-        from app.cli.figures.klartext_output import get_final_position
+        from app.cli.outputs.klartext_output import get_final_position
 
         complete = outcome is not None and outcome.final_state == "complete"
         return get_final_position(
@@ -214,7 +214,7 @@ def _final_position(report: ProofReport, outcome: RunOutcome | None) -> dict[str
 
 
 def _figures(outcome: RunOutcome | None, dialect: Dialect) -> dict[str, object]:
-    from app.cli.figures.units import get_length_converter, round_seconds
+    from app.cli.outputs.units import get_length_converter, round_seconds
 
     if outcome is None:
         return {"elapsed_s": 0.0, "alarms": [], "underruns": 0, "max_following_error": 0.0}

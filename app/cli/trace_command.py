@@ -89,8 +89,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
     """Print the result as one JSON object."""
-    from app.cli.figures.proof_output import make_diagnostic_json
-    from app.cli.figures.units import round_seconds
+    from app.cli.outputs.proof_output import make_diagnostic_json
+    from app.cli.outputs.units import round_seconds
 
     result = {
         "file": str(path),
@@ -106,7 +106,7 @@ class _Table:
     """Columns of a machine's CSV file, which are time, axes in order, spindle angle and program line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
-        from app.cli.figures.units import MM_PER_INCH
+        from app.cli.outputs.units import MM_PER_INCH
 
         names = ",".join(axis.name.lower() for axis in machine.axes)
         self.header = f"t,{names},spindle_deg,line\n"

@@ -65,7 +65,7 @@ def start_services(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
 
     assert desk.machine.machine is not None
     open_ones = list[Callable[[], None]]()
-    if not journal.trouble or journal.waiting:
+    if not journal.write_error or journal.waiting:
         open_ones.append(_start_status_file(desk.machine.machine, desk.read_snapshot, find_data_folder()))
         open_ones.append(_start_daily_backup(desk, desk.machine.machine, journal))
     started = [extra.start_services(desk, journal, tell) for extra in extras().values()]

@@ -79,7 +79,7 @@ def build_desk(
         ClosingStep("log", log.close),
     ]
     desk.storage_state.set_file_readers(lambda: file.difference_text, file.request_check)
-    desk.storage_state.set_store_readers(lambda: journal.trouble or log.error_text, lambda: journal.held)
+    desk.storage_state.set_store_readers(lambda: journal.write_error or log.error_text, lambda: journal.held)
     gc.freeze()  # modules and other permanent objects need not be scanned again
     gc.set_threshold(*_GC_THRESHOLDS)
     file.start()
@@ -172,4 +172,4 @@ def _close_store(journal: Journal) -> None:
     """Write the waiting entries to the store, close the store, and report lost entries."""
     lost = journal.close()
     if lost:
-        sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")
+        sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.write_error}\n")

@@ -112,12 +112,12 @@ class ChangeOffsets(Command):
 
     The command may arrive while the program runs. The part in progress then uses its present offsets to the
     end. A command without a proof only announces the change. No part starts until a second command supplies
-    either the job with its proof, or ``trouble``, the reason why the job cannot be proved.
+    either the job with its proof, or ``failure_reason``, the reason why the job cannot be proved.
     """
 
     job: Job | None = None
     proof: Proof | None = None
-    trouble: str = ""  # why the job cannot be proved
+    failure_reason: str = ""  # why the job cannot be proved
 
 
 class ReportInterruptedJob(Command):

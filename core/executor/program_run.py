@@ -53,7 +53,7 @@ class ChangedOffsets:
     @property
     def is_proof_pending(self) -> bool:
         """Return whether the proof of the changed offsets has not arrived yet."""
-        return self._asked is not None and self._asked.proof is None and not self._asked.trouble
+        return self._asked is not None and self._asked.proof is None and not self._asked.failure_reason
 
     def store_request(self, command: ChangeOffsets, running_job: Job | None) -> str:
         """Store a request until the end of the part; return why it is refused, or an empty string."""
@@ -71,8 +71,8 @@ class ChangedOffsets:
         asked = self._asked
         if asked is None:
             return ""
-        if asked.trouble or asked.job is None:
-            return asked.trouble
+        if asked.failure_reason or asked.job is None:
+            return asked.failure_reason
         why = start_conditions.find_proof_refusal(
             asked.job, asked.proof
         ) or start_conditions.find_missing_function(self._context, asked.proof)

@@ -91,7 +91,7 @@ class Store:
         self.close()
 
     @property
-    def trouble(self) -> str:
+    def write_error(self) -> str:
         """Return the reason why the last write failed, or an empty text if it succeeded."""
         return self._writer.last_error if self._writer else ""
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.cli.figures.omniturn_output import (
+from app.cli.outputs.omniturn_output import (
     format_decimals,
     format_row,
     format_series,

@@ -67,7 +67,7 @@ def test_changed_offsets_are_those_of_the_program() -> None:
     ]
 
 
-@pytest.mark.parametrize("announced", [ChangeOffsets(), ChangeOffsets(trouble="no proof")])
+@pytest.mark.parametrize("announced", [ChangeOffsets(), ChangeOffsets(failure_reason="no proof")])
 def test_announced_offsets_still_prevent_a_start(announced: ChangeOffsets) -> None:
     assert after(LoadJob(FIRST), announced) == [LoadJob(FIRST), SetPartCount(17), announced]
 

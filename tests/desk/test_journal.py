@@ -53,7 +53,7 @@ def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Pa
     journal.hear(LogEvent(0.0, "start", "after"))
     journal.save_version("a.nc", b"M30", "so that all is written")
     assert [event.text for event in journal.events("", (), 9)] == ["after", "before"]
-    assert journal.trouble == ""
+    assert journal.write_error == ""
 
 
 def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal, tmp_path: Path) -> None:
@@ -96,14 +96,14 @@ def test_a_job_that_cannot_be_read_is_none(journal: Journal, tmp_path: Path) -> 
     journal.save_setting(INTERRUPTED_JOB_KEY, {"line": "eight"})
     journal.close()
     again = Journal(tmp_path / "home")
-    assert (again.left, again.trouble) == (None, "")
+    assert (again.left, again.write_error) == (None, "")
     again.close()
 
 
 def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> None:
     (tmp_path / "home").write_text("a file where the folder should be")
     journal = Journal(tmp_path / "home")
-    assert journal.trouble
+    assert journal.write_error
     with pytest.raises(StoreError):
         journal.backup(tmp_path / "x.db")
     with pytest.raises(StoreError):
@@ -186,7 +186,7 @@ def test_a_damaged_origin_is_none(journal: Journal, tmp_path: Path, value: objec
     journal.close()
     again = Journal(tmp_path / "home")
     assert not again.has_stored(EventOrigin("a", 1))
-    assert again.trouble == ""
+    assert again.write_error == ""
     again.close()
 
 
@@ -206,7 +206,7 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     with monkeypatch.context() as disk:
         disk.setattr("core.store.store.open_for_writing", raising(full))
         journal = Journal(tmp_path / "home")
-    assert shows(journal.trouble, "desk.disk-full")
+    assert shows(journal.write_error, "desk.disk-full")
     yield journal
     journal.close()
 
@@ -293,7 +293,7 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
     with monkeypatch.context() as disk:
         disk.setattr(Store, "find_damaged_rows", raising(locked))
         journal = Journal(tmp_path / "home")
-        assert shows(journal.trouble, "desk.locked")
+        assert shows(journal.write_error, "desk.locked")
         assert journal.waiting
         with pytest.raises(StoreError, match=pattern("desk.locked")):
             journal.require_store()
@@ -303,7 +303,7 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
         assert journal.waiting  # read as little as the first time
         assert journal.held == "1 part, 2 events"
     journal._reopen()
-    assert (journal.trouble, journal.waiting, journal.held) == ("", False, "")
+    assert (journal.write_error, journal.waiting, journal.held) == ("", False, "")
     assert journal.left == broken_off(line=8)
     journal.save_version("pin.nc", b"M30", "so that all is written")
     assert journal.runs.read_part_count("pin.nc") == 1
@@ -317,7 +317,7 @@ def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
     with monkeypatch.context() as disk:
         disk.setattr(Store, "find_damaged_rows", raising(damaged))
         journal = Journal(tmp_path / "home")
-    assert shows(journal.trouble, "desk.damaged")
+    assert shows(journal.write_error, "desk.damaged")
     assert not journal.waiting  # no try will read it
     Store.open(tmp_path / "home").close()  # the command that restores finds it free
     journal.close()
@@ -351,7 +351,7 @@ def test_what_a_second_instance_cannot_keep_names_the_first(tmp_path: Path) -> N
     """It said that there was no room."""
     first = Journal(tmp_path / "home")
     second = Journal(tmp_path / "home")
-    assert f"process {os.getpid()}" in second.trouble
+    assert f"process {os.getpid()}" in second.write_error
     assert (second.waiting, second.held) == (False, "")
     second.close()
     first.close()
@@ -363,7 +363,7 @@ def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> Non
     first.require_store().offsets.tool_offsets.change_row(3, "test", {"x": -12.5}).result(60)
     second = Journal(tmp_path / "home")
     book = second.book()
-    assert second.trouble
+    assert second.write_error
     assert book.lock_reason
     assert book.tool_offsets[3].x == -12.5
     assert book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0}, "test") == book.lock_reason

@@ -117,7 +117,7 @@ def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) ->
     shop.renewing.begin_renewal()
     shop.renewing.worker.wait_for_results(LIMIT)
     assert shop.renewing.poll_error() == "Input/output error"
-    assert shop.posted[-1] == ChangeOffsets(trouble="Input/output error")
+    assert shop.posted[-1] == ChangeOffsets(failure_reason="Input/output error")
     assert shop.renewing.poll_error() == ""
 
 

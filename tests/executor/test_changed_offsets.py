@@ -107,7 +107,7 @@ def test_a_proof_of_other_offsets_does_not_count() -> None:
 def test_what_could_not_be_proved_stops_with_its_reason() -> None:
     rig = Rig()
     running(rig)
-    rig.post(ChangeOffsets(), ChangeOffsets(trouble="the offsets cannot be read"))
+    rig.post(ChangeOffsets(), ChangeOffsets(failure_reason="the offsets cannot be read"))
     rig.until(MachineState.IDLE)
     assert rig.said("refused") == [text("executor.no-repeat", why="the offsets cannot be read")]
     rig.run(0.4)

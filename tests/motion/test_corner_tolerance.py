@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import resources
-from app.cli.figures.proof_output import make_report_json
+from app.cli.outputs.proof_output import make_report_json
 from app.compose.machine.machine_files import parse_machine
 from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.elementary_blocks import Block

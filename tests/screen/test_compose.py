@@ -73,7 +73,7 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
     journal = Journal(home)
     journal.hear(LogEvent(1.0, "part", "part 1"))
     journal.close()
-    assert str(file) in journal.trouble
+    assert str(file) in journal.write_error
     assert file.read_bytes() == b"not a database" * 100
 
 

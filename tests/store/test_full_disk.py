@@ -59,13 +59,15 @@ def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Di
             store.runs.record_cycle("pin.nc", 3.0 + number)
         with raises_code(StoreError, "disk-full"):
             store.settings.save_setting("theme", "light").result(60)
-        assert store.trouble == str(StoreErrorCause.FULL.make_error(disk.path / "home" / STORE_FILE_NAME, ""))
+        assert store.write_error == str(
+            StoreErrorCause.FULL.make_error(disk.path / "home" / STORE_FILE_NAME, "")
+        )
         assert store.pending_entries is not None
         assert store.pending_entries.part_count == 33
         assert store.runs.read_part_count("pin.nc") == 36  # what is held counts on the screen
         disk.make_room()
         store.events.log_event("end", "after").result(60)
-        assert (store.trouble, store.pending_entries) == ("", None)
+        assert (store.write_error, store.pending_entries) == ("", None)
     with Store.open(disk.path / "home") as store:
         assert store.runs.read_part_count("pin.nc") == 36
         told = [event.text for event in reversed(store.events.read_events(limit=1000))]
@@ -129,14 +131,16 @@ def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 0.02)
     disk.fill()
     journal = Journal(disk.path / "home")
-    assert str(StoreErrorCause.FULL.make_error(disk.path / "home" / STORE_FILE_NAME, "")) in journal.trouble
+    assert (
+        str(StoreErrorCause.FULL.make_error(disk.path / "home" / STORE_FILE_NAME, "")) in journal.write_error
+    )
     journal.hear(LogEvent(0.0, "load", "pin.nc"))
     for number in range(20):
         journal.hear(part(number))
     assert journal.held == "20 parts, 21 events"
     disk.make_room()
     tick = threading.Event()
-    while journal.trouble:
+    while journal.write_error:
         tick.wait(0.01)
     journal.save_version("pin.nc", b"M30", "so that all is written")
     assert journal.runs.read_part_count("pin.nc") == 20
@@ -179,11 +183,11 @@ def test_a_store_that_another_program_writes_is_locked_and_not_damaged(tmp_path:
             store.runs.add_parts("pin.nc")
             with raises_code(StoreError, "locked"):
                 store.events.log_event("part", "part 1").result(60)
-            assert store.trouble == str(StoreErrorCause.LOCKED.make_error(tmp_path / STORE_FILE_NAME, ""))
+            assert store.write_error == str(StoreErrorCause.LOCKED.make_error(tmp_path / STORE_FILE_NAME, ""))
             assert store.runs.read_part_count("pin.nc") == 1
             other.execute("ROLLBACK")
         store.events.log_event("end", "after").result(60)
-        assert store.trouble == ""
+        assert store.write_error == ""
         assert store.runs.read_part_count("pin.nc") == 1
 
 

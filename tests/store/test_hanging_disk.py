@@ -63,13 +63,15 @@ def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Pa
     for number in range(3):
         journal.hear(LogEvent(0.0, "part", f"part {number}, 3.20 s"))
     disk.now += SLOW_WRITE_S - 0.1
-    assert (journal.trouble, journal.held) == ("", "")
+    assert (journal.write_error, journal.held) == ("", "")
     disk.now += 0.2
-    assert journal.trouble == str(StoreErrorCause.NOT_RESPONDING.make_error(tmp_path / STORE_FILE_NAME, ""))
+    assert journal.write_error == str(
+        StoreErrorCause.NOT_RESPONDING.make_error(tmp_path / STORE_FILE_NAME, "")
+    )
     assert journal.held
     disk.release()
     journal.require_store().events.log_event("start", "behind").result(LONG)
-    assert (journal.trouble, journal.held) == ("", "")
+    assert (journal.write_error, journal.held) == ("", "")
     assert journal.require_store().runs.read_part_count("pin.nc") == 3
     assert journal.close() == ""
 
@@ -80,7 +82,7 @@ def test_a_disk_that_is_only_slow_is_not_reported(disk: Disk, tmp_path: Path) ->
         for _ in range(5):
             store.events.log_event("start", "stored").result(LONG)
             disk.now += 10.0 * SLOW_WRITE_S
-            assert (store.trouble, store.pending_entries) == ("", None)
+            assert (store.write_error, store.pending_entries) == ("", None)
 
 
 def test_closing_leaves_a_disk_that_hangs_and_says_what_is_lost(

@@ -107,7 +107,7 @@ def test_value_out_of_range_changes_nothing(store: Store, x: float, z: float, r:
     with raises_code(StoreError, "out-of-range"):
         store.offsets.tool_offsets.change_row(1, "no", {"x": x, "z": z, "nose_radius": r}).result()
     assert store.offsets.tool_offsets.read_rows() == {}
-    assert store.trouble == ""  # a refusal is no trouble of the disk
+    assert store.write_error == ""  # a refusal is no trouble of the disk
 
 
 def test_secondary_has_the_narrower_range(store: Store) -> None:

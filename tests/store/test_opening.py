@@ -175,7 +175,7 @@ def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1").close()).result()  # as large as it is now
     with raises_code(StoreError, "disk-full"):
         store.programs.save_version("big", b"G90\n" * 100000, "x").result()
-    assert store.trouble == str(StoreErrorCause.FULL.make_error(store.path, ""))
+    assert store.write_error == str(StoreErrorCause.FULL.make_error(store.path, ""))
     assert store.programs.list_programs() == ()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1000000").close()).result()
     assert store.programs.save_version("big", b"G90\n" * 100000, "x").result() == 1

@@ -112,7 +112,7 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
         store.write(breaks).result()
     with raises_code(StoreError, "constraint"):
         store.write(lambda c: c.execute("INSERT INTO settings VALUES ('k', NULL)").close()).result()
-    assert store.trouble == ""  # nothing is wrong with the disk
+    assert store.write_error == ""  # nothing is wrong with the disk
     assert store.programs.save_version("a", b"", "x").result() == 1
     assert store.settings.read_setting("k") is None
 

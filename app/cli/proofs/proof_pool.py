@@ -21,7 +21,7 @@ UnitResult = TypeVar("UnitResult")
 WORKER_KILLED_TEXT = "the worker process was killed twice while proving this program (out of memory?)"
 # Modules imported once, in the process from which all workers are forked.
 _PRELOADED_MODULES = (
-    "app.cli.figures.proof_output",
+    "app.cli.outputs.proof_output",
     "app.cli.proofs.proof_work",
     "core.interpreter.omniturn.omniturn_interpreter",
     "core.proving.part_proof",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from app.cli.proofs.proof_job import ProofJob
 
 if TYPE_CHECKING:
-    from app.cli.figures.units import Json
+    from app.cli.outputs.units import Json
     from app.report.run_record import RunRecorder
     from core.language.source import ProgramSource
     from core.proving.proof_report import PartReport, ProofReport
@@ -64,7 +64,7 @@ def prove_pickled(pickled_job: bytes, version: str, source: ProgramSource) -> Pr
 
 def prove_program(job: ProofJob, source: ProgramSource) -> Proof:
     """Prove one program in this process."""
-    from app.cli.figures.proof_output import make_report_json
+    from app.cli.outputs.proof_output import make_report_json
 
     found = prove_with_findings(job, source)
     json = make_report_json(source.name, found.report, found.part, optional_stop=job.has_optional_stop)
@@ -97,7 +97,7 @@ def prove_with_findings(
     report = require_tool_offsets(report, job.setup)
     compare: Json | None = None
     if job.comparison_offsets is not None:
-        from app.cli.figures.comparison_output import make_comparison_json
+        from app.cli.outputs.comparison_output import make_comparison_json
 
         compare = make_comparison_json(job, source, report, part)
     if record is None:
@@ -106,7 +106,7 @@ def prove_with_findings(
 
     section = ProgramReport(source, report, part, record, job.machine, job.setup).make_html()
     if compare is not None:
-        from app.cli.figures.comparison_output import format_comparison
+        from app.cli.outputs.comparison_output import format_comparison
 
         section += make_offset_comparison(
             format_comparison(compare, is_metric=report.is_metric, dialect=report.dialect)

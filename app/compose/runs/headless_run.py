@@ -190,8 +190,10 @@ def _open_journal(
         return
     journal = Journal.open_default()
     try:
-        if journal.trouble:
-            print_line(Message("the data of this run cannot be saved: {problem}", problem=journal.trouble))
+        if journal.write_error:
+            print_line(
+                Message("the data of this run cannot be saved: {problem}", problem=journal.write_error)
+            )
         if is_simulated(machine):
             yield journal, lambda _what: None
             return

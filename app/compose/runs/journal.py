@@ -73,7 +73,7 @@ class Journal(Persistence):
         self._books: list[OffsetBook | PartsBook] = []
         self._store: Store | None = None
         self._program = ""
-        self._trouble = ""
+        self._write_error = ""
         self._recorder = CycleRecorder()
         self._noted: InterruptedJob | None = None  # job that a power failure would interrupt
         self._has_noted = False  # whether this control has noted a job since
@@ -90,7 +90,7 @@ class Journal(Persistence):
         try:
             self._store = self._open()
         except StoreError as error:
-            self._trouble = str(error)
+            self._write_error = str(error)
             self._held = deque(maxlen=MAX_BUFFERED_EVENTS)
             if error.is_temporary:
                 self._opener = threading.Thread(target=self._retry_open, name="store-opener", daemon=True)
@@ -144,12 +144,12 @@ class Journal(Persistence):
         return cls(find_data_folder(), control_running=control_running)
 
     @property
-    def trouble(self) -> str:
+    def write_error(self) -> str:
         """Return the reason why nothing is saved or why the last write failed.
 
         The text is empty if the last write succeeded.
         """
-        return self._trouble or (self._store.trouble if self._store else "")
+        return self._write_error or (self._store.write_error if self._store else "")
 
     @property
     def held(self) -> str:
@@ -176,7 +176,7 @@ class Journal(Persistence):
         """Return the stored offsets, which the screen can show and change."""
         store = self._store
         book = OffsetBook(
-            store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.trouble)
+            store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.write_error)
         )
         rows = self._read_other_rows() if store is None else None
         if rows is not None:
@@ -201,7 +201,7 @@ class Journal(Persistence):
         ``tool_kind`` is the tool table of this machine.
         """
         store = self._store
-        book = PartsBook(store, "" if store else self.trouble, tool_kind)
+        book = PartsBook(store, "" if store else self.write_error, tool_kind)
         self._attach_book(book, store)
         return book
 
@@ -212,7 +212,7 @@ class Journal(Persistence):
         """
         self._books.append(book)
         if self._store is not store:
-            book.use_store(self._store, self._trouble)
+            book.use_store(self._store, self._write_error)
 
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
         """Save an event, and count a finished part for its program.
@@ -316,7 +316,7 @@ class Journal(Persistence):
     def runs(self) -> RunRecords | NullRunRecords:
         """Return the run records of the open store, or an empty substitute without a store."""
         store = self._store
-        return store.runs if store is not None else NullRunRecords(self._trouble or STORE_CLOSED_TEXT)
+        return store.runs if store is not None else NullRunRecords(self._write_error or STORE_CLOSED_TEXT)
 
     def people(self) -> UserList:
         """Return the users, even from a store that another process writes. Raises StoreError."""
@@ -389,19 +389,19 @@ class Journal(Persistence):
         try:
             store = self._open()
         except StoreError as error:
-            self._trouble = str(error)
+            self._write_error = str(error)
             rows = self._read_other_rows()
             for book in self._books:
                 if isinstance(book, OffsetBook):
-                    book.use_store(None, self._trouble, rows)
+                    book.use_store(None, self._write_error, rows)
                 else:
-                    book.use_store(None, self._trouble)
+                    book.use_store(None, self._write_error)
             return
         with self._lock:
             held, self._held, self._store = self._held or (), None, store
             for event, receipt in held:
                 self._write(store, event, receipt)
-        self._trouble = ""
+        self._write_error = ""
         self._post_noted()
         for book in self._books:
             book.use_store(store, "")
@@ -443,7 +443,7 @@ class Journal(Persistence):
         """
         store = self._store
         if store is None:
-            raise StoreError(self._trouble or STORE_CLOSED_TEXT)
+            raise StoreError(self._write_error or STORE_CLOSED_TEXT)
         return store
 
     def close(self) -> str:

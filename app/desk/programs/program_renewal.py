@@ -84,7 +84,7 @@ class RunningRenewal:
         self.worker.deliver_results()
         if self._trouble:
             why, self._trouble = self._trouble, ""
-            self.program_loader.post_command(ChangeOffsets(trouble=why))
+            self.program_loader.post_command(ChangeOffsets(failure_reason=why))
             return why
         ready = self._next
         if self._told or ready is None or ready.proof is None:

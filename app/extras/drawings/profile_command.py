@@ -24,7 +24,7 @@ from core.message import Message
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from app.cli.figures.units import Json
+    from app.cli.outputs.units import Json
     from app.cli.program_options import SubParsers
     from app.extras.drawings.profile_trial import TrialResult
     from core.extras.drawings.contour_tracing import ElementGroup

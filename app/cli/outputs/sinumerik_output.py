@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures.units import (
+from app.cli.outputs.units import (
     Json,
     get_path_feed,
     make_block_head,

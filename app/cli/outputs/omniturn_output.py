@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.cli.figures.units import (
+from app.cli.outputs.units import (
     MM_PER_INCH,
     MM_S_PER_FT_MIN,
     Json,

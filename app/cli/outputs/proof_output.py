@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures.units import (
+from app.cli.outputs.units import (
     Json,
     get_length_converter,
     get_volume_converter,
@@ -130,7 +130,7 @@ def make_report_json(
     reach, times = report.ranges, report.times
     mill: Json = {}
     if report.mill_results is not None:
-        from app.cli.figures.klartext_output import make_mill_json
+        from app.cli.outputs.klartext_output import make_mill_json
 
         mill = make_mill_json(report, report.mill_results)
     inch, length = report.dialect is Dialect.OMNITURN, get_length_converter(report.dialect)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures.proof_output import make_diagnostic_json
-from app.cli.figures.units import MM_PER_INCH, Json, get_length_converter, get_volume_converter, round_seconds
+from app.cli.outputs.proof_output import make_diagnostic_json
+from app.cli.outputs.units import MM_PER_INCH, Json, get_length_converter, get_volume_converter, round_seconds
 from core.language.source import Dialect
 
 if TYPE_CHECKING:
