@@ -60,28 +60,28 @@ def _is_view(module: str) -> bool:
     )
 
 
-def test_only_the_screen_and_the_views_of_pages_know_qt(imports: dict[str, set[str]]) -> None:
+def test_only_screen_and_page_views_import_qt(imports: dict[str, set[str]]) -> None:
     assert [module for module, used in imports.items() if used & QT and not _is_view(module)] == []
 
 
-def test_no_model_knows_a_view_or_the_screen(imports: dict[str, set[str]]) -> None:
+def test_models_import_no_view_or_screen(imports: dict[str, set[str]]) -> None:
     models = {module for module in imports if not _is_view(module)} - COMMANDS
     assert {m: views for m in models if (views := sorted(filter(_is_view, imports[m])))} == {}
 
 
-def test_only_composing_knows_drivers(imports: dict[str, set[str]]) -> None:
+def test_only_compose_and_features_import_drivers(imports: dict[str, set[str]]) -> None:
     others = (m for m in imports if not m.startswith(("app.compose", "app.extras", "drivers")))
     known = {m: sorted(name for name in imports[m] if name.split(".")[0] == "drivers") for m in others}
     assert {module: names for module, names in known.items() if names} == {}
 
 
-def test_only_the_commands_of_optional_features_know_the_command_line(imports: dict[str, set[str]]) -> None:
+def test_optional_features_import_command_line_only_in_commands(imports: dict[str, set[str]]) -> None:
     extras = {m: used for m, used in imports.items() if m.startswith("app.extras.")}
     known = {m for m, used in extras.items() if any(name.startswith("app.cli") for name in used)}
     assert {m for m in known if not m.endswith("_command")} == set()
 
 
-def test_a_feature_knows_only_the_features_that_it_needs(imports: dict[str, set[str]]) -> None:
+def test_feature_imports_only_features_that_it_requires(imports: dict[str, set[str]]) -> None:
     def owner(module: str) -> str:
         parts = module.split(".")
         return parts[2] if parts[1:2] == ["extras"] and len(parts) > 2 else ""
@@ -91,7 +91,7 @@ def test_a_feature_knows_only_the_features_that_it_needs(imports: dict[str, set[
     assert {(a, b) for a, b in known if b and a != b} <= needed
 
 
-def test_pages_of_optional_features_are_composed_from_above(imports: dict[str, set[str]]) -> None:
+def test_pages_of_optional_features_do_not_import_compose(imports: dict[str, set[str]]) -> None:
     extras = {m: used for m, used in imports.items() if m.startswith("app.extras.")}
     known = {m for m, used in extras.items() if any(name.startswith("app.compose") for name in used)}
     assert {
@@ -101,7 +101,7 @@ def test_pages_of_optional_features_are_composed_from_above(imports: dict[str, s
     } == set()
 
 
-def test_no_modules_import_each_other_in_a_circle(imports: dict[str, set[str]]) -> None:
+def test_modules_have_no_circular_imports(imports: dict[str, set[str]]) -> None:
     """Not even for types alone: who reads one of them would have to read all."""
     assert sorted(_circles(imports)) == []
 
@@ -142,7 +142,7 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
         assert [name for name in folders if f"drivers.{name}\n" not in held and name not in apart] == []
 
 
-def test_pickle_goes_between_our_own_processes_alone() -> None:
+def test_pickle_is_used_only_between_turndesk_processes() -> None:
     """Unpickling runs what it is given: it is no format of a file."""
     sender_and_receiver = {
         "app/cli/proofs/proof_job.py",

@@ -53,11 +53,11 @@ def test_every_command_of_a_feature_has_a_module() -> None:
     assert set(map_command_modules()) <= set(main.list_commands())
 
 
-def test_an_addition_follows_the_item_that_it_names() -> None:
+def test_addition_is_inserted_after_the_item_that_it_names() -> None:
     assert insert_after("ab", str, [("x", "a"), ("y", "x")]) == ["a", "x", "y", "b"]
 
 
-def test_additions_that_follow_the_same_item_keep_their_order() -> None:
+def test_additions_after_the_same_item_retain_their_order() -> None:
     assert insert_after("ab", str, [("x", "a"), ("y", "a")]) == ["a", "x", "y", "b"]
 
 
@@ -65,11 +65,11 @@ def test_an_addition_may_follow_one_that_is_added_later() -> None:
     assert insert_after("ab", str, [("y", "x"), ("x", "a")]) == ["a", "x", "y", "b"]
 
 
-def test_an_addition_whose_item_is_absent_is_the_last() -> None:
+def test_addition_whose_item_is_missing_is_placed_last() -> None:
     assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
 
 
-def test_a_feature_without_one_that_it_needs_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_feature_without_its_required_feature_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     name = next(iter(extras()))
     monkeypatch.setattr(type(extras()[name]), "required_features", ("gone",))
     extras.cache_clear()
@@ -79,15 +79,13 @@ def test_a_feature_without_one_that_it_needs_is_left_out(monkeypatch: pytest.Mon
     assert name in extras()
 
 
-def test_a_feature_comes_after_those_that_it_needs() -> None:
+def test_feature_is_listed_after_the_features_it_requires() -> None:
     for name, each in extras().items():
         assert all(FEATURE_NAMES.index(need) < FEATURE_NAMES.index(name) for need in each.required_features)
 
 
 @pytest.mark.usefixtures("no_features")
-def test_without_features_f10_has_the_tool_lives_of_a_lathe(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_f10_lists_lathe_tool_lives_without_features(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctionList).functions}
     assert "TOOL LIFE" in names
@@ -95,7 +93,7 @@ def test_without_features_f10_has_the_tool_lives_of_a_lathe(
 
 
 @pytest.mark.usefixtures("no_features")
-def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixture[str]) -> None:
+def test_feature_commands_are_unknown_without_features(capsys: pytest.CaptureFixture[str]) -> None:
     assert set(main.list_commands()) == set(main.CORE_COMMANDS)
     with pytest.raises(SystemExit) as stopped:
         main.main(["share", "status"])
@@ -104,7 +102,7 @@ def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixtu
 
 
 @pytest.mark.usefixtures("no_features")
-def test_without_features_no_drawing_is_listed() -> None:
+def test_drawing_suffixes_are_not_listed_without_features() -> None:
     assert list_drawing_suffixes() == ()
 
 
@@ -126,7 +124,7 @@ def test_a_folder_of_a_feature_with_only_caches_counts_as_absent(monkeypatch: py
         ("io.analog.handwheel", "[io.in]", '[io.analog]\nhandwheel = { at = "pendant.REL_DIAL" }\n[io.in]'),
     ],
 )
-def test_a_signal_at_a_device_of_an_absent_feature_is_rejected(signal: str, old: str, new: str) -> None:
+def test_signal_at_device_of_missing_feature_is_rejected(signal: str, old: str, new: str) -> None:
     own = [each for each in load_all_drivers() if each.address_prefix != "pendant."]
     text = resources.read_machine_file("gt75.toml")
     assert old in text

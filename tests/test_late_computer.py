@@ -24,7 +24,7 @@ def told_by(home: Path, *events: tuple[str, str]) -> bool:
     ("first", "late"),
     [("late", True), ("hal-silent", True), ("following", False), ("estop", False)],
 )
-def test_a_late_computer_counts_when_it_is_what_is_told_first(first: str, late: bool) -> None:
+def test_late_computer_counts_if_it_is_reported_first(first: str, late: bool) -> None:
     tell(first)
     tell("late")
     assert told_late() is late
@@ -46,23 +46,23 @@ def test_only_a_real_time_test_on_a_late_computer_has_no_verdict(
     assert report.outcome == verdict
 
 
-def test_another_cause_before_lateness_counts(tmp_path: Path) -> None:
+def test_other_cause_before_lateness_counts(tmp_path: Path) -> None:
     wrong = ("alarm", "102 FOLLOWING ERROR: X"), ("stop", "903 THE COMPUTER WAS TOO LATE")
     assert not told_by(tmp_path, *wrong)
 
 
-def test_a_spindle_that_stops_is_the_computers_only_behind_a_silence(tmp_path: Path) -> None:
+def test_spindle_stop_is_not_lateness_without_a_preceding_stall(tmp_path: Path) -> None:
     stop = "stop", "225 SPINDLE HAS STOPPED: something"
     assert not told_by(tmp_path, stop)
 
 
-def test_and_behind_one_it_is(tmp_path: Path) -> None:
+def test_spindle_stop_is_lateness_after_a_stall(tmp_path: Path) -> None:
     assert told_by(
         tmp_path, ("starved", "the control was away"), ("stop", "225 SPINDLE HAS STOPPED: something")
     )
 
 
-def test_a_process_that_stood_still_is_told_and_one_that_did_not_is_not() -> None:
+def test_stalled_process_is_reported_and_running_process_is_not() -> None:
     forget()
     tick = threading.Event()
     with stalls_told(-1.0):  # whatever it took, it was longer
@@ -74,7 +74,7 @@ def test_a_process_that_stood_still_is_told_and_one_that_did_not_is_not() -> Non
     assert not told_late()
 
 
-def test_drives_without_power_are_the_computers_only_with_a_thread_that_stood_still(tmp_path: Path) -> None:
+def test_drives_off_is_lateness_only_with_stalled_hal_thread(tmp_path: Path) -> None:
     off = "alarm", "106 DRIVES STAY OFF: something"
     assert not told_by(tmp_path, off)
     forget()

@@ -116,14 +116,14 @@ def found(words: str, path: str) -> bool:
     )
 
 
-def test_forty_questions_are_answered_in_one_step() -> None:
+def test_map_leads_to_the_file_in_one_step_for_forty_questions() -> None:
     assert len(SENTENCES) == 40
     missed = [(asked, words) for asked, words, path in SENTENCES if not found(words, path)]
     assert len(missed) <= MOST_MISSED, missed
 
 
 @pytest.mark.parametrize("path", sorted({path for _, _, path in SENTENCES}))
-def test_the_file_is_there(path: str) -> None:
+def test_file_named_in_map_questions_exists(path: str) -> None:
     assert (HOUSE / path).is_file()
 
 
@@ -134,7 +134,7 @@ def _absent(path: str) -> bool:
     return not deleted and not (HOUSE / path).exists()
 
 
-def test_the_map_names_only_what_is_there() -> None:
+def test_map_names_only_existing_files() -> None:
     text = MAP.read_text(encoding="utf-8")
     named = set(re.findall(r"`((?:app|core|drivers|tests|resources)/[\w/]*(?:\.py)?)`", text))
     assert len(named) > 60
@@ -155,7 +155,7 @@ def test_the_documents_name_only_files_that_are_there() -> None:
 
 
 @WHOLE_PRODUCT
-def test_the_records_name_files_by_names_that_are_there() -> None:
+def test_decision_records_name_only_existing_files() -> None:
     """In a record a file often stands alone, without its folder."""
     there = {path.name for room in (*ROOMS, "resources", "tests") for path in (HOUSE / room).rglob("*.py")}
     records = sorted((HOUSE / "docs" / "decisions").glob("*.md"))
@@ -182,12 +182,12 @@ def test_every_record_is_in_the_index_of_decisions() -> None:
     assert sorted(known - set(listed) - waiting) == []
 
 
-def test_every_room_is_on_the_map() -> None:
+def test_every_source_folder_is_on_the_map() -> None:
     text = MAP.read_text(encoding="utf-8")
     rooms = {path.parent.relative_to(HOUSE) for room in ROOMS for path in (HOUSE / room).rglob("*.py")}
     assert [str(room) for room in sorted(rooms) if room.name not in text] == []
 
 
-def test_a_word_that_nothing_has_leads_nowhere() -> None:
+def test_unknown_word_leads_to_no_file() -> None:
     assert not found("flux capacitor", "core/executor/program_motion/cycle.py")
     assert not found("spindle", "core/executor/hand_motion/touch_off.py")

@@ -11,22 +11,22 @@ from tests.benchmarks.footprint import RESULTS
 from tests.benchmarks.reliability_page import page
 
 
-def test_the_page_is_that_of_the_figures() -> None:
+def test_reliability_page_matches_the_results() -> None:
     written = Path(__file__).parents[1] / "docs" / "reliability.md"
     assert written.read_text() == page(), "python -m tests.benchmarks.reliability_page > docs/reliability.md"
 
 
-def test_what_was_never_measured_is_said(tmp_path: Path) -> None:
+def test_missing_measurement_is_stated(tmp_path: Path) -> None:
     assert page(tmp_path).count("Not measured yet.") == 5
 
 
-def test_a_count_that_does_not_agree_is_told(tmp_path: Path) -> None:
+def test_disagreeing_record_is_reported(tmp_path: Path) -> None:
     figures = json.loads((RESULTS / "night_shift.json").read_text())
     (tmp_path / "night_shift.json").write_text(json.dumps({**figures, "disagree": ["store: 7 of 9"]}))
     assert "records disagree: store: 7 of 9." in page(tmp_path)
 
 
-def test_how_far_the_places_at_the_bar_stop_lie_apart_is_told(tmp_path: Path) -> None:
+def test_spread_of_positions_at_bar_stop_is_reported(tmp_path: Path) -> None:
     figures = json.loads((RESULTS / "night_shift.json").read_text())
     places = {"(12.7, -73.5, 0.0)": 90, "(12.7, -73.25, 0.0)": 8, "(12.7, -73.75, 0.0)": 2}
     (tmp_path / "night_shift.json").write_text(json.dumps({**figures, "at the bar stop": places}))
@@ -35,13 +35,13 @@ def test_how_far_the_places_at_the_bar_stop_lie_apart_is_told(tmp_path: Path) ->
     )
 
 
-def test_a_half_written_result_is_no_page(tmp_path: Path) -> None:
+def test_partly_written_result_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "branches.json").write_text("{")
     with pytest.raises(json.JSONDecodeError):
         page(tmp_path)
 
 
-def test_a_fault_that_nobody_has_looked_at_is_told_as_such(tmp_path: Path) -> None:
+def test_unexamined_fault_is_reported_as_not_examined(tmp_path: Path) -> None:
     figures = json.loads((RESULTS / "fuzz.json").read_text())
     fault = {"kind": "raised", "where": "KeyError core/a.py:1", "text": "KeyError('x')", "data": ""}
     targets = {name: {**each, "faults": []} for name, each in figures["targets"].items()}

@@ -31,7 +31,7 @@ def test_each_hazard_has_its_own_number() -> None:
 
 
 @pytest.mark.parametrize("row", rows(), ids=lambda row: str(row[0]))
-def test_a_hazard_has_a_rule_a_place_a_test_and_a_word_on_hardware(row: list[str]) -> None:
+def test_every_hazard_has_rule_location_test_and_hardware_note(row: list[str]) -> None:
     assert len(row) == 6
     assert all(row)
     places = MODULE.findall(row[3])
@@ -54,7 +54,7 @@ def test_what_is_named_exists(file: str, test: str) -> None:
     assert test in functions_of(found)
 
 
-def test_a_test_that_did_not_run_is_found() -> None:
+def test_test_that_did_not_run_is_detected() -> None:
     text = "`test_safety.py::test_what_is_named_exists` `test_safety.py::test_nobody` `nowhere.py::test_x`"
     ran = {"tests/test_safety.py::test_what_is_named_exists", "tests/elsewhere.py::test_nobody"}
     assert not_run(text, ran) == ["nowhere.py::test_x", "test_safety.py::test_nobody"]
@@ -79,7 +79,7 @@ def report(name: str, outcome: Literal["passed", "skipped"], reason: str = "") -
         (1, "Skipped: no halrun here", pytest.ExitCode.TESTS_FAILED),
     ],
 )
-def test_few_tests_without_a_verdict_do_not_fail_a_run(count: int, reason: str, status: int) -> None:
+def test_few_tests_without_verdict_do_not_fail_the_session(count: int, reason: str, status: int) -> None:
     names = sorted(names_of_all(), key=lambda name: name.partition("::")[2])
     seen, session = SafetyRan(), SimpleNamespace(exitstatus=pytest.ExitCode.OK)
     for number, name in enumerate(names):

@@ -22,11 +22,11 @@ LONG = "prove 1,000,000 blocks"
         ((1.0, 150.0, 0.36), True),
     ],
 )
-def test_time_or_memory_over_the_goal_is_told(figure: tuple[float, ...], told: bool) -> None:
+def test_time_or_memory_over_the_goal_is_reported(figure: tuple[float, ...], told: bool) -> None:
     assert list(not_met({LONG: figure})) == ([f"{LONG}: {GOALS[LONG].why}."] if told else [])
 
 
-def test_a_row_without_a_goal_is_never_told_and_shows_none() -> None:
+def test_row_without_goal_is_never_reported_and_shows_none() -> None:
     assert list(not_met({"bare interpreter": (99.0, 999.0)})) == []
     assert (goal_of("bare interpreter", "{:.2f}"), goal_of("window usable", "{:.2f}")) == ("–", "0.50")
     assert (goal_of(LONG, "{:.0f}", "memory"), goal_of("window usable", "{:.0f}", "memory")) == ("170", "–")
@@ -39,10 +39,10 @@ def test_every_goal_has_its_reason(name: str) -> None:
     assert len(GOALS[name].why) > 20
 
 
-def test_the_page_has_the_figures_that_were_kept() -> None:
+def test_page_shows_the_stored_measurements() -> None:
     written = (Path(__file__).parents[1] / "docs" / "speed.md").read_text(encoding="utf-8")
     assert written == with_kept(written), "python -m tests.benchmarks.speed_page --kept docs/speed.md"
 
 
-def test_what_was_never_measured_is_said(tmp_path: Path) -> None:
+def test_missing_measurement_is_stated(tmp_path: Path) -> None:
     assert kept(tmp_path).count("Not measured yet.") == 5

@@ -28,7 +28,7 @@ print(seen)
 """
 
 
-def test_two_runs_with_other_modules_loaded_draw_the_same(tmp_path: Path) -> None:
+def test_examples_are_the_same_with_other_modules_loaded(tmp_path: Path) -> None:
     script = tmp_path / "drawn.py"
     script.write_text(DRAWN)
     steady = {name: value for name, value in os.environ.items() if name != "HYPOTHESIS_PROFILE"}

@@ -17,12 +17,12 @@ def contents(path: Path) -> list[str]:
         return [str(connection.execute("PRAGMA user_version").fetchone()), *connection.iterdump()]
 
 
-def test_a_copy_holds_what_a_made_store_holds(tmp_path: Path) -> None:
+def test_copied_store_equals_a_newly_created_store(tmp_path: Path) -> None:
     store_template.copy_template(tmp_path / "copied")
     store_template._create(tmp_path / "made")
     assert contents(tmp_path / "copied") == contents(tmp_path / "made")
 
 
-def test_a_folder_that_cannot_be_written_is_the_products_error(tmp_path: Path) -> None:
+def test_unwritable_folder_raises_store_error(tmp_path: Path) -> None:
     with pytest.raises(StoreError):
         store_template.copy_template(tmp_path / "gone" / "store")

@@ -52,7 +52,7 @@ def begun(pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch, workers:
 
 @pytest.mark.parametrize("workers", [1, 2, 3, 4])
 @pytest.mark.parametrize("nodeids", [HAL + TOLD + RECKON, RECKON, TOLD, HAL[:1]], ids=len)
-def test_every_test_runs_once_whoever_is_quick(
+def test_every_test_runs_once_for_any_worker_speed(
     pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch, workers: int, nodeids: list[str]
 ) -> None:
     scheduler, made = begun(pytestconfig, monkeypatch, workers, nodeids)
@@ -63,7 +63,7 @@ def test_every_test_runs_once_whoever_is_quick(
     assert all(each.shutting_down for each in made)
 
 
-def test_a_worker_for_waits_begins_with_them_and_then_helps(
+def test_worker_for_waiting_tests_starts_with_them_and_then_helps(
     pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scheduler, (reckons, waiting) = begun(pytestconfig, monkeypatch, 2, HAL + TOLD + RECKON)
@@ -74,7 +74,7 @@ def test_a_worker_for_waits_begins_with_them_and_then_helps(
     assert not any(waits(waiting.nodeids[place]) for place in reckons.given)
 
 
-def test_what_a_worker_has_not_run_when_it_dies_is_run_by_the_other(
+def test_tests_not_run_by_a_dead_worker_are_run_by_the_other(
     pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scheduler, (reckons, waiting) = begun(pytestconfig, monkeypatch, 2, TOLD + RECKON)
@@ -85,14 +85,14 @@ def test_what_a_worker_has_not_run_when_it_dies_is_run_by_the_other(
     assert set(reckons.ran) >= set(TOLD[1:] + RECKON)
 
 
-def test_a_file_that_waits_stays_whole_and_one_that_reckons_does_not() -> None:
+def test_waiting_file_is_not_split_and_computing_file_is() -> None:
     named = portions(HAL + TOLD + RECKON, 2)
     assert len({named[each] for each in HAL}) == 2
     assert len({named[each] for each in TOLD}) == len(TOLD)
     assert 2 < len({named[each] for each in RECKON}) < len(RECKON)
 
 
-def test_files_of_hal_lie_apart() -> None:
+def test_hal_test_files_are_spread_apart() -> None:
     items: list[Any] = [SimpleNamespace(nodeid=each) for each in RECKON + HAL + TOLD]
     ordered = [item.nodeid for item in in_order(items)]
     assert ordered[:4] == [TOLD[0], *HAL[:3]]
@@ -100,7 +100,7 @@ def test_files_of_hal_lie_apart() -> None:
     assert ordered[len(HAL + TOLD) :] == RECKON
 
 
-def test_a_drawn_order_keeps_files_together_and_every_test() -> None:
+def test_random_order_leaves_files_together_and_includes_every_test() -> None:
     items: list[Any] = [SimpleNamespace(nodeid=each) for each in RECKON + HAL + TOLD]
     drawn = [item.nodeid for item in shuffled(items, 7)]
     assert sorted(drawn) == sorted(RECKON + HAL + TOLD)

@@ -31,12 +31,12 @@ def codes_of(alias: object) -> set[str]:
     return set(get_args(alias))
 
 
-def test_every_code_has_its_entry_and_every_entry_a_code() -> None:
+def test_every_alarm_code_has_exactly_one_catalog_entry() -> None:
     assert codes_of(AlarmCode) == codes_of(FaultCode) | codes_of(ControlAlarmCode) == set(CATALOG)
     assert not codes_of(FaultCode) & codes_of(ControlAlarmCode)
 
 
-def test_no_code_and_no_number_is_given_twice() -> None:
+def test_alarm_codes_and_numbers_are_unique() -> None:
     codes = Counter(code for _, entries in ALARM_SUBJECTS for code in entries)
     numbers = Counter(entry.number for entry in CATALOG.values())
     assert [
@@ -44,7 +44,7 @@ def test_no_code_and_no_number_is_given_twice() -> None:
     ] == []
 
 
-def test_numbers_that_were_there_before_stay() -> None:
+def test_published_alarm_numbers_do_not_change() -> None:
     """Written on notes at machines and in status files."""
     known = {
         **{"axis": 101, "following": 102, "in-position": 103, "driver": 104, "spindle": 201, "at-speed": 202},
@@ -56,7 +56,7 @@ def test_numbers_that_were_there_before_stay() -> None:
 
 
 @ENTRIES
-def test_an_entry_says_what_why_and_what_to_do(code: AlarmCode) -> None:
+def test_catalog_entry_has_short_text_causes_and_remedy(code: AlarmCode) -> None:
     entry = CATALOG[code]
     assert [each for each in CATALOG.values() if each.number == entry.number] == [entry]
     assert 100 <= entry.number <= 999
@@ -69,7 +69,7 @@ def test_an_entry_says_what_why_and_what_to_do(code: AlarmCode) -> None:
 
 
 @ENTRIES
-def test_the_remedy_names_the_key_that_goes_on(code: AlarmCode) -> None:
+def test_remedy_names_cycle_start_for_hold_and_reset_for_stop(code: AlarmCode) -> None:
     """What stops with an alarm is acknowledged by Reset, what holds goes on by Cycle Start."""
     entry = CATALOG[code]
     if entry.reaction is Reaction.HOLD:
@@ -111,7 +111,7 @@ def house() -> dict[Path, Told]:
     return told
 
 
-def test_no_alarm_exists_outside_the_catalogue() -> None:
+def test_every_raised_alarm_code_is_in_catalog() -> None:
     found = 0
     for path, told in house().items():
         for code, line in told.raises:
@@ -128,11 +128,11 @@ def test_every_entry_is_raised_somewhere() -> None:
     assert unused == []
 
 
-def test_an_alarm_is_made_in_one_place() -> None:
+def test_alarm_objects_are_created_in_one_module_only() -> None:
     """Whoever makes an Alarm by hand goes round the catalogue."""
     makers = {str(path.relative_to(HOUSE)): told.makes for path, told in house().items() if told.makes}
     assert makers == {"core/executor/raised_alarm.py": 1}
 
 
-def test_a_plain_entry_is_whole() -> None:
+def test_alarm_entry_does_not_show_detail_by_default() -> None:
     assert AlarmEntry(999, "text", ("cause",), "remedy", Reaction.STOP).shows_detail is False

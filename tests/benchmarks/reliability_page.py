@@ -147,7 +147,7 @@ def _night(result: Result, _folder: Path) -> Iterator[str]:
         f"Programs that were then canceled parted off {counts['pins of programs that were broken off']} "
         "pins.",
         f"**Records.** The store recorded {counts['readings']} part measurements and "
-        f"{counts['insert_changes']} "
+        f"{counts['inserts']} "
         f"insert changes. The setpoint queue had {result['underruns']} underruns.",
         f"**Drift.** {_places(result['at the bar stop'])} With {drift['offsets that were turned with']} "
         f"different X offsets, the turned radius varied by {spread:g} mm among pins with the same offset. It "

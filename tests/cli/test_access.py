@@ -51,7 +51,7 @@ def test_without_sign_in_no_user_can_change_anything(
 
 
 @pytest.mark.usefixtures("people", "no_sign_in")
-def test_without_sign_in_changes_of_no_level_are_still_made(say: Say, home: Path) -> None:
+def test_unrestricted_changes_are_allowed_without_sign_in(say: Say, home: Path) -> None:
     assert say("offsets", "set", "D4", "x=-.0005")[0] == 0
     with Store.open(home) as store:
         assert [(row.number, row.who) for row in store.offsets.read_history()] == [(4, "shop")]
@@ -111,14 +111,14 @@ def _installed(command: str) -> bool:
     return command.split(maxsplit=1)[0] in list_commands()
 
 
-def test_each_command_says_who_changes_or_is_known_to_read() -> None:
+def test_every_command_declares_its_user_or_is_read_only() -> None:
     found = dict(commands(build_parser()))
     assert {name for name, asks in found.items() if asks} == {name for name in CHANGES if _installed(name)}
     assert {name for name, asks in found.items() if not asks} == {name for name in READS if _installed(name)}
 
 
 @pytest.mark.parametrize("command", [name for name in CHANGES if _installed(name)])
-def test_each_change_asks_a_rule_before_it_is_made(
+def test_every_change_checks_its_access_rule_first(
     command: str, say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     (tmp_path / "own.toml").write_text(resources.read_machine_file("gt75.toml"))
@@ -139,7 +139,7 @@ def test_each_change_asks_a_rule_before_it_is_made(
         (("share", "keep", "PIN.NC"), "SETUP"), (("serial", "receive", "--port", "/dev/null"), "SETUP"),
     ) if _installed(words[0])
 ])  # fmt: skip
-def test_programs_are_of_setup_and_their_place_of_service(
+def test_rejected_share_or_receive_command_names_the_required_level(
     words: tuple[str, ...], level: str, say: Say, people: None, refusals: list[CodedError]
 ) -> None:
     status, told = say(*words)  # the system's user, of no level
@@ -153,7 +153,7 @@ def test_programs_are_of_setup_and_their_place_of_service(
     ("", True, "not-confirmed"),
 ])  # fmt: skip
 @pytest.mark.parametrize("left", [0, 50, 100, 4000])
-def test_a_store_that_cannot_be_read_lets_nobody_restore(
+def test_unreadable_store_is_not_restored_without_confirmation_at_terminal(
     left: int, typed: str, terminal: bool, code: str, say: Say, people: None, home: Path, tmp_path: Path,
     refusals: list[CodedError],
 ) -> None:  # fmt: skip
@@ -168,7 +168,7 @@ def test_a_store_that_cannot_be_read_lets_nobody_restore(
     assert file.read_bytes() == cut
 
 
-def test_nothing_of_a_level_is_done_where_the_people_cannot_be_read(
+def test_protected_commands_are_rejected_when_users_cannot_be_read(
     say: Say, people: None, home: Path, refusals: list[CodedError]
 ) -> None:
     (home / "turndesk.db").write_bytes(b"no store any more")

@@ -12,7 +12,7 @@ from tests.cli.conftest import Turndesk
 PAGE = Path(__file__).parents[2] / "docs" / "alarms.md"
 
 
-def test_the_catalogue_as_json_has_number_text_causes_and_remedy(turndesk: Turndesk) -> None:
+def test_json_catalog_has_numbers_texts_causes_and_remedies(turndesk: Turndesk) -> None:
     told = turndesk("alarms", "--json")
     assert (told.status, told.err) == (0, "")
     entries = json.loads(told.out)
@@ -24,7 +24,7 @@ def test_the_catalogue_as_json_has_number_text_causes_and_remedy(turndesk: Turnd
     assert numbers == sorted(set(numbers))
 
 
-def test_one_alarm_by_its_number(turndesk: Turndesk) -> None:
+def test_single_alarm_is_shown_by_its_number(turndesk: Turndesk) -> None:
     told = turndesk("alarms", "102")
     assert told.status == 0
     assert told.out.startswith("102  FOLLOWING ERROR")
@@ -33,19 +33,19 @@ def test_one_alarm_by_its_number(turndesk: Turndesk) -> None:
     assert "103" not in told.out
 
 
-def test_a_number_that_is_none_is_refused_in_one_line(turndesk: Turndesk) -> None:
+def test_unknown_alarm_number_is_rejected_in_one_line(turndesk: Turndesk) -> None:
     told = turndesk("alarms", "102", "5")
     assert (told.status, told.out) == (2, "")
     assert (told.code, told.err.count("\n")) == ("unknown-alarm", 1)
     assert " 5" in told.err
 
 
-def test_the_page_of_alarms_is_current() -> None:
+def test_alarms_page_is_up_to_date() -> None:
     """python -m core.alarms.alarms_page docs/alarms.md"""
     assert PAGE.read_text(encoding="utf-8") == render_page()
 
 
-def test_the_page_is_written_where_it_is_asked_for(tmp_path: Path) -> None:
+def test_alarms_page_is_written_to_given_path(tmp_path: Path) -> None:
     assert main([str(tmp_path / "page.md")]) == 0
     text = (tmp_path / "page.md").read_text(encoding="utf-8")
     assert all(str(entry.number) in text for entry in CATALOG.values())

@@ -45,7 +45,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> frozenset[str]:
 
 
 @pytest.mark.parametrize("unused", OF_THE_REST + OF_PYTHON)
-def test_prove_does_not_load_what_it_does_not_use(loaded: frozenset[str], unused: str) -> None:
+def test_prove_does_not_import_unused_modules(loaded: frozenset[str], unused: str) -> None:
     assert not [name for name in loaded if f"{name}.".startswith(f"{unused}.")]
 
 
@@ -69,18 +69,18 @@ def modules_of(*words: str) -> list[str]:
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
-def test_help_and_version_load_no_command_and_no_store(option: str) -> None:
+def test_help_and_version_import_no_command_and_no_store(option: str) -> None:
     loaded = modules_of(option)
     assert not [name for name in loaded for unused in OF_A_HELP if f"{name}.".startswith(f"{unused}.")]
     assert not [name for name in loaded if name.startswith("app.cli.") and name.endswith("_command")]
 
 
-def test_completion_loads_all_commands_but_neither_numpy_nor_the_store() -> None:
+def test_completion_imports_all_commands_but_not_numpy_or_store() -> None:
     loaded = modules_of("setup", "completion", "bash")
     assert {"app.cli.prove_command", "app.cli.scope_command", "app.cli.store_command"} <= set(loaded)
     assert not [name for name in loaded for unused in OF_A_COMPLETION if f"{name}.".startswith(f"{unused}.")]
 
 
-def test_it_loads_what_it_does_use(loaded: frozenset[str]) -> None:
+def test_prove_imports_the_modules_it_uses(loaded: frozenset[str]) -> None:
     used = {"core.interpreter.omniturn", "core.motion.window_planner", "core.proving.part_proof"}
     assert used <= loaded

@@ -45,7 +45,7 @@ def part(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("wear", [0.0005, -0.0005, 0.02])
-def test_a_radius_of_wear_is_twice_that_on_each_diameter(
+def test_radial_wear_offset_changes_diameters_by_twice_its_value(
     turndesk: Turndesk, tmp_path: Path, part: Path, here: Path, wear: float
 ) -> None:
     there = offsets_file(tmp_path, "there.toml", T1=(1.25 + wear, -2.0), T2=(0.5, -3.0))
@@ -57,7 +57,7 @@ def test_a_radius_of_wear_is_twice_that_on_each_diameter(
     assert differences(found, "shoulder") == [pytest.approx(0.0, abs=GOOD)] * 4
 
 
-def test_a_length_moves_the_shoulders_of_its_tool_alone(
+def test_z_offset_moves_only_shoulders_cut_by_that_tool(
     turndesk: Turndesk, tmp_path: Path, part: Path, here: Path
 ) -> None:
     there = offsets_file(tmp_path, "there.toml", T1=(1.25, -2.0), T2=(0.5, -3.003))
@@ -69,14 +69,16 @@ def test_a_length_moves_the_shoulders_of_its_tool_alone(
     assert moved[3] == pytest.approx(0.0, abs=GOOD)  # the saw has cut the back
 
 
-def test_the_same_offsets_make_the_same_part(turndesk: Turndesk, part: Path, here: Path) -> None:
+def test_same_offsets_produce_the_same_part(turndesk: Turndesk, part: Path, here: Path) -> None:
     found = compared(turndesk, part, here, here)
     assert (found["differing"], found["largest"], found["added"], found["gone"]) == (0, 0.0, [], [])
     assert found["cycle_time_s"][0] == found["cycle_time_s"][1]
     assert found["removed_volume"][0] == found["removed_volume"][1]
 
 
-def test_findings_that_come_and_go(turndesk: Turndesk, tmp_path: Path, part: Path, here: Path) -> None:
+def test_compare_lists_new_and_removed_findings(
+    turndesk: Turndesk, tmp_path: Path, part: Path, here: Path
+) -> None:
     far = offsets_file(tmp_path, "far.toml", T1=(1.25, -9.0), T2=(0.5, -3.0))  # Z travels 6 in
     found = compared(turndesk, part, here, far)
     assert found["gone"] == []
@@ -87,7 +89,7 @@ def test_findings_that_come_and_go(turndesk: Turndesk, tmp_path: Path, part: Pat
     assert [each["line"] for each in back["gone"] if each["code"] == "soft-limit"] == beyond
 
 
-def test_the_table_is_in_the_program_s_unit(
+def test_comparison_table_uses_the_unit_of_the_program(
     turndesk: Turndesk, tmp_path: Path, part: Path, here: Path
 ) -> None:
     there = offsets_file(tmp_path, "there.toml", T1=(1.2505, -2.0), T2=(0.5, -3.0))
@@ -104,7 +106,7 @@ def test_the_table_is_in_the_program_s_unit(
     assert "feature, mm" in told
 
 
-def test_a_folder_tells_it_in_a_line_and_a_report_in_full(
+def test_folder_comparison_has_one_line_per_program_and_full_report(
     turndesk: Turndesk, tmp_path: Path, here: Path
 ) -> None:
     folder = tmp_path / "parts"
@@ -126,7 +128,7 @@ def test_a_folder_tells_it_in_a_line_and_a_report_in_full(
     [(None, "unreadable"), ("[tool.1]\nx = true\n", "wrong-type"), ("x =", "not-toml"),
      ("[tool.99]\nx = 1.0\n", "unknown-number")],
 )  # fmt: skip
-def test_broken_offsets_end_it_before_anything_is_proved(
+def test_invalid_comparison_offsets_stop_prove_before_it_starts(
     turndesk: Turndesk, tmp_path: Path, part: Path, here: Path, text: str | None, code: str
 ) -> None:
     there = tmp_path / "there.toml"

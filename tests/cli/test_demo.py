@@ -33,7 +33,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> None:
+def test_demo_offsets_match_the_samples_and_can_be_changed(home: Path) -> None:
     folder = open_demo(None)
     assert folder == home / "demo"
     journal = Journal.open_default()
@@ -44,7 +44,7 @@ def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> 
     assert not (home / "turndesk.db").exists()  # nothing of it in the store of the machine
 
 
-def test_the_stock_of_its_lathe_program_is_specified_and_in_a_collet(home: Path) -> None:
+def test_lathe_demo_has_specified_stock_in_a_collet(home: Path) -> None:
     with Store.open(open_demo(None), read_only=True) as store:
         kept = load_stored_part(store.settings.read_setting, "bushing.nc")
         assert load_stored_part(store.settings.read_setting, "pinbar.nc") == EMPTY_STORED_PART
@@ -52,7 +52,7 @@ def test_the_stock_of_its_lathe_program_is_specified_and_in_a_collet(home: Path)
     assert read_machine(None).clamping.diameter == pytest.approx(2.5 * INCH)
 
 
-def test_the_tool_table_of_a_mill_has_what_its_samples_use(home: Path) -> None:
+def test_mill_demo_tool_table_has_all_tools_of_its_samples(home: Path) -> None:
     """It showed 0 for tools whose length counted."""
     with Store.open(open_demo("bc-table-mill")) as store:
         lengths = {
@@ -62,7 +62,9 @@ def test_the_tool_table_of_a_mill_has_what_its_samples_use(home: Path) -> None:
     assert lengths == {6: (3.5 * INCH, 2.5), 8: (4.0 * INCH, 4.25), 20: (3.0 * INCH, 6.0)}
 
 
-def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_changes_in_demo_are_retained_when_it_is_reopened(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with Store.open(open_demo(None)) as store:
         store.offsets.tool_offsets.change_row(1, values={"x": 3.0}, why="test", who="test").result()
     monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
@@ -70,7 +72,7 @@ def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatc
         assert store.offsets.tool_offsets.read_rows()[1].x == 3.0
 
 
-def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:
+def test_demo_is_rejected_for_a_real_machine(home: Path) -> None:
     with raises_code(CommandError, "real-machine", "gt75-grblhal.toml"):
         open_demo("gt75-grblhal")
     assert os.environ["TURNDESK_HOME"] == str(home)
@@ -86,7 +88,7 @@ def test_a_command_uses_the_data_of_the_demo(
     assert not (home / "turndesk.db").exists()
 
 
-def test_it_is_not_combined_with_a_version_or_a_kiosk_with_a_command(
+def test_conflicting_kiosk_version_and_demo_options_are_rejected(
     home: Path, refusals: list[CodedError]
 ) -> None:
     assert main(["--kiosk", "offsets", "show"]) == 2
@@ -99,7 +101,7 @@ MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")
 
 
 @pytest.mark.parametrize("machine", [None, "sinumerik-modulo", "sinumerik-linear", *MILLS])
-def test_its_program_is_one_that_the_machine_runs(machine: str | None) -> None:
+def test_demo_program_proves_without_errors_on_its_machine(machine: str | None) -> None:
     """A mill's desk began with a lathe's part, which it refuses."""
     source = load_source(Path(find_demo_program(machine)))
     found = read_machine(machine)
@@ -108,7 +110,7 @@ def test_its_program_is_one_that_the_machine_runs(machine: str | None) -> None:
     assert str(source.dialect) == found.mdi_language
 
 
-def test_it_comes_back_with_the_program_and_the_step_of_the_first_job(
+def test_demo_reopens_with_last_program_and_first_job_step(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     open_demo(None)

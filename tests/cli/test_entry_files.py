@@ -19,7 +19,7 @@ def written(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_offsets_become_millimetres(tmp_path: Path) -> None:
+def test_offsets_file_in_inches_is_converted_to_millimeters(tmp_path: Path) -> None:
     text = "[tool.1]\nx = 1\nz = -0.5\nnose_radius = 0.015\n[secondary.32]\nx = -0.015\n"
     tools, secondary, *_ = read_offsets(written(tmp_path, text))
     assert tools == {1: ToolOffset(25.4, -12.7, 0.015 * 25.4)}
@@ -55,13 +55,13 @@ def test_bad_offsets_are_refused(tmp_path: Path, text: str, code: str, value: st
         read_offsets(written(tmp_path, text))
 
 
-def test_all_mistakes_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_in_offsets_file_are_reported_at_once(tmp_path: Path) -> None:
     codes = "out-of-range unknown-key unknown-number"
     with raises_code(CommandError, codes, "tool.1.x = 99", "[tool.1] y", "[secondary.40]"):
         read_offsets(written(tmp_path, "[tool.1]\nx = 99\ny = 1\n[secondary.40]\n"))
 
 
-def test_inputs_by_number_and_terminal(tmp_path: Path) -> None:
+def test_inputs_file_accepts_number_or_terminal_name(tmp_path: Path) -> None:
     assert read_inputs_file(written(tmp_path, '[inputs]\n10 = true\n"TB2-5" = false\n')) == {
         "10": True,
         "TB2-5": False,
@@ -77,7 +77,7 @@ def test_inputs_by_number_and_terminal(tmp_path: Path) -> None:
         ('"TB2-9" = true', True),
     ],
 )
-def test_input_7_is_the_terminal_that_m95_asks(tmp_path: Path, text: str, on: bool) -> None:
+def test_input_7_maps_to_the_terminal_that_m95_reads(tmp_path: Path, text: str, on: bool) -> None:
     assert read_inputs_file(written(tmp_path, f"[inputs]\n{text}\n"))["TB2-9"] is on
 
 
@@ -96,7 +96,7 @@ def test_bad_inputs_are_refused(tmp_path: Path, text: str, code: str, value: str
         read_inputs_file(written(tmp_path, text))
 
 
-def test_inputs_that_the_machine_does_not_have(tmp_path: Path) -> None:
+def test_inputs_that_the_machine_does_not_have_are_rejected(tmp_path: Path) -> None:
     path = written(tmp_path, '[inputs]\n"TB25" = true\n')
     assert read_inputs_file(path) == {"TB25": True}
     assert read_inputs_file(written(tmp_path, "[inputs]\n7 = true\n"), known_names=("7",)) == {"7": True}
@@ -110,7 +110,7 @@ def test_missing_file_is_refused(tmp_path: Path) -> None:
         read_offsets(tmp_path / "none.toml")
 
 
-def test_wear_of_an_offsets_file_is_in_what_the_interpreter_gets(tmp_path: Path) -> None:
+def test_wear_in_offsets_file_is_added_to_tool_offset(tmp_path: Path) -> None:
     path = tmp_path / "offsets.toml"
     path.write_text(
         '[tool.2]\nx = 1.5\nz = -2\nwear_x = -0.001\nwear_z = 0.002\nquadrant = 3\nremark = "new"\n'
@@ -140,9 +140,7 @@ def test_all_mistakes_of_offsets_and_zeros_are_reported_together(tmp_path: Path)
         ("[secondary.1]\nwear_x = 0.01\n", "unknown-key", "[secondary.1] wear_x"),
     ],
 )
-def test_what_is_no_field_of_an_offsets_file_is_told(
-    tmp_path: Path, text: str, code: str, value: str
-) -> None:
+def test_unknown_field_in_offsets_file_is_reported(tmp_path: Path, text: str, code: str, value: str) -> None:
     path = tmp_path / "offsets.toml"
     path.write_text(text)
     with raises_code(CommandError, code, value):

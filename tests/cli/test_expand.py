@@ -16,7 +16,9 @@ KEYS = {
 }  # fmt: skip
 
 
-def test_radius_and_diameter_programs_move_alike(turndesk: Turndesk, example: Callable[[str], Path]) -> None:
+def test_radius_and_diameter_programs_give_the_same_moves(
+    turndesk: Turndesk, example: Callable[[str], Path]
+) -> None:
     def moves(name: str) -> list[object]:
         lines = turndesk("expand", example(name), "--json").lines
         return [(b["kind"], b["x"], b["z"], b["feed"], b["feed_mode"]) for b in lines]
@@ -26,7 +28,9 @@ def test_radius_and_diameter_programs_move_alike(turndesk: Turndesk, example: Ca
     assert ("rapid", 0.5, 1.0, 300.0, "ipm") in moves("linear-radius")
 
 
-def test_keys_order_and_times(turndesk: Turndesk, example: Callable[[str], Path]) -> None:
+def test_expand_json_has_source_in_order_and_block_times(
+    turndesk: Turndesk, example: Callable[[str], Path]
+) -> None:
     told = turndesk("expand", example("arc-r-diameter-barrel"), "--json")
     assert told.status == 0
     blocks = told.lines
@@ -49,14 +53,14 @@ def test_a_work_shift_is_in_the_machine_position_only(
     assert all(b["mz"] == pytest.approx(b["z"] + 3) for b in moving)
 
 
-def test_metric_programs_give_inches_too(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_expand_of_metric_program_gives_inches(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = tmp_path / "metric.nc"
     path.write_text("G90G71G94F2540\nT1\nX25.4Z12.7\nM30\n")
     (_, move, _) = turndesk("expand", path, "--offsets", offsets, "--json").lines
     assert (move["x"], move["z"], move["feed"]) == (1.0, 0.5, 100.0)
 
 
-def test_errors_go_to_stderr_and_no_block_follows_them(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_expand_stops_at_first_error_and_reports_it_on_stderr(turndesk: Turndesk, tmp_path: Path) -> None:
     path = tmp_path / "bad.nc"
     path.write_text("G90G94F300\nX1Z1\nX2,5\nX3\nM30\n")
     told = turndesk("expand", path, "--json")
@@ -65,7 +69,7 @@ def test_errors_go_to_stderr_and_no_block_follows_them(turndesk: Turndesk, tmp_p
     assert ":3:3: error:" in told.err
 
 
-def test_the_table_for_a_person(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_expand_table_has_its_columns_and_rows(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text("G90G94F300\nT1\nX1Z.5\nM30\n")
     rows = turndesk("expand", path, "--offsets", offsets).out.splitlines()

@@ -56,13 +56,13 @@ def moves_of(head: str) -> tuple[TimedSeries, list[TimedBlock]]:
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_the_table_is_the_same(head: str) -> None:
+def test_series_table_matches_row_by_row_table(head: str) -> None:
     together, alone = moves_of(head)
     assert format_series(together) == "".join(format_row(block, t0) for block, t0, _ in alone)
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_the_objects_are_the_same(head: str) -> None:
+def test_series_json_matches_block_by_block_json(head: str) -> None:
     together, alone = moves_of(head)
     told = [json.dumps(make_block_json(block, block.text, t0, t1)) + "\n" for block, t0, t1 in alone]
     assert make_series_json(together) == "".join(told)
@@ -83,12 +83,12 @@ def same(values: list[float], places: int) -> bool:
 
 
 @given(st.lists(FIGURES, min_size=1, max_size=20), st.sampled_from([6, 9]))
-def test_figures_are_rounded_as_python_rounds_them(values: list[float], places: int) -> None:
+def test_decimals_are_rounded_as_python_rounds_them(values: list[float], places: int) -> None:
     assert same(values, places)
 
 
 @pytest.mark.parametrize("value", [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, -1e-12, 0.1234567885, 1e5 + 2.5e-9, 1e15])
-def test_halves_and_what_is_near_them(value: float) -> None:
+def test_values_near_half_a_step_are_rounded_as_python_rounds_them(value: float) -> None:
     """A half of a step is no binary number: its decimals say where it goes, and no product with 1e9."""
     assert same([value, math.nextafter(value, math.inf), math.nextafter(value, -math.inf)], 9)
 
@@ -103,9 +103,9 @@ def test_halves_and_what_is_near_them(value: float) -> None:
         (1e16, "1e+16"),
     ],
 )  # fmt: skip
-def test_noughts_at_both_ends_are_left_out(value: float, text: str) -> None:
+def test_leading_and_trailing_zeros_are_omitted(value: float, text: str) -> None:
     assert format_decimals(np.array([value, value]), 9) == [text, text]
 
 
-def test_no_numbers_are_no_texts() -> None:
+def test_empty_array_formats_as_empty_list() -> None:
     assert format_decimals(np.empty(0), 6) == []

@@ -21,7 +21,9 @@ def part(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_blocks_of_the_face(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_expand_of_face_milling_gives_polar_and_cartesian_positions(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     told = turndesk("expand", part(tmp_path, FACE), "--offsets", offsets, "--json")
     assert told.status == 0
     by_line = {b["line"]: b for b in told.lines}
@@ -39,7 +41,9 @@ def test_blocks_of_the_face(turndesk: Turndesk, tmp_path: Path, offsets: Path) -
     assert by_line[11]["px"] is None
 
 
-def test_an_arc_of_the_side(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_expand_of_arc_on_cylinder_gives_its_positions(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     told = turndesk("expand", part(tmp_path, ROUND), "--offsets", offsets, "--json")
     arc = told.lines[-2]
     assert (arc["kind"], arc["dir"], arc["pcx"], arc["pcy"]) == ("plane-arc", "cw", 0.1, 0.0)
@@ -47,14 +51,16 @@ def test_an_arc_of_the_side(turndesk: Turndesk, tmp_path: Path, offsets: Path) -
     assert (arc["z"], arc["x"]) == (-0.1, -0.4)
 
 
-def test_two_words_that_do_not_go_together(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_conflicting_plane_words_are_reported_on_their_line(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     told = turndesk("prove", part(tmp_path, SIDE), "--offsets", offsets, "--json")
     assert told.status == 1
     (report,) = told.lines
     assert (6, "not-alone") in [(d["line"], d["code"]) for d in report["diagnostics"]]
 
 
-def test_limits_hold_what_c_reaches_and_no_speed_of_it(
+def test_proof_limits_and_cutting_length_include_c_motion(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     (report,) = turndesk("prove", part(tmp_path, FACE), "--offsets", offsets, "--json").lines
@@ -70,7 +76,9 @@ def test_limits_hold_what_c_reaches_and_no_speed_of_it(
 
 
 @pytest.mark.parametrize("dt", ["0.001", "0.0317"])
-def test_setpoints_of_a_flat_lie_on_it(turndesk: Turndesk, tmp_path: Path, offsets: Path, dt: str) -> None:
+def test_setpoints_of_milled_flat_are_on_the_flat(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, dt: str
+) -> None:
     out = tmp_path / "out.csv"
     assert turndesk("trace", part(tmp_path, FACE), "--offsets", offsets, "--dt", dt, "--out", out).status == 0
     with out.open() as file:

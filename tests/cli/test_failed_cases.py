@@ -37,7 +37,7 @@ WARNINGS = {
 
 
 @pytest.mark.parametrize("name", list(ERRORS))
-def test_a_case_has_its_errors_and_no_others(turndesk: Turndesk, name: str) -> None:
+def test_case_reports_exactly_its_expected_errors(turndesk: Turndesk, name: str) -> None:
     if not FOLDER.is_dir():
         pytest.skip(f"no {FOLDER}")
     tools, stock = FOLDER / "tools.toml", SHORT.get(name, STOCK)

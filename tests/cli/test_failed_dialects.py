@@ -50,7 +50,7 @@ def proved(turndesk: Turndesk, name: str, *more: object) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", list(ERRORS))
-def test_a_case_has_its_errors_and_no_others(turndesk: Turndesk, name: str) -> None:
+def test_case_reports_exactly_its_expected_errors_and_causes(turndesk: Turndesk, name: str) -> None:
     found = proved(turndesk, name)["diagnostics"]
     errors = [each for each in found if each["severity"] == "error"]
     assert [(each["line"], each["code"]) for each in errors] == ERRORS[name]
@@ -59,24 +59,24 @@ def test_a_case_has_its_errors_and_no_others(turndesk: Turndesk, name: str) -> N
     assert all(cause in told for cause in CAUSES.get(name, ()))
 
 
-def test_with_the_switch_on_the_fault_is_an_error(turndesk: Turndesk) -> None:
+def test_skipped_fault_is_an_error_with_block_delete_on(turndesk: Turndesk) -> None:
     found = proved(turndesk, "block_delete_m30.h", "--machine", "ac-table-mill", "--block-delete")
     errors = [(each["line"], each["code"]) for each in found["diagnostics"] if each["severity"] == "error"]
     assert errors == [(11, "Q parameter not defined")]
 
 
-def test_a_tool_by_name_is_told_by_its_name(turndesk: Turndesk) -> None:
+def test_tool_called_by_name_is_reported_by_name(turndesk: Turndesk) -> None:
     assert proved(turndesk, "s_head.mpf")["tools"] == ["ROUGH"]
 
 
-def test_the_groove_has_its_flanks(turndesk: Turndesk) -> None:
+def test_cycle93_groove_limits_include_its_flanks(turndesk: Turndesk) -> None:
     """From X40 down by 6: radius 14; roughly from Z-20 to -27.1, less the width of the tool."""
     limits = proved(turndesk, "cycle93_flank.mpf")["limits"]
     assert limits["x"][0] == pytest.approx(14.0)
     assert limits["z"][0] == pytest.approx(-27.116 + 3.0, abs=1e-3)
 
 
-def test_a_linear_third_axis_counts_in_mm(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_linear_third_axis_is_measured_in_mm(turndesk: Turndesk, tmp_path: Path) -> None:
     """50 mm at 100 mm/min: 30 s."""
     text = load_shipped_machine("sinumerik-linear").text
     file = tmp_path / "y.toml"

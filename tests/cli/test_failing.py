@@ -27,7 +27,7 @@ def crash(text: str) -> None:
     report_crash(type(error), error, error.__traceback__)
 
 
-def test_crash_files_lie_in_the_log_folder_one_each(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_crash_gets_its_own_file_in_log_folder(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     crash("first")
     crash("second")
     files = sorted((home / "logs").glob("crash-*.txt"))
@@ -41,7 +41,7 @@ def test_crash_files_lie_in_the_log_folder_one_each(home: Path, capsys: pytest.C
     assert "Traceback" not in "".join(told)
 
 
-def test_a_crash_without_a_log_folder_is_kept_elsewhere(
+def test_crash_file_is_saved_elsewhere_without_a_log_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("no folder")
@@ -51,7 +51,7 @@ def test_a_crash_without_a_log_folder_is_kept_elsewhere(
     assert str(tmp_path / "crash-") in capsys.readouterr().err
 
 
-def test_a_crash_that_can_be_kept_nowhere_is_one_line_all_the_same(
+def test_crash_that_cannot_be_saved_is_still_reported_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("no folder")
@@ -61,7 +61,7 @@ def test_a_crash_that_can_be_kept_nowhere_is_one_line_all_the_same(
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_a_thread_that_fails_leaves_a_crash_file_and_one_line(
+def test_failing_thread_leaves_a_crash_file_and_prints_one_line(
     home: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fail() -> None:
@@ -93,7 +93,7 @@ def test_a_thread_that_fails_leaves_a_crash_file_and_one_line(
         ({"DISPLAY": "rubbish"}, "no display found at DISPLAY=rubbish"),
     ],
 )
-def test_a_screen_that_cannot_be_opened_is_one_line(
+def test_missing_display_is_reported_in_one_line_without_crash_file(
     tmp_path: Path, display: dict[str, str], says: str
 ) -> None:
     """And status 2, where Qt alone would abort with a core dump."""
@@ -113,7 +113,7 @@ def test_a_screen_that_cannot_be_opened_is_one_line(
     assert list(tmp_path.glob("logs/crash*")) == []
 
 
-def test_a_library_of_the_system_that_is_missing_is_no_fault_of_ours(
+def test_missing_system_library_is_reported_without_traceback(
     home: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def missing() -> str:
@@ -127,7 +127,7 @@ def test_a_library_of_the_system_that_is_missing_is_no_fault_of_ours(
     assert said.endswith("install the system packages that README.md names\n")
 
 
-def test_a_module_of_ours_that_is_missing_is_a_fault(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_turndesk_module_raises_import_error(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def missing() -> str:
         raise ImportError("cannot import name 'x' from 'app'")
 
@@ -137,7 +137,9 @@ def test_a_module_of_ours_that_is_missing_is_a_fault(home: Path, monkeypatch: py
         main([])
 
 
-def test_a_log_folder_that_cannot_be_made_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_log_folder_that_cannot_be_created_is_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "logs").write_text("a file stands where the folder should be")
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     log = ErrorLog()
@@ -146,7 +148,7 @@ def test_a_log_folder_that_cannot_be_made_is_told(tmp_path: Path, monkeypatch: p
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a disk that is always full")
-def test_a_full_disk_under_the_log_is_told_without_a_traceback(
+def test_full_disk_under_log_is_reported_without_traceback(
     home: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     (home / "logs").mkdir(parents=True)
@@ -159,7 +161,7 @@ def test_a_full_disk_under_the_log_is_told_without_a_traceback(
     assert "Traceback" not in capfd.readouterr().err
 
 
-def test_the_log_rotates_by_its_size(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_log_rotates_when_it_reaches_its_maximum_size(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(error_log, "_MAX_BYTES", 2_000)
     log = ErrorLog()
     for number in range(200):
@@ -173,7 +175,7 @@ def test_the_log_rotates_by_its_size(home: Path, monkeypatch: pytest.MonkeyPatch
     assert [int(line.split()[-4]) for line in lines] == list(range(200 - len(lines), 200))
 
 
-def test_a_log_folder_that_goes_away_is_told_without_a_traceback(
+def test_removed_log_folder_is_reported_without_traceback(
     home: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """The file is open yet; that the folder has gone is found when the next one is begun."""

@@ -52,17 +52,17 @@ def test_help_and_version_import_no_command(words: list[str], monkeypatch: pytes
     assert len(loaded - bare) < 90
 
 
-def test_a_command_imports_its_own_module_alone() -> None:
+def test_command_imports_only_its_own_module() -> None:
     loaded = modules_of("alarms", "--help")
     assert [name for name in loaded if name.endswith("_command")] == ["app.cli.alarms_command"]
 
 
-def test_the_bare_parser_has_the_help_of_the_whole_one() -> None:
+def test_bare_parser_has_the_same_help_as_full_parser() -> None:
     assert build_parser(without_options=True).format_help() == build_parser().format_help()
     assert set(CORE_COMMANDS) <= set(list_commands())
 
 
-def test_a_command_has_its_line_of_help_once() -> None:
+def test_each_command_is_listed_once_in_help() -> None:
     text = " ".join(build_parser().format_help().split())
     assert all(text.count(CORE_COMMANDS[name]) == 1 for name in CORE_COMMANDS)
 
@@ -70,7 +70,7 @@ def test_a_command_has_its_line_of_help_once() -> None:
 @pytest.mark.parametrize(
     "words", [[], ["--help"], ["--demo", "--kiosk"], ["--program", "prove"], ["--machine=a.toml", "--demo"]]
 )
-def test_options_of_the_screen_need_no_command(words: list[str]) -> None:
+def test_screen_options_alone_do_not_need_the_full_parser(words: list[str]) -> None:
     assert has_only_screen_options(words)
 
 
@@ -86,11 +86,11 @@ def test_options_of_the_screen_need_no_command(words: list[str]) -> None:
         ["--demo", "nonsense"],
     ],
 )
-def test_a_command_or_a_mistake_needs_the_whole_parser(words: list[str]) -> None:
+def test_command_or_unknown_option_needs_the_full_parser(words: list[str]) -> None:
     assert not has_only_screen_options(words)
 
 
-def test_the_version_is_that_of_the_package() -> None:
+def test_package_version_comes_from_app_version() -> None:
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text())
     assert declared["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "app.VERSION"}
     assert re.fullmatch(r"\d+\.\d+\.\d+", VERSION)

@@ -27,7 +27,7 @@ def file_with(folder: Path, line: str, name: str = "a.h") -> Path:
         ("3 L Z+50 FMAX", "ac-table-mill"),
     ],
 )
-def test_the_machine_that_can_is_taken_and_named(
+def test_prove_selects_and_names_a_shipped_machine_that_fits(
     turndesk: Turndesk, tmp_path: Path, line: str, machine: str
 ) -> None:
     told = turndesk("prove", file_with(tmp_path, line), "--json")
@@ -36,7 +36,7 @@ def test_the_machine_that_can_is_taken_and_named(
     assert json.loads(told.out)["dialect"] == "klartext"
 
 
-def test_a_machine_that_is_said_is_the_one(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_specified_machine_is_used_even_if_it_does_not_fit(turndesk: Turndesk, tmp_path: Path) -> None:
     path = file_with(tmp_path, "3 PLANE AXIAL B+30 TURN FMAX")
     told = turndesk("prove", path, "--machine", "ac-table-mill")
     assert told.status == 1
@@ -52,7 +52,7 @@ def test_a_machine_that_is_said_is_the_one(turndesk: Turndesk, tmp_path: Path) -
         ("3 L B+Q3 FMAX", "bc-table-mill"),
     ],
 )
-def test_a_program_that_runs_on_none_is_told_on_one_that_has_its_axes(
+def test_faulty_program_is_proved_on_machine_that_has_its_axes(
     turndesk: Turndesk, tmp_path: Path, line: str, machine: str
 ) -> None:
     """What is wrong in it is what is told, not an axis that the first mill has not."""
@@ -62,7 +62,7 @@ def test_a_program_that_runs_on_none_is_told_on_one_that_has_its_axes(
     assert "axis B" not in told.out
 
 
-def test_what_no_shipped_mill_runs_is_told_as_on_the_first(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_program_that_fits_no_shipped_mill_is_proved_on_the_first(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("prove", file_with(tmp_path, "3 L X+9 F"))
     assert told.status == 1
     assert "ac-table-mill" in told.err
@@ -76,7 +76,7 @@ def test_what_no_shipped_mill_runs_is_told_as_on_the_first(turndesk: Turndesk, t
         ("resources/programs/pin.nc", "ac-table-mill", "gt75"),
     ],
 )
-def test_a_machine_that_cannot_run_it_names_one_that_can(
+def test_unsuitable_machine_error_names_one_that_fits(
     turndesk: Turndesk, program: str, machine: str, named: str
 ) -> None:
     told = turndesk("prove", program, "--machine", machine)
@@ -84,7 +84,7 @@ def test_a_machine_that_cannot_run_it_names_one_that_can(
     assert f"--machine {named}" in told.out
 
 
-def test_each_program_of_a_folder_has_its_own_machine(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_each_program_of_a_folder_gets_its_own_machine(turndesk: Turndesk, tmp_path: Path) -> None:
     """Two mills and a lathe, proved at once; what is kept of one machine is not taken for another."""
     folder = tmp_path / "mixed"
     folder.mkdir()

@@ -48,7 +48,7 @@ def names(lines: list[dict[str, Any]], folder: Path) -> list[str]:
     return [str(Path(line["file"]).relative_to(folder)) for line in lines]
 
 
-def test_the_programs_of_a_folder_one_object_a_line_in_the_order_of_names(
+def test_folder_json_has_one_line_per_program_in_name_order(
     turndesk: Turndesk, parts: Path, offsets: Path
 ) -> None:
     told = turndesk("prove", parts, "--offsets", offsets, "--json")
@@ -59,7 +59,9 @@ def test_the_programs_of_a_folder_one_object_a_line_in_the_order_of_names(
     assert told.lines[1] == one.lines[0]
 
 
-def test_the_table_at_the_end(turndesk: Turndesk, parts: Path, offsets: Path) -> None:
+def test_folder_table_ends_with_totals_and_slowest_program(
+    turndesk: Turndesk, parts: Path, offsets: Path
+) -> None:
     rows = turndesk("prove", parts, "--offsets", offsets).out.splitlines()
     assert rows[0].split() == ["verdict", "errors", "warnings", "cycle", "s", "removed", "program"]
     assert rows[2].split()[0:3] == ["proved", "0", "0"]
@@ -69,14 +71,14 @@ def test_the_table_at_the_end(turndesk: Turndesk, parts: Path, offsets: Path) ->
     assert rows[6].startswith("slowest to prove: ")
 
 
-def test_files_and_folders_mixed_are_proved_once_each(turndesk: Turndesk, parts: Path, offsets: Path) -> None:
+def test_files_given_twice_are_proved_once(turndesk: Turndesk, parts: Path, offsets: Path) -> None:
     odd = parts / "part.pdf"
     odd.write_text(GOOD)
     told = turndesk("prove", odd, parts, parts / "b.nc", "--offsets", offsets, "--json", "--jobs", 1)
     assert names(told.lines, parts) == ["A", "b.nc", "below/c.TAP", "part.pdf"]
 
 
-def test_a_file_that_cannot_be_read_keeps_no_other_from_its_proof(
+def test_unreadable_file_does_not_prevent_other_proofs(
     turndesk: Turndesk, parts: Path, offsets: Path
 ) -> None:
     (parts / "b.nc").write_bytes(b"\0\1\2")
@@ -96,7 +98,7 @@ def kept(home: Path) -> list[Path]:
     return sorted(path for path in (home / "proofs").glob("??/*"))
 
 
-def test_the_second_time_nothing_is_proved(
+def test_unchanged_folder_is_taken_from_the_proof_cache(
     turndesk: Turndesk, parts: Path, offsets: Path, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first = turndesk("prove", parts, "--offsets", offsets, "--json")
@@ -109,7 +111,7 @@ def test_the_second_time_nothing_is_proved(
     ("--machine", "sinumerik-linear"), ("--block-delete",), ("--strict",), ("--ideal",),
     ("--optional-stop",), ("--stock", "bar:2"), ("--offsets", "{other}"), ("--inputs", "{inputs}"),
 ])  # fmt: skip
-def test_what_a_proof_depends_on_is_proved_anew(
+def test_changed_input_of_a_proof_is_proved_again(
     turndesk: Turndesk, parts: Path, offsets: Path, home: Path, tmp_path: Path, more: tuple[str, ...]
 ) -> None:
     other, inputs = tmp_path / "other.toml", tmp_path / "inputs.toml"
@@ -121,7 +123,7 @@ def test_what_a_proof_depends_on_is_proved_anew(
     assert len(kept(home)) == 6
 
 
-def test_another_text_is_proved_anew_and_an_old_text_is_known(
+def test_changed_program_is_proved_again_and_old_text_is_cached(
     turndesk: Turndesk, parts: Path, offsets: Path, home: Path
 ) -> None:
     for depth in ("-.2", "-.4", "-.2"):
@@ -130,12 +132,14 @@ def test_another_text_is_proved_anew_and_an_old_text_is_known(
     assert len(kept(home)) == 4
 
 
-def test_no_cache_neither_keeps_nor_looks(turndesk: Turndesk, parts: Path, offsets: Path, home: Path) -> None:
+def test_no_cache_option_neither_stores_nor_reads_proofs(
+    turndesk: Turndesk, parts: Path, offsets: Path, home: Path
+) -> None:
     turndesk("prove", parts, "--offsets", offsets, "--json", "--no-cache")
     assert kept(home) == []
 
 
-def test_a_damaged_proof_is_made_again(turndesk: Turndesk, parts: Path, offsets: Path, home: Path) -> None:
+def test_damaged_cached_proof_is_replaced(turndesk: Turndesk, parts: Path, offsets: Path, home: Path) -> None:
     first = turndesk("prove", parts, "--offsets", offsets, "--json")
     for path, rest in zip(kept(home), (b"", b"rubbish", kept(home)[2].read_bytes()[:-20]), strict=True):
         path.write_bytes(rest)
@@ -148,7 +152,7 @@ def job() -> ProofJob:
     return ProofJob(machine, create_setup(machine, tool_offsets={}, secondary_offsets={}), PartSettings())
 
 
-def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, job: ProofJob) -> None:
+def test_oldest_cached_proofs_are_deleted_above_size_limit(tmp_path: Path, job: ProofJob) -> None:
     cache = ProofCache(tmp_path, job, max_bytes=2000)
     keys = [cache.get_key(ProgramSource(f"{n}.nc", GOOD)) for n in range(40)]
     for age, key in enumerate(keys):
@@ -164,7 +168,7 @@ def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, job: ProofJob) ->
     assert not aside.exists()
 
 
-def test_a_full_disk_is_told_once_and_proving_goes_on(
+def test_full_disk_is_reported_once_and_proving_continues(
     turndesk: Turndesk, parts: Path, offsets: Path, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(_self: Path, _data: bytes) -> int:
@@ -178,13 +182,13 @@ def test_a_full_disk_is_told_once_and_proving_goes_on(
     assert kept(home) == []
 
 
-def test_only_what_has_a_lasting_text_is_hashed() -> None:
+def test_value_without_a_stable_text_is_not_hashed() -> None:
     assert format_for_hash({"b": frozenset({2, 1}), "a": (0.1, None)}) == "{'a':[0.1,None],'b':<1,2>}"
     with pytest.raises(TypeError):
         format_for_hash(format_for_hash)
 
 
-def test_a_stock_that_is_kept_with_a_program_counts_in_a_folder_too(
+def test_stock_saved_with_a_program_applies_in_folder_proof(
     turndesk: Turndesk, parts: Path, offsets: Path, home: Path
 ) -> None:
     given = ("--offsets", offsets, "--json")
@@ -213,13 +217,13 @@ def _submit(executor: Executor, number: int) -> Future[int]:
     return executor.submit(killing, number)
 
 
-def test_what_kills_its_worker_twice_is_told_and_the_rest_goes_on() -> None:
+def test_task_that_kills_its_worker_twice_fails_and_others_finish() -> None:
     made = dict(WorkDistributor(LocalWorkers(2), _submit).iterate_results(iter(range(30))))
     assert isinstance(made.pop(13), BrokenExecutor)
     assert made == {n: n * n for n in range(30) if n != 13}
 
 
-def test_a_worker_that_is_killed_once_loses_nothing(tmp_path: Path, offsets: Path) -> None:
+def test_killed_worker_does_not_lose_any_proof(tmp_path: Path, offsets: Path) -> None:
     """As ``kill -9`` by another hand, in the middle of a folder."""
     for number in range(40):
         (tmp_path / f"{number:02d}.nc").write_text(program(number))
@@ -250,7 +254,7 @@ def _workers(process: int) -> list[int]:
     return [worker for child in _children(process) for worker in _children(child)]
 
 
-def test_ctrl_c_keeps_what_is_done_and_the_next_run_goes_on(tmp_path: Path, offsets: Path) -> None:
+def test_ctrl_c_retains_finished_proofs_for_next_run(tmp_path: Path, offsets: Path) -> None:
     folder, home = tmp_path / "parts", tmp_path / "home"
     folder.mkdir()
     for number in range(60):
@@ -290,7 +294,7 @@ sys.exit(main(["alarms"]))
 """
 
 
-def test_ctrl_c_while_a_class_is_made_ends_with_the_same_status(tmp_path: Path) -> None:
+def test_ctrl_c_during_class_creation_exits_with_status_130(tmp_path: Path) -> None:
     (tmp_path / "interrupted.py").write_text(INTERRUPTED_WHILE_A_CLASS_IS_MADE)
     ended = subprocess.run(
         [sys.executable, "-m", "interrupted"], cwd=tmp_path, capture_output=True, text=True, check=False
@@ -305,7 +309,7 @@ class Finalized:
         raise KeyboardInterrupt
 
 
-def test_ctrl_c_that_python_drops_ends_the_command(
+def test_keyboard_interrupt_dropped_by_python_still_ends_the_command(
     turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for number in range(20):
@@ -331,14 +335,14 @@ def test_ctrl_c_that_python_drops_ends_the_command(
 
 
 @pytest.mark.parametrize("number", ["0", "-1", "two", "1.5", "1000", ""])
-def test_no_number_of_workers(turndesk: Turndesk, parts: Path, number: str) -> None:
+def test_invalid_job_count_is_rejected(turndesk: Turndesk, parts: Path, number: str) -> None:
     told = turndesk("prove", parts, f"--jobs={number}")
     assert told.status == 2
     assert wording("cli.no-job-count", word=repr(number), most=256) in told.err
     assert told.err.count("\n") == 1
 
 
-def test_an_empty_folder_and_one_that_is_not_there(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_empty_folder_and_missing_folder_are_reported(turndesk: Turndesk, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     told = turndesk("prove", tmp_path / "empty")
     assert (told.status, told.code) == (2, "no-programs")
@@ -346,12 +350,12 @@ def test_an_empty_folder_and_one_that_is_not_there(turndesk: Turndesk, tmp_path:
     assert (told.status, "nowhere" in told.err) == (2, True)
 
 
-def test_no_cache_of_one_program_is_refused(turndesk: Turndesk, parts: Path) -> None:
+def test_no_cache_option_is_rejected_for_a_single_program(turndesk: Turndesk, parts: Path) -> None:
     told = turndesk("prove", parts / "b.nc", "--no-cache")
     assert (told.status, told.code) == (2, "no-cache")
 
 
-def test_broken_offsets_end_it_before_anything_is_proved(
+def test_invalid_offsets_stop_folder_proof_before_it_starts(
     turndesk: Turndesk, parts: Path, tmp_path: Path
 ) -> None:
     broken = tmp_path / "broken.toml"
@@ -360,7 +364,7 @@ def test_broken_offsets_end_it_before_anything_is_proved(
     assert (told.status, told.code, told.out, told.err.count("\n")) == (2, "wrong-type", "", 1)
 
 
-def test_a_fault_of_ours_is_told_with_its_program(
+def test_internal_error_is_reported_with_its_program(
     turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def faulty(_executor: Executor, *_: object) -> Future[Proof]:

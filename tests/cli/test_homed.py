@@ -27,7 +27,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
 
 
-def test_slides_without_a_position_are_homed_first_and_it_is_said(tmp_path: Path, capsys: Captured) -> None:
+def test_unhomed_axes_are_homed_before_the_run_and_reported(tmp_path: Path, capsys: Captured) -> None:
     text = resources.read_machine_file("gt75.toml")
     text = text.replace("absolute = true ", "home = { order = 2, speed = 60 }  # X goes last:", 1)
     text = text.replace("absolute = true\n", "home = { order = 1, speed = 60 }\n", 1)
@@ -37,7 +37,7 @@ def test_slides_without_a_position_are_homed_first_and_it_is_said(tmp_path: Path
     assert json.loads(told.out.splitlines()[-1])["final"]["x"] == pytest.approx(0.5)
 
 
-def test_slides_that_know_theirs_are_not_homed(tmp_path: Path, capsys: Captured) -> None:
+def test_homed_axes_are_not_homed_again(tmp_path: Path, capsys: Captured) -> None:
     assert run(tmp_path, resources.read_machine_file("gt75.toml")) == 0
     assert "homing" not in capsys.readouterr().err
 

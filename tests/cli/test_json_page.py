@@ -34,12 +34,12 @@ def test_the_page_is_up_to_date() -> None:
     )
 
 
-def test_the_command_writes_the_page(tmp_path: Path) -> None:
+def test_json_page_is_written_to_given_path(tmp_path: Path) -> None:
     assert main([str(tmp_path / "page.md")]) == 0
     assert (tmp_path / "page.md").read_text("utf-8") == generate_page()
 
 
-def test_meanings_are_sentences() -> None:
+def test_key_meanings_are_sentences() -> None:
     tables = [each.keys for each in json_keys.ALL_OUTPUTS] + [table.columns for table in PUBLIC]
     for key in (key for table in (*tables, floor_keys.FILE_KEYS) for key in table):
         assert key.meaning.endswith("."), key
@@ -75,13 +75,13 @@ NAMED = declare_keys(
         ({"a": 1, "b": [], "d": {"any": 1.5}}, "c"),
     ],
 )
-def test_what_differs_is_found(value: object, why: str) -> None:
+def test_undeclared_or_missing_json_keys_are_detected(value: object, why: str) -> None:
     declared_alone([{"a": 1, "b": [{"c": None}], "d": {"any": 2}}], NAMED)
     with pytest.raises(AssertionError, match=why):
         declared_alone([value], NAMED)
 
 
-def test_a_row_type_with_another_field_is_refused() -> None:
+def test_row_type_with_wrong_number_of_fields_is_rejected() -> None:
     class Pair(NamedTuple):
         one: int
         other: float | None
@@ -99,7 +99,7 @@ def test_a_row_type_with_another_field_is_refused() -> None:
 
 
 @pytest.mark.long
-def test_prove(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+def test_prove_json_has_the_declared_keys(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     lathe, mill = tmp_path / "part.nc", tmp_path / "tilted.h"
     lathe.write_text(HEAD + "X.6Z.1\nG95F.005\nG01Z-.5\nX.7\nG94F300X.7Z.1\nM30\n")
     mill.write_text((PROGRAMS / "nozzle.h").read_text())
@@ -115,7 +115,7 @@ def test_prove(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_expand(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+def test_expand_json_has_the_declared_keys(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     lathe = tmp_path / "part.nc"
     lathe.write_text(HEAD + "X.5Z.1\nG02X.6Z0R.1F10\nM30\n")
     for name, output in (
@@ -128,7 +128,7 @@ def test_expand(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
         declared_alone(told.lines, output.keys)
 
 
-def test_trace(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+def test_trace_json_has_the_declared_keys(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(HEAD + "X.5Z.1\nM30\n")
     told = turndesk("trace", path, "--out", tmp_path / "out.csv", "--json")
@@ -136,7 +136,7 @@ def test_trace(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_run(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+def test_run_json_has_the_declared_keys(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(HEAD + "X.5Z.1\nG04F3\nM30\n")
     offsets.write_text("".join(f"[tool.{number}]\nx = 0.0\nz = 0.0\n" for number in (1, 6)))
@@ -154,7 +154,7 @@ def test_run(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
 # --- Machine files and the alarm catalog.
 
 
-def test_machine_check(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_machine_check_json_has_the_declared_keys(turndesk: Turndesk, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     text = resources.read_machine_file("gt75.toml")
     path.write_text(text)
@@ -167,21 +167,21 @@ def test_machine_check(turndesk: Turndesk, tmp_path: Path) -> None:
     declared_alone([good, bad], json_keys.MACHINE_CHECK_OUTPUT.keys)
 
 
-def test_machine_hal(turndesk: Turndesk) -> None:
+def test_machine_hal_json_has_the_declared_keys(turndesk: Turndesk) -> None:
     values = [
         whole(turndesk("machine", "hal", f"gt75-{board}", "--json")) for board in ("mesa-7i97", "ethercat")
     ]
     declared_alone(values, json_keys.MACHINE_HAL_OUTPUT.keys)
 
 
-def test_alarms(turndesk: Turndesk) -> None:
+def test_alarms_json_has_the_declared_keys(turndesk: Turndesk) -> None:
     declared_alone([whole(turndesk("alarms", "--json"))], json_keys.ALARMS_OUTPUT.keys)
 
 
 # --- The store.
 
 
-def test_offsets(turndesk: Turndesk, home: Path) -> None:
+def test_offsets_json_has_the_declared_keys(turndesk: Turndesk, home: Path) -> None:
     for words in (
         ("T1", "x=1.25", "z=-.5", "kind=drill", "diameter=.25"),
         ("D1", "x=.01"),
@@ -199,7 +199,7 @@ def test_offsets(turndesk: Turndesk, home: Path) -> None:
     declared_alone([whole(turndesk("offsets", "show", "--json"))], offsets_keys.OFFSETS_SHOW_OUTPUT.keys)
 
 
-def test_store_verify(turndesk: Turndesk, filled: Path) -> None:
+def test_store_verify_json_has_the_declared_keys(turndesk: Turndesk, filled: Path) -> None:
     declared_alone([whole(turndesk("store", "verify", "--json"))], json_keys.STORE_VERIFY_OUTPUT.keys)
 
 
@@ -228,7 +228,9 @@ def test_exported_files_have_the_declared_columns(turndesk: Turndesk, filled: Pa
 # --- Scope.
 
 
-def test_scope(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) -> None:
+def test_scope_json_has_the_declared_keys(
+    turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path
+) -> None:
     path = tmp_path / "part.nc"
     path.write_text(HEAD + "X.5Z.1\nM30\n")
     assert turndesk("run", path, "--headless", "--offsets", offsets).status == 0

@@ -18,7 +18,7 @@ from drivers.simulated.simulated_machine import SimIO
 Captured = pytest.CaptureFixture[str]
 
 
-def test_shipped_lathe_is_good_and_answers(capsys: Captured) -> None:
+def test_shipped_lathe_is_valid_and_its_ports_respond(capsys: Captured) -> None:
     assert main(["machine", "check"]) == 0
     told = capsys.readouterr()
     assert told.err == ""
@@ -28,7 +28,7 @@ def test_shipped_lathe_is_good_and_answers(capsys: Captured) -> None:
     assert second.endswith(": X, Z, C, spindle, station, 25 inputs, 14 outputs")
 
 
-def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> None:
+def test_machine_check_json_lists_every_drive_and_input(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     path.write_text(resources.read_machine_file("gt75.toml").replace("GT-75", "OWN", 2))
     assert main(["machine", "check", str(path), "--json"]) == 0
@@ -42,7 +42,7 @@ def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> Non
     assert (ports["input collet_closed"]["at"], ports["input collet_closed"]["detail"]) == ("IN-5", "on")
 
 
-def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
+def test_each_mistake_in_machine_file_is_one_line(capsys: Captured, tmp_path: Path) -> None:
     text = resources.read_machine_file("gt75.toml").replace("amax = 120", "amax = 0", 1)
     path = tmp_path / "bad.toml"
     path.write_text(text.replace("lease_ms", "leese_ms"))
@@ -55,7 +55,7 @@ def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
     assert any("axis.X.amax = 0: expected a number" in line for line in lines)
 
 
-def test_mistakes_as_json(capsys: Captured, tmp_path: Path) -> None:
+def test_mistakes_in_machine_file_are_listed_in_json(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "bad.toml"
     path.write_text(resources.read_machine_file("gt75.toml") + "\n[profibus]\nbaud = 9600\n")
     assert main(["machine", "check", str(path), "--json"]) == 2
@@ -64,7 +64,7 @@ def test_mistakes_as_json(capsys: Captured, tmp_path: Path) -> None:
     assert report["ports"] == []
 
 
-def test_unreadable_file_is_told(capsys: Captured, tmp_path: Path) -> None:
+def test_unreadable_machine_file_is_reported(capsys: Captured, tmp_path: Path) -> None:
     assert main(["machine", "check", str(tmp_path / "none.toml")]) == 2
     assert "No such file" in capsys.readouterr().err
 
@@ -89,7 +89,9 @@ def board(monkeypatch: pytest.MonkeyPatch, *measured: str) -> None:
     monkeypatch.setattr(simulated_backend, "BACKEND", backend)
 
 
-def test_only_measured_rows_are_in_the_table(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_machine_check_table_shows_only_measured_rows(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
     board(monkeypatch, "board", "X", "input end_of_bar", "no such row")
     assert main(["machine", "check"]) == 0
     told = [line.split() for line in capsys.readouterr().out.splitlines()[1:]]
@@ -102,7 +104,9 @@ def test_only_measured_rows_are_in_the_table(capsys: Captured, monkeypatch: pyte
     assert last[-8:] == ["Z,", "C,", "spindle,", "station,", "24", "inputs,", "14", "outputs"]
 
 
-def test_a_driver_that_talks_to_nothing_is_not_ok(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_driver_without_a_connection_is_reported_as_not_checked(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
     board(monkeypatch)
     assert main(["machine", "check", "--json"]) == 0
     ports = json.loads(capsys.readouterr().out)["ports"]
@@ -110,7 +114,7 @@ def test_a_driver_that_talks_to_nothing_is_not_ok(capsys: Captured, monkeypatch:
 
 
 @pytest.mark.parametrize("state", FAILED_STATES)
-def test_a_failure_stays_one_although_nothing_was_measured(state: str) -> None:
+def test_failed_row_remains_failed_if_nothing_was_measured(state: str) -> None:
     row = CheckRow("X", "", state, "why").mark_unchecked(())
     assert (row.verdict, row.state, row.detail) == ("FAIL", state, "why")
 
@@ -129,19 +133,19 @@ def test_a_failure_stays_one_although_nothing_was_measured(state: str) -> None:
         ("gt75-grblhal", {"controller", "spindle"}),
     ],
 )
-def test_step_drives_simulated_boards_and_outputs_are_not_measured(name: str, measured: set[str]) -> None:
+def test_only_ports_with_feedback_are_listed_as_measured(name: str, measured: set[str]) -> None:
     machine = load_shipped_machine(name)
     rows = set(find_backend(machine).list_measured_rows(machine))
     inputs = {f"input {each}" for each in machine.inputs} if measured else set()
     assert rows == measured | inputs
 
 
-def test_the_summary_counts_terminals_and_names_a_single_one() -> None:
+def test_summary_counts_terminals_and_names_a_single_one() -> None:
     assert summarize_names(["X", "input estop", "output a", "output b"]) == "X, input estop, 2 outputs"
     assert summarize_names([]) == ""
 
 
-def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: Path) -> None:
+def test_unreachable_inverter_has_its_row(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     path.write_text(
         resources.read_machine_file("gt75-vfd.toml").replace("/dev/ttyUSB1", str(tmp_path / "none"))
@@ -152,7 +156,7 @@ def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: P
     assert "cannot be opened" in report["trouble"][0]
 
 
-def test_an_input_that_the_machine_does_not_have_is_trouble(
+def test_input_that_the_machine_does_not_have_fails_the_check(
     capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     there = SimIO.inputs

@@ -37,7 +37,7 @@ def run(folder: Path, machine: str) -> int:
     return main([*words, "--offsets", str(folder / "offsets.toml"), "--json"])
 
 
-def test_a_file_that_nobody_accepted_runs_and_has_no_changes(folder: Path, capsys: Captured) -> None:
+def test_machine_file_never_accepted_runs_without_change_warning(folder: Path, capsys: Captured) -> None:
     path = machine_file(folder)
     assert run(folder, path) == 0
     machine_file(folder, **{"seed = 1": "seed = 2"})
@@ -45,7 +45,7 @@ def test_a_file_that_nobody_accepted_runs_and_has_no_changes(folder: Path, capsy
     assert "changed" not in capsys.readouterr().err
 
 
-def test_accepted_then_changed_is_shown_by_check_and_run(folder: Path, capsys: Captured) -> None:
+def test_change_after_acceptance_is_shown_by_check_and_run(folder: Path, capsys: Captured) -> None:
     path = machine_file(folder)
     assert main(["machine", "accept", path]) == 0
     assert "this file was never accepted before" in capsys.readouterr().out
@@ -65,7 +65,7 @@ def test_accepted_then_changed_is_shown_by_check_and_run(folder: Path, capsys: C
     assert "changed" not in capsys.readouterr().err
 
 
-def test_a_real_machine_does_not_run_before(folder: Path, capsys: Captured) -> None:
+def test_real_machine_does_not_run_until_changes_are_accepted(folder: Path, capsys: Captured) -> None:
     path = machine_file(folder, "gt75-vfd.toml")
     assert main(["machine", "accept", path]) == 0
     machine_file(folder, "gt75-vfd.toml", **{"rpm = [50, 3500]": "rpm = [50, 3400]"})

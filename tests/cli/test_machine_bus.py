@@ -28,7 +28,7 @@ def virtual(tmp_path: Path, **changes: str) -> Path:
     return path
 
 
-def test_every_drive_and_input_of_a_bus_answers(capsys: Captured, tmp_path: Path) -> None:
+def test_every_drive_and_input_on_the_bus_responds(capsys: Captured, tmp_path: Path) -> None:
     path = virtual(tmp_path)
     assert main(["machine", "check", str(path), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
@@ -40,7 +40,7 @@ def test_every_drive_and_input_of_a_bus_answers(capsys: Captured, tmp_path: Path
     assert {port["verdict"] for port in report["ports"]} == {"not checked"}  # the bus is in this process
 
 
-def test_a_bus_that_is_not_there_is_one_sentence(capsys: Captured, tmp_path: Path) -> None:
+def test_missing_bus_is_reported_in_one_line(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "shop.toml"
     path.write_text(CAN.replace('channel = "can0"', 'channel = "can77"'))
     assert main(["machine", "check", str(path)]) == 1
@@ -50,14 +50,14 @@ def test_a_bus_that_is_not_there_is_one_sentence(capsys: Captured, tmp_path: Pat
     assert "Traceback" not in told
 
 
-def test_a_drive_that_is_not_there_is_named(capsys: Captured, tmp_path: Path) -> None:
+def test_missing_drive_is_reported_by_name(capsys: Captured, tmp_path: Path) -> None:
     path = virtual(tmp_path)
     path.write_text(path.read_text().replace("spindle = { id = 3 }", 'spindle = { id = 3, eds = "no.eds" }'))
     assert main(["machine", "check", str(path)]) == 1
     assert "spindle: the EDS file" in capsys.readouterr().err
 
 
-def test_a_missing_library_is_named_and_the_simulation_does_not_need_it(
+def test_missing_canopen_library_is_reported_and_simulation_runs(
     capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     real = builtins.__import__
@@ -91,6 +91,6 @@ def test_a_program_runs_on_the_bus(capsys: Captured, tmp_path: Path, monkeypatch
     assert told["alarms"] == []
 
 
-def test_peer_needs_a_bus(refusals: list[CodedError]) -> None:
+def test_peer_command_is_rejected_without_a_bus(refusals: list[CodedError]) -> None:
     assert main(["machine", "peer", str(Path(resources.__file__).parent / "machines" / "gt75.toml")]) == 2
     assert [each.code for each in refusals] == ["no-peer"]

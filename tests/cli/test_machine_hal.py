@@ -14,14 +14,14 @@ from core.message import CodedError
 Captured = pytest.CaptureFixture[str]
 
 
-def test_the_file_alone_on_stdout(capsys: Captured) -> None:
+def test_hal_file_is_written_alone_to_stdout(capsys: Captured) -> None:
     assert main(["machine", "hal", "gt75-mesa-7i76e"]) == 0
     told = capsys.readouterr()
     assert told.out == resources.get_hal_path("gt75-mesa-7i76e.hal").read_text(encoding="utf-8")
     assert told.err == ""
 
 
-def test_out_writes_new_files_and_says_what_to_wire(capsys: Captured, tmp_path: Path) -> None:
+def test_out_option_writes_new_files_and_lists_wiring(capsys: Captured, tmp_path: Path) -> None:
     out = tmp_path / "gt75-ethercat.hal"
     assert main(["machine", "hal", "gt75-ethercat", "--out", str(out)]) == 0
     told = capsys.readouterr()
@@ -34,7 +34,7 @@ def test_out_writes_new_files_and_says_what_to_wire(capsys: Captured, tmp_path: 
 
 
 @pytest.mark.parametrize("there", ["gt75-ethercat.hal", "ethercat-conf.xml"])
-def test_nothing_is_replaced(there: str, refusals: list[CodedError], tmp_path: Path) -> None:
+def test_existing_file_is_not_replaced(there: str, refusals: list[CodedError], tmp_path: Path) -> None:
     (tmp_path / there).write_text("mine", encoding="utf-8")
     assert main(["machine", "hal", "gt75-ethercat", "--out", str(tmp_path / "gt75-ethercat.hal")]) == 2
     (error,) = refusals
@@ -44,12 +44,12 @@ def test_nothing_is_replaced(there: str, refusals: list[CodedError], tmp_path: P
     assert (tmp_path / there).read_text(encoding="utf-8") == "mine"
 
 
-def test_another_name_than_the_machine_file_says_is_told(capsys: Captured, tmp_path: Path) -> None:
+def test_file_name_other_than_in_machine_file_is_reported(capsys: Captured, tmp_path: Path) -> None:
     assert main(["machine", "hal", "gt75-parport", "--out", str(tmp_path / "mine.hal")]) == 0
     assert "[hal] file is gt75-parport.hal, so TurnDesk loads that file" in capsys.readouterr().err
 
 
-def test_json_has_file_wires_and_what_to_measure(capsys: Captured) -> None:
+def test_hal_json_has_file_wiring_and_measurements(capsys: Captured) -> None:
     assert main(["machine", "hal", "gt75-mesa-7i97", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["board"] == "mesa-7i97"
@@ -60,7 +60,7 @@ def test_json_has_file_wires_and_what_to_measure(capsys: Captured) -> None:
     assert any("dial gauge" in note for note in told["measure"])
 
 
-def test_wrong_pins_are_named_all_at_once(capsys: Captured, tmp_path: Path) -> None:
+def test_all_invalid_pins_are_reported_at_once(capsys: Captured, tmp_path: Path) -> None:
     text = resources.read_machine_file("gt75-mesa-7i97.toml")
     file = tmp_path / "own.toml"
     file.write_text(text.replace("input-01", "input-91").replace("out-01", "out-06"), encoding="utf-8")
@@ -72,11 +72,11 @@ def test_wrong_pins_are_named_all_at_once(capsys: Captured, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("name", ["gt75", "gt75-canopen", "no-such-file.toml"])
-def test_what_has_no_hal_file(name: str, capsys: Captured) -> None:
+def test_machine_without_a_hal_file_is_rejected(name: str, capsys: Captured) -> None:
     assert main(["machine", "hal", name]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
-def test_a_folder_that_is_not_there(refusals: list[CodedError], tmp_path: Path) -> None:
+def test_missing_output_folder_is_reported(refusals: list[CodedError], tmp_path: Path) -> None:
     assert main(["machine", "hal", "gt75-parport", "--out", str(tmp_path / "none" / "gt75-parport.hal")]) == 2
     assert [each.code for each in refusals] == ["cannot-write"]

@@ -26,7 +26,7 @@ def rows(home: Path) -> tuple[MillRow, PresetRow]:
         return store.offsets.mill_tools.read_rows()[7], store.offsets.presets.read_rows()[3]
 
 
-def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turndesk, home: Path) -> None:
+def test_tools_and_presets_are_set_by_column_names(turndesk: Turndesk, home: Path) -> None:
     told = turndesk(*TOOL)
     assert (told.status, told.out.startswith("TOOL7 NAME Mill 12  L +60.000  R 6.000")) == (0, True), told
     assert turndesk(*PRESET).status == 0
@@ -48,7 +48,7 @@ def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turnd
         (("TOOL7", "stop=2"), "not-a-flag", "2"),
     ],
 )
-def test_what_is_no_tool_and_no_preset_is_refused(
+def test_invalid_tool_or_preset_is_rejected(
     turndesk: Turndesk, home: Path, words: tuple[str, ...], code: str, value: str
 ) -> None:
     answer = turndesk("offsets", "set", *words)
@@ -58,7 +58,7 @@ def test_what_is_no_tool_and_no_preset_is_refused(
         assert (store.offsets.mill_tools.read_rows(), store.offsets.presets.read_rows()) == ({}, {})
 
 
-def test_an_export_brings_them_to_another_store(
+def test_export_and_import_transfer_mill_tools_and_presets(
     turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     turndesk(*TOOL)
@@ -71,7 +71,7 @@ def test_an_export_brings_them_to_another_store(
     assert rows(second) == ROWS
 
 
-def test_of_a_spoilt_table_nothing_is_imported(turndesk: Turndesk, home: Path, tmp_path: Path) -> None:
+def test_import_with_a_damaged_table_changes_nothing(turndesk: Turndesk, home: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     turndesk(*PRESET)
     assert turndesk("store", "export", out).status == 0
@@ -87,7 +87,7 @@ def test_of_a_spoilt_table_nothing_is_imported(turndesk: Turndesk, home: Path, t
 
 
 @pytest.mark.usefixtures("paced_by_steps")
-def test_a_part_with_a_tool_whose_life_is_gone_is_refused(
+def test_program_is_rejected_if_life_of_its_tool_is_used_up(
     turndesk: Turndesk, home: Path, tmp_path: Path
 ) -> None:
     """.1 mm at 60 mm/min is .1 s at feed; the life of T7 is .06 s."""

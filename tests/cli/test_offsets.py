@@ -55,14 +55,14 @@ def tool(**fields: float | str) -> dict[str, object]:
     return {**zeros, "quadrant": 0, "remark": "", "master": False, **fields}
 
 
-def test_nothing_is_set_at_first_and_showing_makes_no_store(capsys: Captured, home: Path) -> None:
+def test_showing_offsets_of_a_new_home_creates_no_store(capsys: Captured, home: Path) -> None:
     assert shown(capsys) == {"tool": {}, "secondary": {}}
     assert main(["offsets", "show"]) == 0
     assert capsys.readouterr().out == "no offsets are set\n"
     assert not home.exists()
 
 
-def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
+def test_offsets_are_set_and_shown_in_inches(capsys: Captured, home: Path) -> None:
     assert main(["offsets", "set", "T3", "x=1.25", "z=-.5"]) == 0
     assert main(["offsets", "set", "D4", "x=-.0005"]) == 0
     assert shown(capsys) == {
@@ -74,20 +74,20 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
         assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
 
 
-def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
+def test_second_entry_retains_fields_it_does_not_name(capsys: Captured) -> None:
     main(["offsets", "set", "t03", "x=1", "nose_radius=.015"])
     main(["offsets", "set", "T3", "x=.5-.002", "--yes"])
     assert shown(capsys) == {"tool": {"3": tool(x=0.498, nose_radius=0.015)}, "secondary": {}}
 
 
-def test_text_has_five_places(capsys: Captured) -> None:
+def test_offsets_are_shown_with_five_decimals(capsys: Captured) -> None:
     main(["offsets", "set", "D4", "x=-.0005", "r=.015"])
     capsys.readouterr()
     main(["offsets", "show"])
     assert capsys.readouterr().out == "D4  X -0.00050  Z +0.00000  R 0.01500\n"
 
 
-def test_clear_undo_and_history(capsys: Captured) -> None:
+def test_clear_and_undo_are_in_the_history(capsys: Captured) -> None:
     main(["offsets", "set", "D1", "z=.1", "--yes", "--why", "long part"])
     main(["offsets", "set", "T1", "x=1"])
     assert main(["offsets", "clear", "D"]) == 0
@@ -108,7 +108,7 @@ def test_clear_undo_and_history(capsys: Captured) -> None:
     assert history[3]["new"] == {"x": 0.0, "z": 0.1, "r": 0.0}
 
 
-def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
+def test_history_shows_old_and_new_value(capsys: Captured) -> None:
     main(["offsets", "set", "D1", "z=.1", "--yes"])
     capsys.readouterr()
     main(["offsets", "history"])
@@ -145,7 +145,7 @@ def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
         (("history", "--limit", "0"), "limit", "0"),
     ],
 )
-def test_refusal_is_one_line_and_changes_nothing(
+def test_rejected_entry_is_one_line_and_changes_nothing(
     capsys: Captured, argv: tuple[str, ...], code: str, value: str
 ) -> None:
     error = refused(capsys, *argv)
@@ -155,32 +155,32 @@ def test_refusal_is_one_line_and_changes_nothing(
 
 
 @pytest.mark.parametrize("argv", [(), ("set", "T1"), ("clear",), ("nonsense",)])
-def test_wrong_usage_is_one_line(capsys: Captured, argv: tuple[str, ...]) -> None:
+def test_wrong_usage_is_reported_in_one_line(capsys: Captured, argv: tuple[str, ...]) -> None:
     with pytest.raises(SystemExit) as caught:
         main(["offsets", *argv])
     assert caught.value.code == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_one_bad_value_of_two_sets_neither(capsys: Captured) -> None:
+def test_one_invalid_value_of_two_sets_neither(capsys: Captured) -> None:
     refused(capsys, "set", "T1", "x=1", "z=99")
     assert shown(capsys) == {"tool": {}, "secondary": {}}
 
 
-def test_store_in_use_is_refused_and_still_shown(capsys: Captured, home: Path) -> None:
+def test_store_in_use_rejects_changes_and_can_be_shown(capsys: Captured, home: Path) -> None:
     with Store.open(home) as store:
         store.offsets.tool_offsets.change_row(1, "screen", {"x": 25.4}).result()
         assert refused(capsys, "set", "T1", "x=2").code == "in-use"
         assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
 
 
-def test_damaged_store_is_told_in_one_line(capsys: Captured, home: Path) -> None:
+def test_damaged_store_is_reported_in_one_line(capsys: Captured, home: Path) -> None:
     home.mkdir()
     (home / "turndesk.db").write_bytes(b"rubbish" * 100)
     assert refused(capsys, "show").code == "not-a-database"
 
 
-def test_every_field_of_a_tool_is_set_shown_and_told(capsys: Captured) -> None:
+def test_every_tool_field_is_set_shown_and_logged(capsys: Captured) -> None:
     main(["offsets", "set", "T3", "x=1.25", "z=-.5", "master=1"])
     main(["offsets", "set", "T3", "wear_x=-.001/2", "quadrant=3", "remark=rough, DCMT 11"])
     assert shown(capsys) == {
@@ -198,7 +198,7 @@ def test_every_field_of_a_tool_is_set_shown_and_told(capsys: Captured) -> None:
     assert newest["who"] == "command line"
 
 
-def test_undo_and_history_go_over_all_tables(capsys: Captured) -> None:
+def test_undo_and_history_cover_all_tables(capsys: Captured) -> None:
     """The youngest change of any table first: a zero offset is no longer passed by for a tool."""
     main(["offsets", "set", "T1", "x=1", "z=2"])
     main(["offsets", "set", "G54", "z=-120"])
@@ -213,7 +213,7 @@ def test_undo_and_history_go_over_all_tables(capsys: Captured) -> None:
     refused(capsys, "undo")
 
 
-def test_a_tool_is_cleared_and_comes_back(capsys: Captured) -> None:
+def test_cleared_tool_is_restored_by_undo(capsys: Captured) -> None:
     main(["offsets", "set", "T1", "x=1", "z=2"])
     main(["offsets", "set", "T1D2", "x=1", "z=3"])
     capsys.readouterr()
@@ -259,7 +259,7 @@ def test_a_large_change_needs_consent(capsys: Captured, entry: str, value: str) 
 
 
 @pytest.mark.parametrize(("typed", "status"), [("y", 0), ("n", 2), ("", 2)])
-def test_at_a_terminal_a_large_change_is_asked(
+def test_large_change_is_confirmed_at_a_terminal(
     capsys: Captured, monkeypatch: pytest.MonkeyPatch, typed: str, status: int
 ) -> None:
     assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
@@ -270,7 +270,7 @@ def test_at_a_terminal_a_large_change_is_asked(
     assert shown(capsys)["tool"] == {"1": tool(x=2.0 if typed == "y" else 1.2)}
 
 
-def test_a_master_that_others_follow_needs_consent(capsys: Captured) -> None:
+def test_master_change_that_moves_followers_needs_confirmation(capsys: Captured) -> None:
     for name in ("T1", "T2"):
         assert main(["offsets", "set", name, "x=1", "z=0"]) == 0
     capsys.readouterr()
@@ -348,7 +348,7 @@ def shorter(folder: Path) -> Path:
     return path
 
 
-def test_the_travel_is_that_of_the_machine_of_the_screen(
+def test_travel_limits_are_those_of_the_machine_last_used_by_screen(
     capsys: Captured, tmp_path: Path, home: Path
 ) -> None:
     machine = shorter(tmp_path)
@@ -363,7 +363,9 @@ def test_the_travel_is_that_of_the_machine_of_the_screen(
     assert main(["offsets", "set", "T1", "x=3.01", "--machine", "gt75"]) == 0
 
 
-def test_without_the_file_of_the_machine_nothing_is_set(capsys: Captured, tmp_path: Path, home: Path) -> None:
+def test_offsets_cannot_be_set_if_machine_file_is_missing(
+    capsys: Captured, tmp_path: Path, home: Path
+) -> None:
     machine = shorter(tmp_path)
     journal = Journal(home)
     store_machine(str(machine), journal)
@@ -374,7 +376,7 @@ def test_without_the_file_of_the_machine_nothing_is_set(capsys: Captured, tmp_pa
     assert main(["offsets", "set", "T1", "x=1", "z=0", "--machine", "gt75"]) == 0
 
 
-def test_an_import_takes_the_travel_of_the_machine_that_is_given(
+def test_import_uses_the_travel_limits_of_the_given_machine(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     folder, machine = exported(tmp_path / "out", "[tool.1]\nx = 3.0\nz = 0.0\n"), shorter(tmp_path)
@@ -385,7 +387,7 @@ def test_an_import_takes_the_travel_of_the_machine_that_is_given(
 # --- all or nothing -----------------------------------------------------------------------------------------
 
 
-def test_a_refused_shape_leaves_the_offset_as_it_was(capsys: Captured) -> None:
+def test_rejected_tool_shape_leaves_the_offset_unchanged(capsys: Captured) -> None:
     assert main(["offsets", "set", "T3", "x=1", "z=0", "kind=drill", "diameter=.25"]) == 0
     before = shown(capsys)
     assert refused(capsys, "set", "T3", "x=1.01", "point=999").code == "out-of-range"
@@ -394,7 +396,7 @@ def test_a_refused_shape_leaves_the_offset_as_it_was(capsys: Captured) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links of POSIX")
 @pytest.mark.parametrize("words", [("show",), ("set", "T3", "x=1", "z=-1"), ("history",), ("undo",)])
-def test_a_link_whose_disk_is_not_mounted_is_no_empty_store(
+def test_link_to_an_unmounted_disk_is_not_an_empty_store(
     words: tuple[str, ...], capsys: Captured, home: Path
 ) -> None:
     home.mkdir(exist_ok=True)

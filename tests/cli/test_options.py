@@ -62,21 +62,21 @@ def options() -> list[tuple[str, str]]:
 
 # Each option of each command, and the test of this suite that sees what it does or what refuses it.
 COVERED = {
-    **{(command, option): "test_the_options_of_a_program_act"
+    **{(command, option): "test_program_options_affect_the_proof"
        for command in ("prove", "expand", "trace", "run")
        for option in ("--machine", "--offsets", "--inputs", "--block-delete", "--strict", "--dialect",
                       "--optional-stop", "--json")},
-    ("prove", "--ideal"): "test_the_options_of_a_program_act",
-    ("prove", "--stick-out"): "test_a_stick_out_brings_the_chuck_into_the_proof",
-    ("prove", "--tools"): "test_tools_of_a_file_are_assumed_no_more",
-    ("prove", "--keep-stock"): "test_the_store_remembers_the_stock_of_a_program",
-    ("prove", "--stock"): "test_the_promised_keys_in_cubic_inches",
-    ("prove", "--jobs"): "test_files_and_folders_mixed_are_proved_once_each",
+    ("prove", "--ideal"): "test_program_options_affect_the_proof",
+    ("prove", "--stick-out"): "test_stick_out_option_adds_the_chuck_to_the_proof",
+    ("prove", "--tools"): "test_tools_given_in_a_file_are_not_reported_as_assumed",
+    ("prove", "--keep-stock"): "test_stock_of_a_program_is_saved_in_the_store",
+    ("prove", "--stock"): "test_stock_json_has_its_keys_in_cubic_inches",
+    ("prove", "--jobs"): "test_files_given_twice_are_proved_once",
     ("prove", "--compare"): "tests/cli/test_compare.py",
     ("prove", "--report"): "tests/cli/test_report.py",
     ("prove", "--paper"): "tests/cli/test_report_pdf.py",
-    ("prove", "--no-cache"): "test_no_cache_neither_keeps_nor_looks",
-    ("expand", "--ideal"): "test_the_options_of_a_program_act",
+    ("prove", "--no-cache"): "test_no_cache_option_neither_stores_nor_reads_proofs",
+    ("expand", "--ideal"): "test_program_options_affect_the_proof",
     ("trace", "--dt"): "tests/cli/test_trace.py",
     ("trace", "--out"): "tests/cli/test_trace.py",
     **{("run", option): "tests/cli/test_run_part.py"
@@ -131,7 +131,7 @@ def test_every_option_of_every_command_is_in_the_table() -> None:
 
 @pytest.mark.parametrize("name", [name for name, _ in parsers()])
 @pytest.mark.parametrize("option", PRE_COMMAND_OPTIONS)
-def test_an_option_before_a_command_acts_or_is_refused(
+def test_option_before_a_command_takes_effect_or_is_rejected(
     name: str,
     option: str,
     capsys: pytest.CaptureFixture[str],
@@ -186,7 +186,7 @@ def test_an_option_before_a_command_acts_or_is_refused(
         assert said.startswith(f"turndesk: --{option} ")
 
 
-def test_machine_and_offsets_before_prove_do_what_they_do_behind_it(
+def test_machine_and_offsets_work_before_and_after_the_command(
     turndesk: Turndesk, part: Path, far: Path
 ) -> None:
     behind = turndesk("prove", part, "--offsets", far, "--json")
@@ -214,7 +214,7 @@ OFFSETS_AROUND = wording("cli.option-twice-around", name="offsets", command="pro
     (["offsets", "set", "T1", "x=1", "--why", "a", "--why", "b"],
      wording("cli.option-twice", option="--why")),
 ])  # fmt: skip
-def test_an_option_that_is_given_twice_is_refused(
+def test_repeated_option_is_rejected(
     words: list[str], refusal: str, part: Path, far: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     try:
@@ -229,7 +229,7 @@ def test_an_option_that_is_given_twice_is_refused(
     ["prove", "a.nc", "--off", "b"], ["--mach", "a"], ["run", "a.nc", "--head"],
     ["prove", "a.nc", "--block"], ["trace", "a.nc", "--o", "b"],
 ])  # fmt: skip
-def test_an_option_is_written_in_full(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_abbreviated_option_is_rejected(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(words)
     assert ended.value.code == 2
@@ -237,7 +237,7 @@ def test_an_option_is_written_in_full(words: list[str], capsys: pytest.CaptureFi
     assert "unrecognized arguments" in said or "invalid choice" in said
 
 
-def test_version_with_anything_else_is_refused(part: Path, refusals: list[CodedError]) -> None:
+def test_version_with_any_other_word_is_rejected(part: Path, refusals: list[CodedError]) -> None:
     assert main(["--version", "prove", str(part)]) == 2
     assert main(["--version", "--machine", "gt75"]) == 2
     assert [each.code for each in refusals] == ["version-alone"] * 2
@@ -252,7 +252,7 @@ def test_version_with_anything_else_is_refused(part: Path, refusals: list[CodedE
         (["offsets", "show", "--why", "x"], "this command has no option --why"),
     ],
 )
-def test_an_option_of_another_command_is_not_its_own_remedy(
+def test_option_of_another_command_is_not_suggested_as_remedy(
     words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
@@ -263,7 +263,7 @@ def test_an_option_of_another_command_is_not_its_own_remedy(
     assert "did you mean" not in err
 
 
-def test_the_options_of_a_program_act(
+def test_program_options_affect_the_proof(
     turndesk: Turndesk, part: Path, offsets: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     on = tmp_path / "on.toml"
@@ -288,7 +288,7 @@ def test_the_options_of_a_program_act(
 @pytest.mark.parametrize("command", ["prove", "expand", "trace", "run"])
 @pytest.mark.parametrize("option", ["--machine", "--offsets", "--inputs", "--block-delete", "--strict",
                                     "--dialect"])  # fmt: skip
-def test_every_command_about_a_program_does_something_else_with_its_options(
+def test_program_options_change_the_output_of_every_program_command(
     command: str, option: str, turndesk: Turndesk, part: Path, offsets: Path, far: Path, tmp_path: Path
 ) -> None:
     part.write_text(PART.replace("T1", "T01"))
@@ -311,7 +311,7 @@ def test_every_command_about_a_program_does_something_else_with_its_options(
 
 @pytest.mark.parametrize("command", ["prove", "expand", "trace"])
 @pytest.mark.parametrize("option", ["--strict", "--inputs"])
-def test_what_only_one_language_has_is_refused_in_the_others(
+def test_omniturn_option_is_rejected_for_other_languages(
     command: str, option: str, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     part, inputs = tmp_path / "a.mpf", tmp_path / "i.toml"
@@ -324,7 +324,7 @@ def test_what_only_one_language_has_is_refused_in_the_others(
     assert option in str(error)
 
 
-def test_an_input_that_the_machine_has_not_is_refused(
+def test_input_that_the_machine_does_not_have_is_rejected(
     part: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     inputs = tmp_path / "i.toml"
@@ -347,7 +347,7 @@ def test_trace_in_json_needs_a_file_for_the_setpoints(
     assert report["cycle_time_s"] == pytest.approx(float(rows[-1].split(",")[0]), abs=0.001)
 
 
-def test_json_and_headless_go_together(turndesk: Turndesk, part: Path, offsets: Path) -> None:
+def test_run_accepts_json_with_headless(turndesk: Turndesk, part: Path, offsets: Path) -> None:
     told = turndesk("run", part, "--headless", "--json", "--offsets", offsets)
     assert json.loads(told.out.splitlines()[-1])["state"] == "complete"
 
@@ -357,7 +357,7 @@ def test_json_and_headless_go_together(turndesk: Turndesk, part: Path, offsets: 
     ["run", "{part}", "--headless"], ["machine", "check"],
 ])  # fmt: skip
 @pytest.mark.parametrize("below", ["", "/deeper/still"])
-def test_a_home_that_is_a_file_is_told(
+def test_home_that_is_a_file_is_reported(
     command: list[str], below: str, part: Path, monkeypatch: pytest.MonkeyPatch,
     refusals: list[CodedError],
 ) -> None:  # fmt: skip
@@ -369,7 +369,7 @@ def test_a_home_that_is_a_file_is_told(
 
 
 @pytest.mark.parametrize("words", [["offsets", "show"], ["setup", "desktop"], ["store", "verify"]])
-def test_a_user_without_a_home_is_told_to_name_a_folder(
+def test_user_without_a_home_folder_is_asked_to_name_one(
     words: list[str],
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -391,7 +391,7 @@ def test_a_user_without_a_home_is_told_to_name_a_folder(
     (["prov", "a.nc"], "did you mean prove?"), (["offsets", "sho"], "did you mean show?"),
     (["prove", "a.nc", "--ofsets", "b"], "did you mean --offsets?"),
 ])  # fmt: skip
-def test_a_slip_is_told_with_what_is_meant(
+def test_misspelled_option_is_reported_with_a_suggestion(
     words: list[str], meant: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:

@@ -97,7 +97,7 @@ def office(tmp_path: Path) -> Path:
 
 
 @pytest.mark.long
-def test_the_commands_hold_the_rules_of_windows(office: Path) -> None:
+def test_commands_run_under_simulated_windows_rules(office: Path) -> None:
     lines = [line for line in COMMANDS.splitlines() if line.split()[0] in list_commands()]
     script = (
         "import sys; from app.cli.main import run_console\n"
@@ -116,7 +116,7 @@ def test_the_commands_hold_the_rules_of_windows(office: Path) -> None:
     assert (office / "part.csv").read_bytes().startswith(b"t,x,z,c,spindle_deg,line\n")
 
 
-def test_the_simulated_desk_holds_them(tmp_path: Path) -> None:
+def test_simulated_operator_screen_runs_under_windows_rules(tmp_path: Path) -> None:
     told = _as_on_windows(tmp_path, "-c", DESK)
     assert told.stdout == "a desk\n", told.stderr[-2000:]
 
@@ -134,7 +134,7 @@ def test_the_simulated_desk_holds_them(tmp_path: Path) -> None:
         "print('→')",
     ],
 )
-def test_what_breaks_a_rule_is_told(office: Path, wrong: str) -> None:
+def test_violation_of_a_windows_rule_raises_an_error(office: Path, wrong: str) -> None:
     told = _as_on_windows(office, "-c", wrong)
     assert told.returncode == 1
     assert "Error" in told.stderr

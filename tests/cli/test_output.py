@@ -15,7 +15,7 @@ from core.file_replacement import replace_atomically
 
 @pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no device here that is always full")
 @pytest.mark.parametrize("words", [["--version"], ["--help"], ["prove", "--help"]])
-def test_a_full_disk_behind_stdout_is_one_sentence(
+def test_full_disk_on_stdout_is_reported_in_one_line(
     words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with Path("/dev/full").open("w") as full, monkeypatch.context() as patch:
@@ -28,7 +28,7 @@ def test_a_full_disk_behind_stdout_is_one_sentence(
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
-def test_no_file_takes_the_place_of_a_pipe_or_a_device(tmp_path: Path) -> None:
+def test_atomic_replace_rejects_a_pipe_or_device(tmp_path: Path) -> None:
     pipe, finished = tmp_path / "pipe", tmp_path / "finished"
     os.mkfifo(pipe)
     finished.write_bytes(b"t,x\n")

@@ -22,7 +22,7 @@ def written(tmp_path: Path, text: str | bytes, name: str = "part.nc") -> Path:
     return path
 
 
-def test_the_public_keys_and_figures_by_hand(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_prove_json_values_match_hand_calculation(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     # .5 in of cutting at .004 in/rev and 2000 rpm is 8 in/min: 3.75 s, ramps well under a hundredth.
     path = written(tmp_path, HEAD + "X.5Z.1\nG95F.004Z-.4\nG04F2\nG00X1\nM30\n")
     told = turndesk("prove", path, "--offsets", offsets, "--json")
@@ -44,7 +44,7 @@ def test_the_public_keys_and_figures_by_hand(turndesk: Turndesk, tmp_path: Path,
     assert proof["cycle_time_s"] == pytest.approx(sum(proof[key] for key in parts), abs=1e-5)
 
 
-def test_an_arc_reaches_as_far_as_its_crown(turndesk: Turndesk, example: Callable[[str], Path]) -> None:
+def test_arc_limits_include_its_crown(turndesk: Turndesk, example: Callable[[str], Path]) -> None:
     told = turndesk("prove", example("arc-r-diameter-barrel"), "--json")
     # Centre r .2 - sqrt(.635² - .15²), crown .635 further out; the rapid to .3 reaches further still.
     assert told.lines[0]["limits"]["x"] == [0.0, 0.3]
@@ -66,7 +66,7 @@ def test_several_files_give_a_line_each_and_the_worst_status(
     assert all(str(value) in finding["message"] for value in finding["args"].values())
 
 
-def test_a_file_that_cannot_be_read_does_not_keep_the_others_from_their_proof(
+def test_unreadable_file_does_not_prevent_other_proofs(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     good = written(tmp_path, HEAD + "X.5Z.1\nM30\n")
@@ -76,7 +76,7 @@ def test_a_file_that_cannot_be_read_does_not_keep_the_others_from_their_proof(
     assert told.err == f"turndesk: {tmp_path / 'none.nc'} cannot be read: No such file or directory.\n"
 
 
-def test_travel_beyond_the_soft_limit_names_line_axis_and_overrun(
+def test_soft_limit_error_names_line_axis_and_overrun(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     # Home to Z -6 is the travel; -6.25 is a quarter of an inch too far.
@@ -95,7 +95,7 @@ def test_travel_beyond_the_soft_limit_names_line_axis_and_overrun(
     assert "0.2500 in" in finding["message"]
 
 
-def test_an_arc_that_bulges_over_the_limit_is_refused(
+def test_arc_that_bulges_beyond_soft_limit_is_rejected(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     # Both ends stand at X 3.9, the half circle between them reaches 4.4; travel ends at 4.
@@ -104,7 +104,7 @@ def test_an_arc_that_bulges_over_the_limit_is_refused(
     assert [(d["line"], d["code"]) for d in told.lines[0]["diagnostics"]] == [(6, "soft-limit")]
 
 
-def test_an_offset_nobody_entered_is_a_warning_here(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_missing_tool_offset_is_a_warning_in_prove(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("prove", written(tmp_path, HEAD + "X.5Z.1\nM30\n"), "--json")
     assert told.status == 0
     (finding,) = told.lines[0]["diagnostics"]
@@ -120,7 +120,7 @@ UNREADABLE = {
 
 
 @pytest.mark.parametrize("content", UNREADABLE.values(), ids=UNREADABLE)
-def test_a_file_that_is_no_program_gets_one_clear_error(
+def test_file_that_is_not_a_program_gives_one_clear_error(
     turndesk: Turndesk, tmp_path: Path, content: bytes
 ) -> None:
     told = turndesk("prove", written(tmp_path, content))
@@ -137,7 +137,7 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize(("text", "line", "column"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_named_by_line_and_column(
+def test_error_has_line_and_column(
     turndesk: Turndesk, tmp_path: Path, text: str, line: int, column: int
 ) -> None:
     told = turndesk("prove", written(tmp_path, text), "--json")
@@ -159,7 +159,7 @@ def test_a_mistake_is_named_by_line_and_column(
         (("forge",), "forge"),
     ],
 )
-def test_usage_and_unreadable_files_end_with_two(
+def test_wrong_usage_and_unreadable_files_exit_with_status_2(
     turndesk: Turndesk, argv: tuple[str, ...], what: str
 ) -> None:
     told = turndesk(*argv)
@@ -169,6 +169,6 @@ def test_usage_and_unreadable_files_end_with_two(
     assert what in told.err
 
 
-def test_the_sheet_for_a_person(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_prove_summary_has_blocks_and_tools(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     told = turndesk("prove", written(tmp_path, HEAD + "X.5Z.1\nM30\n"), "--offsets", offsets)
     assert "proved; 5 blocks, 4 elementary, T1" in told.out

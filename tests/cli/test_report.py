@@ -77,7 +77,7 @@ def extent(drawing: ET.Element, look: str) -> tuple[float, float]:
     return max(wide) - min(wide), max(high) - min(high)
 
 
-def test_all_that_is_promised_stands_in_one_file(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_html_report_has_all_sections_and_drawings(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART)
     page, text = report_of(turndesk, tmp_path, path, "--offsets", offsets, "--stock", "bar:1.0:2+.02")
     for words in (
@@ -89,7 +89,9 @@ def test_all_that_is_promised_stands_in_one_file(turndesk: Turndesk, tmp_path: P
     assert {"Section: stock and finished part", "Tool paths", "Tool outline"} == set(drawings(text))
 
 
-def test_nothing_in_it_runs_or_is_loaded(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_html_report_has_no_scripts_or_external_resources(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     page, text = report_of(turndesk, tmp_path, written(tmp_path, PART), "--offsets", offsets)
     assert "<script>go</script>" in page.words
     assert not {tag for tag, _ in page.tags} & {"script", "img", "link", "iframe", "object", "a"}
@@ -99,7 +101,9 @@ def test_nothing_in_it_runs_or_is_loaded(turndesk: Turndesk, tmp_path: Path, off
     assert "url(" not in text
 
 
-def test_a_name_and_a_line_may_hold_html(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_html_in_file_name_or_program_line_is_escaped(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     path = written(tmp_path, "G90G94F300\nQ<img src=x>\nM30\n", "a<b>&.nc")
     page, _ = report_of(turndesk, tmp_path, path, "--offsets", offsets)
     assert "a<b>&.nc" in page.words
@@ -107,7 +111,9 @@ def test_a_name_and_a_line_may_hold_html(turndesk: Turndesk, tmp_path: Path, off
     assert "img" not in {tag for tag, _ in page.tags}
 
 
-def test_the_section_has_the_part_s_proportions(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_report_section_has_the_proportions_of_the_part(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     given = ("--offsets", offsets, "--stock", "bar:1.0:2+.02")
     _, text = report_of(turndesk, tmp_path, written(tmp_path, PART), *given)
     section = drawings(text)["Section: stock and finished part"]
@@ -118,7 +124,7 @@ def test_the_section_has_the_part_s_proportions(turndesk: Turndesk, tmp_path: Pa
     assert part_high == high  # behind the .8 in the bar is left
 
 
-def test_a_finding_of_the_part_has_its_line_and_a_picture(
+def test_part_finding_is_reported_with_its_line_and_a_picture(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     path = written(tmp_path, PART.replace("G95F.004Z-.5", "G00Z-.5"))
@@ -132,7 +138,7 @@ def test_a_finding_of_the_part_has_its_line_and_a_picture(
     assert extent(place, "part")[0] > 50.0
 
 
-def test_times_by_tool_come_to_the_cycle_time(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_times_by_tool_add_up_to_the_cycle_time(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART)
     page, _ = report_of(turndesk, tmp_path, path, "--offsets", offsets)
     cycle = turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["cycle_time_s"]
@@ -141,7 +147,7 @@ def test_times_by_tool_come_to_the_cycle_time(turndesk: Turndesk, tmp_path: Path
     assert sum(figures) == pytest.approx(cycle, abs=0.05 * len(figures))
 
 
-def test_several_programs_and_one_that_cannot_be_read_in_one_file(
+def test_report_covers_several_programs_and_an_unreadable_file(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     folder = tmp_path / "parts"
@@ -159,7 +165,7 @@ def test_several_programs_and_one_that_cannot_be_read_in_one_file(
     assert made.sub("", report_of(turndesk, tmp_path, *files, "--offsets", offsets)[1]) == made.sub("", first)
 
 
-def test_a_mill_has_a_report_without_a_section(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_mill_program_has_a_report_without_a_turned_section(turndesk: Turndesk, tmp_path: Path) -> None:
     page, text = report_of(turndesk, tmp_path, "resources/programs/roof.h", "--machine", "ac-table-mill")
     assert "does not turn a part" in page.words
     assert drawings(text) == {}
@@ -178,7 +184,7 @@ def test_a_mill_has_a_report_without_a_section(turndesk: Turndesk, tmp_path: Pat
         ("nowhere/report.pdf", "cannot-write"),
     ],
 )
-def test_where_no_report_can_be_written(
+def test_unwritable_report_path_is_rejected_in_one_line(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, name: str, code: str
 ) -> None:
     (tmp_path / "folder.html").mkdir()
@@ -188,7 +194,7 @@ def test_where_no_report_can_be_written(
 
 
 @pytest.mark.parametrize("call", ["os.fsync", "pathlib.Path.replace"])
-def test_a_disk_that_is_full_leaves_the_last_report_as_it_was(
+def test_full_disk_leaves_the_previous_report_unchanged(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch, call: str
 ) -> None:
     def full(*_: object) -> None:
@@ -208,9 +214,7 @@ FLAT = "G90G94F300G73\nT9\nX.9Z.1\nM19\nG04F1\nM15\nZ-.25\nF8X.3\nF300X.9\nZ1\nM
 MILLS = 'tool.9 = {kind = "end-mill", diameter = .5, tip = 8, length = 1.0}\n'
 
 
-def test_a_milled_part_is_drawn_as_it_was_milled_with_the_path_of_its_mill(
-    turndesk: Turndesk, tmp_path: Path, offsets: Path
-) -> None:
+def test_milled_part_is_drawn_with_its_tool_path(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     tools = written(tmp_path, MILLS, "tools.toml")
     words = (written(tmp_path, FLAT), "--offsets", offsets, "--tools", tools, "--stock", "bar:1.0:2")
     page, text = report_of(turndesk, tmp_path, *words)

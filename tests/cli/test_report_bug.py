@@ -69,7 +69,7 @@ def shop(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize("named", [[], ["WIDGET 77.nc", "--machine", "hopkins.toml"]])
-def test_nothing_private_is_in_the_report(named: list[str], shop: Path, turndesk: Turndesk) -> None:
+def test_bug_report_contains_no_private_values(named: list[str], shop: Path, turndesk: Turndesk) -> None:
     told = turndesk("report-bug", *named, "--yes")
     text = (shop / "turndesk-report.txt").read_text()
     assert told.status == 0
@@ -77,7 +77,7 @@ def test_nothing_private_is_in_the_report(named: list[str], shop: Path, turndesk
     assert [each for each in ("srv", "home/", str(shop)) if each in text] == []
 
 
-def test_what_explains_the_fault_is_in_the_report(shop: Path, turndesk: Turndesk) -> None:
+def test_bug_report_contains_the_details_that_explain_the_fault(shop: Path, turndesk: Turndesk) -> None:
     text = turndesk("report-bug", "--yes").out
     wanted = (
         *(f"turndesk {VERSION}", "Python 3.", 'backend = "sim"', "n3.in5", "X1.25", "…/app/cli/main.py"),
@@ -95,7 +95,7 @@ def test_what_explains_the_fault_is_in_the_report(shop: Path, turndesk: Turndesk
 @pytest.mark.parametrize(
     ("answer", "is_written"), [("y\n", True), ("yes\n", True), ("n\n", False), ("", False)]
 )
-def test_the_report_is_shown_before_the_question(
+def test_bug_report_is_shown_before_confirmation(
     answer: str, is_written: bool, shop: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO(answer))
@@ -105,7 +105,7 @@ def test_the_report_is_shown_before_the_question(
     assert Path("out.txt").exists() is is_written
 
 
-def test_the_file_is_private_and_is_what_was_shown(shop: Path, turndesk: Turndesk) -> None:
+def test_bug_report_file_is_private_and_matches_the_output(shop: Path, turndesk: Turndesk) -> None:
     told = turndesk("report-bug", "--yes", "--out", "out.txt")
     assert told.out == Path("out.txt").read_text() + "written: out.txt\n"
     assert stat.S_IMODE(Path("out.txt").stat().st_mode) == 0o600
@@ -125,11 +125,13 @@ def test_a_named_file_must_be_readable(words: list[str], shop: Path, turndesk: T
     assert not Path("turndesk-report.txt").exists()
 
 
-def test_a_folder_that_does_not_exist_is_an_error(shop: Path, turndesk: Turndesk) -> None:
+def test_missing_output_folder_is_an_error(shop: Path, turndesk: Turndesk) -> None:
     assert turndesk("report-bug", "--yes", "--out", "none/out.txt").code == "cannot-write"
 
 
-def test_a_damaged_store_is_reported_and_ends_nothing(home: Path, shop: Path, turndesk: Turndesk) -> None:
+def test_damaged_store_is_reported_without_ending_bug_report(
+    home: Path, shop: Path, turndesk: Turndesk
+) -> None:
     (home / "turndesk.db").write_bytes(b"rubbish" * 100)
     told = turndesk("report-bug", "--yes")
     assert told.status == 0
@@ -156,7 +158,7 @@ def test_a_new_installation_has_a_report(home: Path, tmp_path: Path, turndesk: T
         ("flange9.nc and FLANGE9.NC", "FILE-1.nc and FILE-1.NC"),
     ],
 )
-def test_private_values_are_recognized_by_their_form(text: str, expected: str) -> None:
+def test_private_values_are_recognized_by_format(text: str, expected: str) -> None:
     replaced = PrivateValueReplacer()(text)
     assert replaced.startswith(expected)
     assert not any(
@@ -177,11 +179,11 @@ def test_private_values_are_recognized_by_their_form(text: str, expected: str) -
         *("gt75.toml", "1e-05 mm/s", "Python 3.11.7", "X+0.0013 in/rev", "24/7", "PROGRAM-1.nc"),
     ],
 )
-def test_technical_values_remain(text: str) -> None:
+def test_technical_values_are_not_replaced(text: str) -> None:
     assert PrivateValueReplacer(public=("gt75.toml",))(text) == text
 
 
-def test_a_name_is_replaced_in_any_case_as_a_word_only() -> None:
+def test_name_is_replaced_in_any_case_but_only_as_a_whole_word() -> None:
     replacements = PrivateValueReplacer(people=["Ann", "A"], programs=["PIN.nc"])
     assert replacements("ANN ran pin.nc; PIN is loaded, A, Annex, spinning") == (
         "PERSON-1 ran PROGRAM-1.nc; PROGRAM-1 is loaded, A, Annex, spinning"
@@ -205,7 +207,7 @@ def test_shipped_programs_and_machines_are_public() -> None:
         ("Q1 = 3.5", "Q1 = 3.5"),
     ],
 )
-def test_comments_and_names_of_a_program_are_hidden(line: str, hidden: str) -> None:
+def test_program_comments_and_names_are_masked(line: str, hidden: str) -> None:
     found = mask_program_texts(line)
     assert "ACME" not in found
     assert found == hidden or '"' in line
@@ -221,11 +223,11 @@ def test_comments_and_names_of_a_program_are_hidden(line: str, hidden: str) -> N
         ("# only a comment", ""),
     ],
 )
-def test_strings_of_a_machine_file_are_hidden(line: str, expected: str) -> None:
+def test_machine_file_strings_are_masked(line: str, expected: str) -> None:
     assert mask_machine_file(line, {"known"}, PrivateValueReplacer()) == expected
 
 
-def test_a_line_of_a_log_that_is_no_json_remains_a_line() -> None:
+def test_log_line_that_is_not_json_is_unchanged() -> None:
     assert remove_record_name("{broken") == "{broken"
     assert remove_record_name("[1]") == "[1]"
     assert json.loads(remove_record_name('{"text": "READY", "record": "PIN.scope"}')) == {"text": "READY"}

@@ -27,7 +27,7 @@ def pdf_of(turndesk: Turndesk, tmp_path: Path, *words: object) -> Pdf:
     return Pdf(file)
 
 
-def test_it_says_what_the_html_says(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_pdf_report_has_the_same_text_as_html(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path, page = written(tmp_path, BAD), tmp_path / "report.html"
     made = "".join(pdf_of(turndesk, tmp_path, path, "--offsets", offsets, *STOCK).pages)
     turndesk("prove", path, "--offsets", offsets, *STOCK, "--report", page)
@@ -37,7 +37,7 @@ def test_it_says_what_the_html_says(turndesk: Turndesk, tmp_path: Path, offsets:
 
 
 @pytest.mark.parametrize(("paper", "size"), [("a4", (210, 297)), ("letter", (216, 279))])
-def test_pages_are_numbered_and_of_the_paper_that_was_asked_for(
+def test_pdf_pages_are_numbered_and_have_requested_paper_size(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, paper: str, size: tuple[int, int]
 ) -> None:
     given = (written(tmp_path, BAD), "--offsets", offsets, *STOCK, "--paper", paper)
@@ -48,7 +48,7 @@ def test_pages_are_numbered_and_of_the_paper_that_was_asked_for(
         assert words.endswith(f"part.nc{number}")
 
 
-def test_drawings_are_lines_and_no_pixels(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_pdf_drawings_are_vector_graphics(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     with_part = pdf_of(turndesk, tmp_path, written(tmp_path, BAD), "--offsets", offsets, *STOCK)
     bare = pdf_of(turndesk, tmp_path, written(tmp_path, "G90G94F300\nM30\n"), "--offsets", offsets)
     assert with_part.photographs == 0
@@ -68,7 +68,7 @@ def test_each_program_begins_a_page(turndesk: Turndesk, tmp_path: Path, offsets:
     assert "Notproved" in second
 
 
-def test_it_needs_no_display(tmp_path: Path, offsets: Path) -> None:
+def test_pdf_report_needs_no_display(tmp_path: Path, offsets: Path) -> None:
     around = {key: value for key, value in os.environ.items() if key not in {"DISPLAY", "QT_QPA_PLATFORM"}}
     around["TURNDESK_HOME"] = str(tmp_path / "home")
     words = ["prove", written(tmp_path, PART), "--offsets", offsets, "--report", tmp_path / "report.pdf"]
@@ -80,14 +80,16 @@ def test_it_needs_no_display(tmp_path: Path, offsets: Path) -> None:
 
 
 @pytest.mark.parametrize("report", [(), ("--report", "report.html")])
-def test_paper_is_for_pdf(turndesk: Turndesk, tmp_path: Path, report: tuple[str, ...]) -> None:
+def test_paper_option_is_rejected_without_a_pdf_report(
+    turndesk: Turndesk, tmp_path: Path, report: tuple[str, ...]
+) -> None:
     told = turndesk("prove", written(tmp_path, PART), *report, "--paper", "a4")
     assert (told.status, told.out, told.err.count("\n")) == (2, "", 1)
     assert told.code == "paper-is-for-pdf"
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-def test_a_disk_that_is_full_leaves_the_last_report_as_it_was(
+def test_full_disk_leaves_the_previous_pdf_report_unchanged(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     report = written(tmp_path, "yesterday's", "report.pdf")

@@ -27,7 +27,7 @@ def part(tmp_path: Path) -> Callable[[str], Path]:
 
 
 @pytest.mark.parametrize("name", ["arc-ik-radius", "tapping", "workshift-dry-run"])
-def test_it_ends_where_and_when_the_proof_says(
+def test_headless_run_matches_proved_end_position_and_time(
     turndesk: Turndesk, example: Callable[[str], Path], offsets: Path, name: str
 ) -> None:
     (proof,) = turndesk("prove", example(name), "--offsets", offsets, "--json").lines
@@ -43,7 +43,7 @@ def test_it_ends_where_and_when_the_proof_says(
     assert kinds.index("start") < kinds.index("end")
 
 
-def test_cycle_start_is_pressed_for_m00_and_said_so(
+def test_headless_run_presses_cycle_start_at_m00_and_reports_it(
     turndesk: Turndesk, offsets: Path, part: Callable[[str], Path]
 ) -> None:
     path = part(HEAD + "X.5Z.1\nM00(TURN THE PART)\nZ.2\nM30\n")
@@ -54,7 +54,7 @@ def test_cycle_start_is_pressed_for_m00_and_said_so(
 
 
 @pytest.mark.parametrize("options", [(), ("--optional-stop",)])
-def test_an_optional_stop_stops_only_when_asked(
+def test_optional_stop_stops_only_with_its_option(
     turndesk: Turndesk, offsets: Path, part: Callable[[str], Path], options: tuple[str, ...]
 ) -> None:
     path = part(HEAD + "X.5Z.1\nM01(LOOK)\nZ.2\nM30\n")
@@ -72,7 +72,7 @@ def test_block_delete_skips_the_line(turndesk: Turndesk, offsets: Path, part: Ca
     assert ends == pytest.approx([0.5, 0.1])
 
 
-def test_an_input_decides_the_way(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_input_selects_the_program_branch(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(HEAD + "X.5Z.1\nM97I10C1P2\nM30\n}2\nZ.7\nM99\n")
     inputs = tmp_path / "inputs.toml"
@@ -81,7 +81,7 @@ def test_an_input_decides_the_way(turndesk: Turndesk, tmp_path: Path, offsets: P
     assert told.lines[-1]["final"]["z"] == pytest.approx(0.7)
 
 
-def test_a_wait_for_an_input_that_never_comes_is_given_up(
+def test_wait_for_an_input_that_never_changes_times_out(
     turndesk: Turndesk, offsets: Path, part: Callable[[str], Path]
 ) -> None:
     path = part(HEAD + "X.5Z.1\nM92\nZ.2\nM30\n")  # waits until TB2-5 is closed; nobody closes it
@@ -92,7 +92,7 @@ def test_a_wait_for_an_input_that_never_comes_is_given_up(
     assert "--inputs" in told.err
 
 
-def test_a_program_with_errors_does_not_move(
+def test_program_with_errors_does_not_start(
     turndesk: Turndesk, offsets: Path, part: Callable[[str], Path]
 ) -> None:
     told = turndesk("run", part(HEAD + "X.5Z.1\nZ9\nM30\n"), "--headless", "--offsets", offsets, "--json")
@@ -101,20 +101,22 @@ def test_a_program_with_errors_does_not_move(
     assert "soft-limit" in told.err
 
 
-def test_a_tool_that_nobody_has_set_refuses_to_start(turndesk: Turndesk, part: Callable[[str], Path]) -> None:
+def test_program_with_a_tool_without_offset_is_refused(
+    turndesk: Turndesk, part: Callable[[str], Path]
+) -> None:
     told = turndesk("run", part(HEAD + "X.5Z.1\nM30\n"), "--headless", "--json")
     assert told.status == 1
     assert told.lines[-1]["state"] == "refused"
     assert "T1" in told.err.splitlines()[-1]
 
 
-def test_without_headless_it_says_what_to_do(turndesk: Turndesk, part: Callable[[str], Path]) -> None:
+def test_run_without_headless_asks_for_headless(turndesk: Turndesk, part: Callable[[str], Path]) -> None:
     told = turndesk("run", part(HEAD + "M30\n"))
     assert told.status == 2
     assert "--headless" in told.err
 
 
-def test_an_input_that_the_machine_does_not_have_is_told_before_anything_moves(
+def test_input_missing_on_the_machine_is_rejected_before_motion(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, part: Callable[[str], Path]
 ) -> None:
     inputs = tmp_path / "inputs.toml"
@@ -135,7 +137,7 @@ def metal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("metal")
-def test_a_run_that_broke_off_is_not_begun_anew_unasked(
+def test_interrupted_job_bars_next_run_without_anew_option(
     turndesk: Turndesk, offsets: Path, part: Callable[[str], Path], home: Path
 ) -> None:
     waits = part(HEAD + "X.5Z.1\nM92\nZ.2\nM30\n")
@@ -157,7 +159,7 @@ def test_a_run_that_broke_off_is_not_begun_anew_unasked(
         assert "started again from the command line" in journal.events("", {"cleared"}, 9)[0].text
 
 
-def test_a_simulated_run_remembers_nothing_and_says_so(
+def test_anew_option_is_rejected_if_no_job_is_interrupted(
     turndesk: Turndesk, offsets: Path, part: Callable[[str], Path]
 ) -> None:
     path = part(HEAD + "X.5Z.1\nM30\n")

@@ -37,7 +37,7 @@ def limited(home: Path, parts: int, *, stops: bool) -> None:
         store.write(lambda connection: tool_lives.save_limits(connection, row)).result(60)
 
 
-def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
+def test_real_time_run_counts_part_and_feed_time(
     turndesk: Turndesk, home: Path, part: Path, offsets: Path
 ) -> None:
     for made in (1, 2):
@@ -52,7 +52,7 @@ def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
     assert [row.outcome for row in rows] == ["COMPLETE", "COMPLETE"]
 
 
-def test_the_part_after_the_last_of_a_life_is_refused(
+def test_run_after_tool_life_is_used_up_is_refused(
     turndesk: Turndesk, home: Path, part: Path, offsets: Path
 ) -> None:
     limited(home, 1, stops=True)
@@ -66,7 +66,7 @@ def test_the_part_after_the_last_of_a_life_is_refused(
     assert life(home).parts == 1
 
 
-def test_a_life_that_stops_nothing_only_tells(
+def test_used_up_tool_life_without_stop_only_warns(
     turndesk: Turndesk, home: Path, part: Path, offsets: Path
 ) -> None:
     limited(home, 1, stops=False)
@@ -75,7 +75,7 @@ def test_a_life_that_stops_nothing_only_tells(
     assert life(home).parts == 2
 
 
-def test_a_run_that_is_faster_than_its_time_has_made_nothing(
+def test_faster_than_real_time_run_counts_no_part(
     turndesk: Turndesk, home: Path, part: Path, offsets: Path
 ) -> None:
     limited(home, 1, stops=True)
@@ -84,7 +84,7 @@ def test_a_run_that_is_faster_than_its_time_has_made_nothing(
     assert life(home).parts == 0
 
 
-def test_a_store_that_another_has_open_counts_nothing_and_that_is_said(
+def test_store_open_in_another_process_counts_no_part_and_is_reported(
     turndesk: Turndesk, home: Path, part: Path, offsets: Path
 ) -> None:
     with Store.open(home):
@@ -94,7 +94,7 @@ def test_a_store_that_another_has_open_counts_nothing_and_that_is_said(
     assert life(home).parts == 0
 
 
-def test_a_tool_that_the_program_does_not_use_stops_nothing(
+def test_used_up_tool_that_the_program_does_not_use_does_not_bar_run(
     turndesk: Turndesk, home: Path, tmp_path: Path, offsets: Path
 ) -> None:
     limited(home, 1, stops=True)

@@ -33,7 +33,7 @@ def begun(home: Path) -> set[str]:
         return {path.name for path in (home / "logs").iterdir() if path != log.path}
 
 
-def test_files_of_more_than_a_year_go(home: Path) -> None:
+def test_run_logs_older_than_a_year_are_deleted(home: Path) -> None:
     a_file(home / "logs", "old.jsonl", 367.0)
     a_file(home / "logs", "crash-old.txt", 367.0)
     a_file(home / "logs", "young.jsonl", 365.0)
@@ -41,7 +41,7 @@ def test_files_of_more_than_a_year_go(home: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps its own rights")
-def test_logs_are_their_owners_alone(home: Path) -> None:
+def test_log_files_are_readable_by_owner_only(home: Path) -> None:
     before = os.umask(0)
     try:
         failures = ErrorLog()
@@ -53,32 +53,34 @@ def test_logs_are_their_owners_alone(home: Path) -> None:
     assert modes == {log.path.name: 0o600, "turndesk.log": 0o600}
 
 
-def test_no_more_files_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_number_of_run_logs_is_limited(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run_log, "MAX_FILES", 3)
     for days in (1, 2, 3, 4):
         a_file(home / "logs", f"{days}.jsonl", days)
     assert begun(home) == {"1.jsonl", "2.jsonl"}  # three with the new one
 
 
-def test_no_more_bytes_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_total_size_of_run_logs_is_limited(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run_log, "MAX_TOTAL_BYTES", 250)
     for days in (1, 2, 3):
         a_file(home / "logs", f"{days}.jsonl", days, size=100)
     assert begun(home) == {"1.jsonl", "2.jsonl"}
 
 
-def test_what_is_not_of_a_run_stays(home: Path) -> None:
+def test_files_that_are_not_run_logs_are_not_deleted(home: Path) -> None:
     for name in ("turndesk.log", "turndesk.log.1", "notes.txt"):
         a_file(home / "logs", name, 1000.0)
     assert begun(home) == {"turndesk.log", "turndesk.log.1", "notes.txt"}
 
 
-def test_a_clock_that_was_set_back_deletes_nothing(home: Path) -> None:
+def test_clock_set_back_deletes_no_run_log(home: Path) -> None:
     a_file(home / "logs", "tomorrow.jsonl", -30.0)
     assert begun(home) == {"tomorrow.jsonl"}
 
 
-def test_what_cannot_be_deleted_stops_no_run(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_log_that_cannot_be_deleted_does_not_stop_the_run(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     a_file(home / "logs", "old.jsonl", 400.0)
 
     def refused(_path: Path) -> None:
@@ -89,7 +91,7 @@ def test_what_cannot_be_deleted_stops_no_run(home: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a disk that is always full")
-def test_a_full_disk_under_the_events_stops_no_run_and_is_told(
+def test_full_disk_under_run_log_is_reported_and_does_not_stop_the_run(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It was told of the output, and whatever came behind it was left undone."""

@@ -26,7 +26,7 @@ def state(told: Told) -> tuple[int, str]:
     return told.status, str(told.lines[-1]["state"])
 
 
-def test_a_slip_refuses_the_run_where_stock_and_tool_are_said(
+def test_rapid_into_specified_stock_with_specified_tool_refuses_run(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
 ) -> None:
     given = ("--headless", "--json", "--offsets", offsets, "--stock", "bar:1:2+.02", "--tools", tools)
@@ -37,7 +37,7 @@ def test_a_slip_refuses_the_run_where_stock_and_tool_are_said(
     assert state(turndesk("run", written(tmp_path, PART), *given)) == (0, "complete")
 
 
-def test_what_rests_on_something_assumed_is_told_and_runs(
+def test_rapid_into_assumed_stock_is_a_warning_and_the_run_starts(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     told = turndesk("run", written(tmp_path, SLIP), "--headless", "--json", "--offsets", offsets)
@@ -47,7 +47,7 @@ def test_what_rests_on_something_assumed_is_told_and_runs(
     assert "Assumed: stock." in line
 
 
-def test_a_stated_stock_refuses_what_every_tool_would_hit(
+def test_rapid_into_specified_stock_refuses_run_if_any_tool_would_hit(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     stock = ("--stock", "bar:1:2+.02")
@@ -55,7 +55,7 @@ def test_a_stated_stock_refuses_what_every_tool_would_hit(
     assert state(told) == (1, "refused")
 
 
-def test_the_stock_that_is_kept_with_the_program_counts(
+def test_stock_saved_with_the_program_is_used_by_run(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
 ) -> None:
     path = written(tmp_path, SLIP)
@@ -65,7 +65,7 @@ def test_the_stock_that_is_kept_with_the_program_counts(
     assert state(turndesk(*given)) == (1, "refused")
 
 
-def test_a_check_that_is_silenced_for_the_program_refuses_nothing(
+def test_check_disabled_for_the_program_does_not_refuse_run(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path, home: Path
 ) -> None:
     path = written(tmp_path, SLIP)
@@ -78,7 +78,7 @@ def test_a_check_that_is_silenced_for_the_program_refuses_nothing(
     assert text("findings.check-off", why="soft wax") in told.err
 
 
-def test_a_tool_that_runs_into_the_chuck_is_refused_without_a_stock(
+def test_tool_that_hits_the_chuck_refuses_run_without_stock(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
 ) -> None:
     machine = chuck(tmp_path, "diameter = 4.0")
@@ -92,9 +92,7 @@ def test_a_tool_that_runs_into_the_chuck_is_refused_without_a_stock(
     assert "into-chuck" in told.err
 
 
-def test_a_stock_that_cannot_be_used_ends_it_before_anything_moves(
-    turndesk: Turndesk, tmp_path: Path, offsets: Path
-) -> None:
+def test_invalid_stock_is_rejected_before_motion(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     told = turndesk("run", written(tmp_path, PART), "--headless", "--offsets", offsets, "--stock", "rod:1")
     assert told.status == 2
     assert told.code == "unknown-form"

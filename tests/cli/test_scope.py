@@ -20,7 +20,7 @@ def ring(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) -> Path:
     return home / "records" / "run.ring"
 
 
-def test_a_run_without_a_screen_leaves_its_record(turndesk: Turndesk, ring: Path) -> None:
+def test_headless_run_saves_a_recording(turndesk: Turndesk, ring: Path) -> None:
     (told,) = turndesk("scope", ring, "--json").lines
     assert (told["file"], told["rate"], told["csv"]) == (str(ring), 1000.0, None)
     assert told["about"]["machine"] == "GT-75"
@@ -34,7 +34,9 @@ def test_a_run_without_a_screen_leaves_its_record(turndesk: Turndesk, ring: Path
     assert "spindle speed" in shown.out
 
 
-def test_samples_go_to_a_file_or_to_stdout(turndesk: Turndesk, ring: Path, tmp_path: Path) -> None:
+def test_recording_samples_are_written_to_file_or_stdout(
+    turndesk: Turndesk, ring: Path, tmp_path: Path
+) -> None:
     out = tmp_path / "out.csv"
     assert turndesk("scope", ring, "--csv", out).status == 0
     assert turndesk("scope", ring, "--csv").out == out.read_text()
@@ -46,14 +48,14 @@ def test_samples_go_to_a_file_or_to_stdout(turndesk: Turndesk, ring: Path, tmp_p
     assert float(rows[-1]["X demand [mm]"]) == 0.6 * 25.4
 
 
-def test_json_and_samples_do_not_share_stdout(turndesk: Turndesk, ring: Path) -> None:
+def test_json_and_csv_cannot_both_use_stdout(turndesk: Turndesk, ring: Path) -> None:
     told = turndesk("scope", ring, "--json", "--csv")
     assert (told.status, told.out) == (2, "")
     assert told.code == "json-needs-file"
 
 
 @pytest.mark.parametrize("text", ["", "G01X1\n"])
-def test_what_is_no_record_is_refused(turndesk: Turndesk, tmp_path: Path, text: str) -> None:
+def test_file_that_is_not_a_recording_is_rejected(turndesk: Turndesk, tmp_path: Path, text: str) -> None:
     path = tmp_path / "part.nc"
     path.write_text(text)
     told = turndesk("scope", path)
@@ -63,7 +65,7 @@ def test_what_is_no_record_is_refused(turndesk: Turndesk, tmp_path: Path, text: 
     assert turndesk("scope", tmp_path / "gone.scope").status == 2
 
 
-def test_a_folder_that_is_not_there_is_told(turndesk: Turndesk, ring: Path, tmp_path: Path) -> None:
+def test_missing_csv_folder_is_reported(turndesk: Turndesk, ring: Path, tmp_path: Path) -> None:
     told = turndesk("scope", ring, "--csv", tmp_path / "no" / "out.csv")
     assert told.status == 2
     assert "out.csv" in told.err

@@ -38,7 +38,7 @@ def saved(turndesk: Turndesk, home: Path, tmp_path: Path) -> Path:
     return tmp_path / "a.setup"
 
 
-def test_another_desk_has_it_all(
+def test_saved_setup_is_restored_in_another_home(
     saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = tmp_path / "other"
@@ -56,11 +56,11 @@ def test_another_desk_has_it_all(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps its own rights")
-def test_only_its_owner_may_read_a_saved_setup(saved: Path) -> None:
+def test_saved_setup_is_readable_by_owner_only(saved: Path) -> None:
     assert stat.S_IMODE(saved.stat().st_mode) == 0o600
 
 
-def test_a_check_changes_nothing(
+def test_setup_load_check_changes_nothing(
     saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "other"))
@@ -91,7 +91,7 @@ MANIFESTS = {
         ("bare", "damaged-setup"),
     ],
 )
-def test_what_is_not_whole_is_refused_and_changes_nothing(
+def test_damaged_setup_is_rejected_and_changes_nothing(
     what: str, code: str, saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bad = tmp_path / "bad.setup"
@@ -140,7 +140,7 @@ def test_a_program_of_three_gigabytes_is_left_out(saved: Path, turndesk: Turndes
     assert "programs/huge.nc" in told.out
 
 
-def test_a_bad_machine_file_makes_no_setup(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_invalid_machine_file_prevents_saving_a_setup(turndesk: Turndesk, tmp_path: Path) -> None:
     turndesk("offsets", "set", "T3", "x=1", "z=2")
     bad = tmp_path / "bad.toml"
     bad.write_text("[axes]\n")
@@ -148,7 +148,7 @@ def test_a_bad_machine_file_makes_no_setup(turndesk: Turndesk, tmp_path: Path) -
     assert not (tmp_path / "a.setup").exists()
 
 
-def test_a_setup_that_cannot_be_written_leaves_nothing(
+def test_failed_setup_save_leaves_no_partial_file(
     saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(_source: Path, target: Path) -> None:
@@ -166,7 +166,7 @@ def test_a_setup_that_cannot_be_written_leaves_nothing(
 
 
 @pytest.mark.parametrize("full", ["part.nc", "mine.toml", "turndesk.db"])
-def test_a_disk_that_becomes_full_leaves_the_desk_as_it_was(
+def test_full_disk_during_setup_load_leaves_the_home_unchanged(
     full: str, saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = tmp_path / "other"
@@ -192,13 +192,13 @@ def test_a_disk_that_becomes_full_leaves_the_desk_as_it_was(
     assert after - before <= {"machines"}
 
 
-def test_files_of_a_computer_without_a_clock_go_along(saved: Path, turndesk: Turndesk, home: Path) -> None:
+def test_files_dated_1970_are_included_in_a_setup(saved: Path, turndesk: Turndesk, home: Path) -> None:
     os.utime(home / "programs" / "part.nc", (0, 0))
     assert turndesk("setup", "save", saved).status == 0
     assert "is undamaged" in turndesk("setup", "load", saved, "--check").out
 
 
-def test_a_setup_takes_the_place_of_a_setup_alone(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
+def test_setup_save_replaces_only_a_setup_file(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
     (tmp_path / "part.nc").write_text("M30\n")
     told = turndesk("setup", "save", tmp_path / "part.nc")
     assert (told.status, told.code) == (2, "not-replaced")
@@ -207,18 +207,18 @@ def test_a_setup_takes_the_place_of_a_setup_alone(saved: Path, turndesk: Turndes
     assert turndesk("setup", "save", saved).status == 0
 
 
-def test_a_setup_that_is_not_there_is_told_as_such(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_missing_setup_file_is_reported(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("setup", "load", tmp_path / "none.setup")
     assert (told.status, told.code, told.err.count("\n")) == (2, "unreadable", 1)
     assert str(tmp_path / "none.setup") in told.err
 
 
-def test_without_a_store_there_is_nothing_to_save(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_setup_save_without_a_store_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("setup", "save", tmp_path / "a.setup")
     assert (told.status, told.code) == (2, "no-store")
 
 
-def test_a_desktop_entry_is_written_and_taken_away(
+def test_desktop_entry_is_written_and_removed(
     turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
@@ -237,7 +237,7 @@ def test_a_desktop_entry_is_written_and_taken_away(
     assert turndesk("setup", "desktop", "--remove", "--autostart").status == 2
 
 
-def test_every_shell_gets_its_completion(turndesk: Turndesk) -> None:
+def test_completion_is_available_for_every_shell(turndesk: Turndesk) -> None:
     for shell in SHELL_NAMES:
         told = turndesk("setup", "completion", shell).out
         assert "keep-stock" in told
@@ -246,7 +246,7 @@ def test_every_shell_gets_its_completion(turndesk: Turndesk) -> None:
 
 
 @pytest.mark.parametrize("shell", ["tcsh", "powershell", "BASH"])
-def test_another_shell_is_refused_by_name(shell: str, turndesk: Turndesk) -> None:
+def test_unknown_shell_is_rejected_by_name(shell: str, turndesk: Turndesk) -> None:
     told = turndesk("setup", "completion", shell)
     assert (told.status, told.out, shell in told.err) == (2, "", True)
 
@@ -273,7 +273,7 @@ def test_bash_completes_commands_actions_and_options(turndesk: Turndesk, tmp_pat
 
 
 @pytest.mark.parametrize("shell", ["bash", "fish"])
-def test_a_name_with_a_blank_is_one_word(shell: str, turndesk: Turndesk, tmp_path: Path) -> None:
+def test_file_name_with_a_blank_completes_as_one_word(shell: str, turndesk: Turndesk, tmp_path: Path) -> None:
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not here")
     script = tmp_path / "script"
@@ -287,7 +287,7 @@ def test_a_name_with_a_blank_is_one_word(shell: str, turndesk: Turndesk, tmp_pat
     assert told.stdout.split() == (["1"] if shell == "bash" else []) + ["my", "part.nc"]
 
 
-def test_a_command_in_a_folder_with_blanks_and_signs_is_quoted_as_an_entry_wants_it(
+def test_desktop_entry_quotes_blanks_and_special_characters_in_path(
     turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
@@ -333,7 +333,7 @@ def _with(saved: Path, bad: Path, more: Mapping[str, bytes]) -> Path:
         ("start.sh", b"G90\n", "foreign-member"),
     ],
 )
-def test_every_file_is_checked_by_its_kind_before_anything_is_placed(
+def test_every_file_of_a_setup_is_validated_before_any_is_written(
     name: str, data: bytes, code: str, saved: Path, turndesk: Turndesk, tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -344,7 +344,7 @@ def test_every_file_is_checked_by_its_kind_before_anything_is_placed(
     assert not (tmp_path / "other").exists()
 
 
-def test_a_member_that_the_manifest_does_not_list_is_refused(
+def test_archive_member_not_in_the_manifest_is_rejected(
     saved: Path, turndesk: Turndesk, tmp_path: Path
 ) -> None:
     with zipfile.ZipFile(saved, "a") as file:
@@ -354,7 +354,7 @@ def test_a_member_that_the_manifest_does_not_list_is_refused(
 
 
 @pytest.mark.parametrize("name", ["manifest.json", "store.db", "programs/part.nc", "machine/mine.toml"])
-def test_what_unpacks_to_more_than_a_setup_holds_is_refused_while_it_is_counted(
+def test_archive_member_that_unpacks_beyond_its_limit_is_rejected(
     name: str, saved: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     most = dict(setup_archive.MAX_BYTES_BY_KIND) | {name.partition("/")[0]: 3}
@@ -363,7 +363,7 @@ def test_what_unpacks_to_more_than_a_setup_holds_is_refused_while_it_is_counted(
     assert (told.status, told.code) == (2, "member-too-large")
 
 
-def test_all_members_together_have_a_limit(
+def test_total_size_of_archive_members_is_limited(
     saved: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(setup_archive, "MAX_TOTAL_BYTES", 1000)
@@ -387,13 +387,15 @@ def test_a_manifest_of_gigabytes_is_not_unpacked(saved: Path, turndesk: Turndesk
     assert (told.status, told.code) == (2, "member-too-large")
 
 
-def test_a_list_of_too_many_members_is_not_read(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
+def test_archive_with_too_many_members_is_rejected(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
     more = {f"programs/{number}": b"" for number in range(setup_archive.MAX_MEMBER_COUNT)}
     told = turndesk("setup", "load", _with(saved, tmp_path / "bad.setup", more), "--check")
     assert (told.status, told.code) == (2, "too-many-members")
 
 
-def test_what_no_desk_would_take_is_left_out_of_a_setup(saved: Path, turndesk: Turndesk, home: Path) -> None:
+def test_files_that_cannot_be_loaded_are_left_out_of_a_setup(
+    saved: Path, turndesk: Turndesk, home: Path
+) -> None:
     (home / "programs" / "notes.pdf").write_bytes(b"%PDF\0")
     (home / "programs" / "empty.nc").write_bytes(b"")
     (home / "programs" / "part.dxf").write_bytes(b"0\nEOF\n")

@@ -29,7 +29,7 @@ def _stdin(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
 
 
 @pytest.mark.parametrize("option", ["--offsets", "--tools"])
-def test_a_table_comes_from_stdin(
+def test_offsets_or_tool_table_is_read_from_stdin(
     option: str, part: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _stdin(monkeypatch, OFFSETS)
@@ -39,7 +39,7 @@ def test_a_table_comes_from_stdin(
     assert ("tool-offset-missing" in codes) == (option == "--tools")
 
 
-def test_stdin_is_one_thing(turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stdin_cannot_be_used_for_two_files(turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
     _stdin(monkeypatch, OFFSETS)
     told = turndesk("prove", "-", "--offsets", "-")
     assert told.status == 2
@@ -47,7 +47,9 @@ def test_stdin_is_one_thing(turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch)
     assert told.code == "stdin-taken"
 
 
-def test_out_to_a_dash_is_stdout(part: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_out_option_with_a_dash_writes_to_stdout(
+    part: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(part.parent)
     told = turndesk("trace", part, "--dt", ".1", "--out", "-")
     assert told.out.startswith("t,x,z,c,spindle_deg,line\n")
@@ -55,7 +57,9 @@ def test_out_to_a_dash_is_stdout(part: Path, turndesk: Turndesk, monkeypatch: py
     assert turndesk("trace", part, "--dt", ".1", "--out", "-", "--json").status == 2
 
 
-def test_stock_is_kept_with_a_name(turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stock_of_a_program_from_stdin_cannot_be_saved(
+    turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
     _stdin(monkeypatch, PART)
     told = turndesk("prove", "-", "--stock", "bar:1", "--keep-stock")
     assert (told.status, told.code) == (2, "stdin-has-no-name")
@@ -70,12 +74,12 @@ def test_stock_is_kept_with_a_name(turndesk: Turndesk, monkeypatch: pytest.Monke
         (["prove", "PART", "--machine", "/dev/zero"], "unreadable"),
     ],
 )
-def test_what_has_no_end_is_refused(words: list[str], code: str, part: Path, turndesk: Turndesk) -> None:
+def test_endless_input_file_is_rejected(words: list[str], code: str, part: Path, turndesk: Turndesk) -> None:
     told = turndesk(*(str(part) if word == "PART" else word for word in words))
     assert (told.status, told.code, told.err.count("\n")) == (2, code, 1)
 
 
-def test_an_empty_name_is_not_this_folder(part: Path, turndesk: Turndesk) -> None:
+def test_empty_file_name_is_rejected(part: Path, turndesk: Turndesk) -> None:
     told = turndesk("prove", "", "--jobs", "1")
     assert (told.status, told.code) == (2, "empty-name")
     told = turndesk("prove", "")
@@ -83,7 +87,7 @@ def test_an_empty_name_is_not_this_folder(part: Path, turndesk: Turndesk) -> Non
 
 
 @pytest.mark.parametrize("word", ["--maschine", "--maschine=a.toml"])
-def test_an_unknown_option_before_a_command_is_the_fault(word: str, part: Path, turndesk: Turndesk) -> None:
+def test_unknown_option_before_a_command_is_rejected(word: str, part: Path, turndesk: Turndesk) -> None:
     told = turndesk(word, "a.toml", "prove", part)
     assert told.status == 2
     assert f"unrecognized arguments: {word}; did you mean --machine?" in told.err
@@ -97,7 +101,7 @@ def _turndesk(folder: Path, *words: str, **more: object) -> subprocess.Completed
 
 
 @pytest.mark.parametrize("code", ["ascii", "cp1252", "utf-8"])
-def test_a_sign_that_a_pipe_has_not_is_a_question_mark(code: str, tmp_path: Path) -> None:
+def test_character_missing_in_the_output_encoding_is_a_question_mark(code: str, tmp_path: Path) -> None:
     assert _turndesk(tmp_path, "offsets", "set", "T1", "x=1", "remark=Ω", code=code).returncode == 0
     told = _turndesk(tmp_path, "offsets", "history", code=code)
     assert (told.returncode, told.stderr) == (0, b"")
@@ -105,7 +109,7 @@ def test_a_sign_that_a_pipe_has_not_is_a_question_mark(code: str, tmp_path: Path
 
 
 @pytest.mark.parametrize("closed", [0, 1, 2])
-def test_a_stream_that_is_closed_is_no_fault(closed: int, part: Path) -> None:
+def test_closed_standard_stream_is_not_an_error(closed: int, part: Path) -> None:
     def close() -> None:
         os.close(closed)
 
@@ -113,7 +117,7 @@ def test_a_stream_that_is_closed_is_no_fault(closed: int, part: Path) -> None:
     assert (told.returncode, told.stderr) == (0, b"")
 
 
-def test_a_closed_stdin_is_told(tmp_path: Path) -> None:
+def test_closed_stdin_is_reported(tmp_path: Path) -> None:
     told = _turndesk(tmp_path, "prove", "-", preexec_fn=lambda: os.close(0))
     assert told.returncode == 2
     assert told.stderr.decode() == f"turndesk: {wording('desk.stdin-closed', what='program')}\n"

@@ -25,7 +25,7 @@ KEYS = {
 }  # fmt: skip
 
 
-def test_the_promised_keys_in_cubic_inches(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_stock_json_has_its_keys_in_cubic_inches(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART)
     told = turndesk("prove", path, "--offsets", offsets, "--stock", "bar:1.0:2+.02", "--json")
     assert told.status == 0
@@ -40,7 +40,7 @@ def test_the_promised_keys_in_cubic_inches(turndesk: Turndesk, tmp_path: Path, o
     assert (stock["bore"], stock["min_wall"], stock["milled"], stock["pieces"]) == (None, None, False, [])
 
 
-def test_without_a_word_the_bar_is_assumed_and_told(
+def test_bar_stock_is_assumed_and_reported_without_stock_option(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     path = written(tmp_path, PART)
@@ -50,7 +50,7 @@ def test_without_a_word_the_bar_is_assumed_and_told(
     assert shows(turndesk("prove", path, "--offsets", offsets).out, "cli.bar-assumed", unit="in")
 
 
-def test_a_finding_of_the_part_refuses_the_program(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_part_finding_makes_the_program_fail(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART.replace("G95F.004Z-.5", "G00Z-.5"))
     told = turndesk("prove", path, "--offsets", offsets, "--json")
     assert told.status == 0
@@ -62,7 +62,7 @@ def test_a_finding_of_the_part_refuses_the_program(turndesk: Turndesk, tmp_path:
     assert (found["line"], found["severity"], found["n"] > 0, found["assumed"]) == (9, "error", True, [])
 
 
-def test_a_second_program_works_on_what_the_first_leaves(
+def test_stock_of_second_program_is_the_part_left_by_the_first(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     first = written(tmp_path, PART, "first.nc")
@@ -70,7 +70,7 @@ def test_a_second_program_works_on_what_the_first_leaves(
     assert turndesk(*again).lines[0]["stock"]["removed_volume"] == pytest.approx(0.0, abs=1e-5)
 
 
-def test_a_second_program_that_cuts_nothing_has_the_bore_that_the_first_leaves(
+def test_bore_left_by_first_program_remains_if_second_cuts_nothing(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     first = written(
@@ -82,7 +82,7 @@ def test_a_second_program_that_cuts_nothing_has_the_bore_that_the_first_leaves(
     assert bore[0] == pytest.approx([0.0, 0.125], abs=1e-3)
 
 
-def test_an_offsets_file_without_shapes_leaves_those_of_the_store(
+def test_offsets_file_without_shapes_uses_shapes_of_the_store(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
 ) -> None:
     """The store says that T1 is a drill; on the axis it takes off pi/4 x .5² x .5 = .0982 in³."""
@@ -93,7 +93,9 @@ def test_an_offsets_file_without_shapes_leaves_those_of_the_store(
     assert told.lines[0]["stock"]["assumed"] == []
 
 
-def test_a_blank_by_its_points(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_stock_profile_is_read_from_a_file_of_points(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     blank = written(tmp_path, "z,r\n-2,.5\n-.5,.5\n-.5,.42\n0,.42\n", "blank.csv")
     told = turndesk(
         "prove", written(tmp_path, PART), "--offsets", offsets, "--json", "--stock", f"profile:{blank}"
@@ -112,7 +114,7 @@ def test_a_blank_by_its_points(turndesk: Turndesk, tmp_path: Path, offsets: Path
         ("after:nowhere.nc", "file-unreadable", "nowhere.nc"),
     ],
 )
-def test_what_is_no_stock_is_refused_in_one_line(
+def test_invalid_stock_is_rejected_in_one_line(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, spec: str, code: str, value: str
 ) -> None:
     told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--stock", spec)
@@ -121,7 +123,7 @@ def test_what_is_no_stock_is_refused_in_one_line(
     assert told.err.count("\n") == 1
 
 
-def test_a_first_program_with_errors_leaves_nothing(
+def test_first_program_with_errors_leaves_no_stock_for_the_second(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     bad = written(tmp_path, "G90G94F300\nQ3\nM30\n", "bad.nc")
@@ -137,7 +139,7 @@ def chuck(tmp_path: Path, *lines: str) -> Path:
     return written(tmp_path, f"{before}{table}\n[{rest.partition('[')[2]}", "chuck.toml")
 
 
-def test_a_stick_out_brings_the_chuck_into_the_proof(
+def test_stick_out_option_adds_the_chuck_to_the_proof(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     path, machine = written(tmp_path, PART), chuck(tmp_path, "diameter = 4.0", "max_rpm = 4000")
@@ -149,7 +151,7 @@ def test_a_stick_out_brings_the_chuck_into_the_proof(
     assert {each["check"] for each in told.lines[0]["diagnostics"]} == {"into-chuck"}
 
 
-def test_a_stick_out_of_the_machine_file_counts_without_a_word(
+def test_stick_out_of_the_machine_file_is_used_by_default(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     machine = chuck(tmp_path, "diameter = 4.0", "stick_out = 0.4")
@@ -168,7 +170,7 @@ def test_a_stick_out_without_a_chuck_is_refused(
 
 
 @pytest.mark.parametrize("value", ["0", "-1", "50"])
-def test_a_stick_out_of_no_length_is_refused(
+def test_stick_out_that_is_not_a_length_is_rejected(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, value: str
 ) -> None:
     given = (
@@ -191,7 +193,9 @@ tip = 3
 """
 
 
-def test_tools_of_a_file_are_assumed_no_more(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_tools_given_in_a_file_are_not_reported_as_assumed(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     path, tools = written(tmp_path, PART), written(tmp_path, SHAPES, "tools.toml")
     told = turndesk("prove", path, "--offsets", offsets, "--tools", tools, "--json")
     assert told.status == 0
@@ -214,9 +218,7 @@ def test_shapes_of_the_store_are_used(turndesk: Turndesk, tmp_path: Path) -> Non
     assert turndesk("prove", path, "--json").lines[0]["stock"]["assumed"] == []
 
 
-def test_the_store_remembers_the_stock_of_a_program(
-    turndesk: Turndesk, tmp_path: Path, offsets: Path
-) -> None:
+def test_stock_of_a_program_is_saved_in_the_store(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path, other = written(tmp_path, PART), written(tmp_path, PART, "other.nc")
     given = ("--offsets", offsets, "--json")
     told = turndesk("prove", path, *given, "--stock", "bar:1.1+.02", "--keep-stock")
@@ -227,9 +229,7 @@ def test_the_store_remembers_the_stock_of_a_program(
     assert turndesk("prove", other, *given).lines[0]["stock"]["given"] is None
 
 
-def test_nothing_is_kept_without_a_stock_or_when_it_means_nothing(
-    turndesk: Turndesk, tmp_path: Path, offsets: Path
-) -> None:
+def test_missing_or_invalid_stock_is_not_saved(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART)
     told = turndesk("prove", path, "--offsets", offsets, "--keep-stock")
     assert (told.status, told.code) == (2, "nothing-to-keep")
@@ -237,7 +237,7 @@ def test_nothing_is_kept_without_a_stock_or_when_it_means_nothing(
     assert turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["stock"]["given"] is None
 
 
-def test_a_kept_file_is_found_from_every_folder_and_told_when_it_is_gone(
+def test_saved_stock_file_is_found_from_any_folder_and_reported_if_missing(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, blank = written(tmp_path, PART), written(tmp_path, "-2,.5\n0,.5\n", "blank.csv")
@@ -259,7 +259,9 @@ def test_a_kept_file_is_found_from_every_folder_and_told_when_it_is_gone(
 SLIP = PART.replace("M30", "X.3\nG00Z-.3\nM30")
 
 
-def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
+def test_disabled_check_is_reported_as_a_note_and_counted(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
     path = written(tmp_path, SLIP)
     given = ("prove", path, "--offsets", offsets, "--stock", "bar:1.2")
     told = turndesk(*given, "--json")
@@ -280,7 +282,7 @@ def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Pa
     assert f"silenced 1 findings of {check}" in turndesk(*given, "--machine", machine).out
 
 
-def test_what_the_store_silences_for_a_program_counts_for_that_alone(
+def test_check_disabled_for_a_program_applies_to_that_program_only(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
 ) -> None:
     path, other = written(tmp_path, SLIP), written(tmp_path, SLIP, "other.nc")
@@ -299,7 +301,7 @@ def test_what_the_store_silences_for_a_program_counts_for_that_alone(
     assert turndesk("prove", path, *given, "--jobs", "1").status == 0
 
 
-def test_the_first_program_begins_with_the_stock_that_is_kept_with_it(
+def test_first_program_starts_with_its_saved_stock(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
 ) -> None:
     """A tube of 1 in with a bore of .5, turned: the second program has a bore of .25 in radius."""
@@ -313,7 +315,7 @@ def test_the_first_program_begins_with_the_stock_that_is_kept_with_it(
     assert bore[0][1] == pytest.approx(0.25, abs=1e-3)
 
 
-def test_a_stock_that_a_program_leaves_itself_is_refused(
+def test_saved_stock_that_depends_on_its_own_program_is_rejected(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
 ) -> None:
     first = written(tmp_path, PART, "first.nc")

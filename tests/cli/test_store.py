@@ -35,7 +35,7 @@ def filled(home: Path) -> Path:
     return home
 
 
-def test_the_store_of_an_older_turndesk_is_brought_up_to_date(
+def test_store_of_an_older_version_is_upgraded(
     filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, refusals: list[CodedError]
 ) -> None:
     newer = (*database.load_migrations(), "CREATE TABLE extra (a);")
@@ -49,13 +49,13 @@ def test_the_store_of_an_older_turndesk_is_brought_up_to_date(
     assert "T1" in capsys.readouterr().out
 
 
-def test_without_a_store_nothing_is_brought_up_to_date(home: Path, capsys: Captured) -> None:
+def test_upgrade_without_a_store_creates_nothing(home: Path, capsys: Captured) -> None:
     assert main(["store", "upgrade"]) == 0
     assert wording("cli.no-stored-data", folder=home) in capsys.readouterr().out
     assert not home.exists()
 
 
-def test_the_store_of_a_newer_turndesk_is_left_as_it_is(
+def test_store_of_a_newer_version_is_not_changed(
     filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
     older = database.load_migrations()[:-1]
@@ -74,7 +74,7 @@ def refused(capsys: Captured, *argv: str) -> CodedError:
     return refusals[-1]
 
 
-def test_backup_and_restore(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+def test_backup_is_restored_into_the_store(capsys: Captured, filled: Path, tmp_path: Path) -> None:
     target = str(tmp_path / "b.db")
     assert main(["store", "backup", target]) == 0
     with Store.open(filled) as store:
@@ -114,7 +114,7 @@ def test_export_and_import_into_an_empty_home(
         assert store.offsets.read_history()[0].why == wording("cli.import-from", folder="out")
 
 
-def test_every_field_goes_with_an_export(
+def test_export_and_import_transfer_every_offset_field(
     capsys: Captured, filled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     row = ToolRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, 'a "rough" one, 45°', master=True)
@@ -136,7 +136,7 @@ def test_every_field_goes_with_an_export(
     assert "tool.1 and tool.2" in str(error)
 
 
-def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> None:
+def test_verify_reports_undamaged_store_or_damaged_rows(capsys: Captured, filled: Path) -> None:
     assert main(["store", "verify", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["problems"] == []
     with sqlite3.connect(filled / "turndesk.db") as connection:
@@ -148,13 +148,15 @@ def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> N
     assert wording("log.differs-from-saved", what="'PIN.nc' version 1") in told.err
 
 
-def test_verify_of_no_store(capsys: Captured, home: Path) -> None:
+def test_verify_without_a_store_creates_nothing(capsys: Captured, home: Path) -> None:
     assert main(["store", "verify"]) == 0
     assert wording("cli.no-stored-data", folder=home) in capsys.readouterr().out
     assert not home.exists()
 
 
-def test_refusals(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+def test_store_commands_reject_invalid_paths_and_files(
+    capsys: Captured, filled: Path, tmp_path: Path
+) -> None:
     (tmp_path / "part.nc").write_bytes(b"G90")
     assert refused(capsys, "backup", str(tmp_path / "part.nc")).code == "not-a-database"
     error = refused(capsys, "restore", str(tmp_path / "none.db"))
@@ -174,7 +176,9 @@ def test_restore_into_a_store_in_use_is_refused(capsys: Captured, filled: Path, 
         assert refused(capsys, "restore", target).code == "in-use"
 
 
-def test_import_of_a_bad_offsets_file_takes_nothing(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+def test_import_of_an_invalid_offsets_file_changes_nothing(
+    capsys: Captured, filled: Path, tmp_path: Path
+) -> None:
     folder = tmp_path / "out"
     main(["store", "export", str(folder)])
     capsys.readouterr()

@@ -80,7 +80,7 @@ def refused(capsys: Captured, *argv: str) -> CodedError:
     return refusals[-1]
 
 
-def test_words_of_the_store_are_those_of_the_part() -> None:
+def test_stored_tool_kinds_and_defaults_match_the_part_model() -> None:
     assert tuple(ToolKind) == TOOL_KINDS
     assert tuple(Hand) == TOOL_HANDS
     stated = {each.name: each.default for each in fields(ToolShape)}
@@ -102,7 +102,7 @@ def test_file_of_tools_is_read_in_inches(sheet: Path) -> None:
     assert shapes[7].rear
 
 
-def test_shapes_may_stand_in_the_offsets_file(tmp_path: Path) -> None:
+def test_tool_shapes_are_read_from_the_offsets_file(tmp_path: Path) -> None:
     path = tmp_path / "offsets.toml"
     path.write_text(
         '[tool.1]\nx = 0.0\nz = 0.0\nkind = "drill"\n[tool.2]\nx = 1.0\n'
@@ -115,7 +115,7 @@ def test_shapes_may_stand_in_the_offsets_file(tmp_path: Path) -> None:
     assert sorted(read_tool_shapes(path)) == [1]
 
 
-def test_tool_with_a_shape_alone_was_never_touched_off(sheet: Path) -> None:
+def test_tool_with_only_a_shape_has_no_offset(sheet: Path) -> None:
     """A nose radius is not a place: the machine still refuses to start with this tool."""
     assert read_offset_rows(sheet)[0] == {}
 
@@ -170,7 +170,7 @@ def test_mistake_is_named_by_file_and_key(tmp_path: Path, text: str, code: str, 
     assert value in str(error)
 
 
-def test_every_mistake_is_named_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_in_tool_file_are_reported_at_once(tmp_path: Path) -> None:
     text = (
         '[tool.3]\nkind = "turnin"\ninsrt = ""\n[tool.4]\nkind = "turning"\ninsert = "CNXG432"\nwidth = -1\n'
     )
@@ -179,14 +179,14 @@ def test_every_mistake_is_named_at_once(tmp_path: Path) -> None:
         assert place in told
 
 
-def test_point_before_the_first_figure_is_a_figure(tmp_path: Path) -> None:
+def test_number_with_a_leading_decimal_point_is_accepted(tmp_path: Path) -> None:
     path = tmp_path / "tools.toml"
     path.write_text('[tool.1]\nx = -.5\nz = +.25\nremark = "a = .5"\n', encoding="utf-8")
     (row,) = read_offset_rows(path)[0].values()
     assert (row.x, row.z, row.remark) == (-12.7, 6.35, "a = .5")
 
 
-def test_shape_is_set_shown_and_told(capsys: Captured, home: Path) -> None:
+def test_tool_shape_is_set_shown_and_logged(capsys: Captured, home: Path) -> None:
     assert offsets("set", "T3", "kind=turning", "insert=CNMG432", "x=1", "z=2", "tip=3") == 0
     assert capsys.readouterr().out.splitlines()[1] == "T3  turning right  insert=CNMG432"
     assert offsets("set", "T3", "holder=MCLNR-124B") == 0
@@ -202,7 +202,7 @@ def test_shape_is_set_shown_and_told(capsys: Captured, home: Path) -> None:
         assert store.offsets.tool_shapes.read_rows()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
 
 
-def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home: Path) -> None:
+def test_tool_shape_change_is_in_history_and_can_be_undone(capsys: Captured, home: Path) -> None:
     assert offsets("set", "T5", "kind=drill", "diameter=.25") == 0
     assert offsets("set", "T5", "diameter=.26", "--why", "reground") == 0
     capsys.readouterr()
@@ -221,7 +221,7 @@ def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home
         assert store.offsets.tool_shapes.read_rows()[5].kind == "drill"
 
 
-def test_shapes_go_with_an_export(capsys: Captured, home: Path, tmp_path: Path) -> None:
+def test_export_and_import_transfer_tool_shapes(capsys: Captured, home: Path, tmp_path: Path) -> None:
     assert offsets("set", "T3", "kind=turning", "insert=CNMG432", "x=0", "z=0", "tip=3") == 0
     assert offsets("set", "T5", "kind=drill", "diameter=.25", 'holder=a "collet"') == 0
     with Store.open(home, read_only=True) as store:
@@ -252,7 +252,7 @@ def test_shapes_go_with_an_export(capsys: Captured, home: Path, tmp_path: Path) 
         (("D5", "kind=drill"), "unknown-key", "x, z, r"),
     ],
 )
-def test_refusal_is_one_line_and_sets_nothing(
+def test_rejected_tool_shape_is_one_line_and_sets_nothing(
     capsys: Captured, argv: tuple[str, ...], code: str, value: str
 ) -> None:
     assert offsets("set", "T9", "kind=drill") == 0
@@ -264,7 +264,7 @@ def test_refusal_is_one_line_and_sets_nothing(
     assert capsys.readouterr().out == "T9  drill right\n"
 
 
-def test_contradiction_with_the_offset_of_the_tool_is_refused(capsys: Captured) -> None:
+def test_tool_shape_that_contradicts_the_offset_is_rejected(capsys: Captured) -> None:
     assert offsets("set", "T5", "x=1", "z=1", "quadrant=3") == 0
     error = refused(capsys, "set", "T5", "kind=drill")
     assert error.code == "invalid-shape"
@@ -272,7 +272,9 @@ def test_contradiction_with_the_offset_of_the_tool_is_refused(capsys: Captured) 
     assert offsets("set", "T5", "kind=drill", "quadrant=7") == 0
 
 
-def test_shape_that_has_become_wrong_is_told_before_it_is_proved(capsys: Captured, tmp_path: Path) -> None:
+def test_shape_invalidated_by_a_later_change_is_reported_before_proving(
+    capsys: Captured, tmp_path: Path
+) -> None:
     """Its insert meant nothing while it grooved; the proof says which tool it is, and how to mend it."""
     program = tmp_path / "p.nc"
     program.write_text("G90G94F300G72\nT3\nX1Z.1\nM30\n", encoding="utf-8")

@@ -42,7 +42,7 @@ def test_rows_are_dt_apart_and_within_the_limits(
     assert np.abs(np.diff(speed, axis=0)).max() / dt <= 2 * 120 + 1
 
 
-def test_it_ends_where_the_proof_ends_at_the_proof_s_time(
+def test_trace_ends_at_proved_position_and_time(
     traced: Callable[..., np.ndarray], turndesk: Turndesk, example: Callable[[str], Path], offsets: Path
 ) -> None:
     path = example("linear-diameter")
@@ -53,7 +53,7 @@ def test_it_ends_where_the_proof_ends_at_the_proof_s_time(
     assert rows[-1, 0] < proof["cycle_time_s"] + 0.011
 
 
-def test_every_setpoint_of_an_arc_lies_on_it(
+def test_all_setpoints_of_an_arc_are_on_the_arc(
     traced: Callable[..., np.ndarray], example: Callable[[str], Path]
 ) -> None:
     rows = traced(example("arc-r-diameter-barrel"))
@@ -63,7 +63,9 @@ def test_every_setpoint_of_an_arc_lies_on_it(
     assert np.abs(radius - 0.635).max() < 5e-6  # the CSV's own digits
 
 
-def test_the_spindle_turns_as_the_drive_ramps(traced: Callable[..., np.ndarray], tmp_path: Path) -> None:
+def test_traced_spindle_angle_follows_the_drive_ramp(
+    traced: Callable[..., np.ndarray], tmp_path: Path
+) -> None:
     path = tmp_path / "spin.nc"
     path.write_text("G90G94F300\nM03S1500\nG04F4\nM30\n")
     rows = traced(path)
@@ -74,13 +76,13 @@ def test_the_spindle_turns_as_the_drive_ramps(traced: Callable[..., np.ndarray],
 
 
 @pytest.mark.parametrize("dt", ["0", "-1", "x", "2", "nan"])
-def test_an_impossible_interval_is_refused(turndesk: Turndesk, tmp_path: Path, dt: str) -> None:
+def test_invalid_time_step_is_rejected(turndesk: Turndesk, tmp_path: Path, dt: str) -> None:
     told = turndesk("trace", tmp_path / "part.nc", "--dt", dt)
     assert told.status == 2
     assert told.err.count("\n") == 1
 
 
-def test_a_program_with_errors_leaves_no_setpoints(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_program_with_errors_writes_no_setpoints(turndesk: Turndesk, tmp_path: Path) -> None:
     program, out = tmp_path / "bad.nc", tmp_path / "out.csv"
     program.write_text("G90G94F300\nX1Z1\nX2Q5\nM30\n")
     told = turndesk("trace", program, "--out", out)
@@ -88,7 +90,7 @@ def test_a_program_with_errors_leaves_no_setpoints(turndesk: Turndesk, tmp_path:
     assert sorted(p.name for p in tmp_path.iterdir() if "out" in p.name) == []
 
 
-def test_a_folder_that_is_not_there_is_named(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_missing_output_folder_is_reported_by_name(turndesk: Turndesk, tmp_path: Path) -> None:
     program = tmp_path / "part.nc"
     program.write_text("G90G94F300\nX1Z1\nM30\n")
     told = turndesk("trace", program, "--out", tmp_path / "absent" / "out.csv")
@@ -96,7 +98,7 @@ def test_a_folder_that_is_not_there_is_named(turndesk: Turndesk, tmp_path: Path)
     assert "absent" in told.err
 
 
-def test_ctrl_c_leaves_nothing_behind(
+def test_ctrl_c_leaves_no_output_file(
     turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def interrupted(*_: object) -> None:

@@ -12,7 +12,7 @@ from app.cli.main import list_commands
 from tests.cli.conftest import Turndesk
 
 
-def test_places_are_those_of_the_data_folder(turndesk: Turndesk, home: Path) -> None:
+def test_where_lists_the_paths_of_the_data_folder(turndesk: Turndesk, home: Path) -> None:
     places = json.loads(turndesk("where", "--json").out)
     assert places["data_folder"] == str(home)
     assert places["store"] == str(home / "turndesk.db")
@@ -20,7 +20,7 @@ def test_places_are_those_of_the_data_folder(turndesk: Turndesk, home: Path) -> 
     assert Path(places["machine_file"]).is_file()
 
 
-def test_a_missing_place_is_marked(turndesk: Turndesk, home: Path) -> None:
+def test_missing_path_is_marked(turndesk: Turndesk, home: Path) -> None:
     home.mkdir()
     rows = {line.split()[0]: line for line in turndesk("where").out.splitlines()}
     assert "does not exist yet" not in rows["data_folder"]
@@ -43,7 +43,7 @@ def test_a_missing_machine_file_is_rejected(turndesk: Turndesk) -> None:
     assert (told.status, told.out, "nowhere.toml" in told.err) == (2, "", True)
 
 
-def test_help_is_that_of_the_option(turndesk: Turndesk) -> None:
+def test_help_command_matches_the_help_option(turndesk: Turndesk) -> None:
     assert turndesk("help", "offsets", "set").out == turndesk("offsets", "set", "--help").out
     assert turndesk("help").out == turndesk("--help").out
 
@@ -63,7 +63,7 @@ def part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.mark.parametrize("before", [[], ["--kiosk"], ["--machine", "gt75"], ["--machine=gt75", "--demo"]])
-def test_a_file_is_the_program_of_the_screen(part: str, before: list[str]) -> None:
+def test_program_file_argument_is_passed_to_the_screen(part: str, before: list[str]) -> None:
     assert insert_program_option([*before, part], list_commands()) == [*before, "--program", part]
 
 
@@ -76,7 +76,7 @@ def test_a_file_is_the_program_of_the_screen(part: str, before: list[str]) -> No
         ["."],
     ],
 )
-def test_other_words_are_not_a_program(part: str, argv: list[str]) -> None:
+def test_other_arguments_are_not_a_program(part: str, argv: list[str]) -> None:
     assert insert_program_option(argv, list_commands()) == argv
 
 

@@ -22,7 +22,7 @@ def written(folder: Path, text: str) -> Path:
     return path
 
 
-def test_a_program_under_the_offsets_of_a_file(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_zero_offset_of_a_file_shifts_machine_positions(turndesk: Turndesk, tmp_path: Path) -> None:
     offsets = written(tmp_path, "[zero.54]\nx = 2\nz = -30.5\nc = -15\n[tool.1]\nx = 0\n")
     (tmp_path / "part.mpf").write_text(PROGRAM)
     told = turndesk(
@@ -42,13 +42,13 @@ def test_a_program_under_the_offsets_of_a_file(turndesk: Turndesk, tmp_path: Pat
     assert (move["units"], end["kind"]) == ("mm", "action")
 
 
-def test_what_a_file_may_hold(tmp_path: Path) -> None:
+def test_zero_offsets_are_read_from_an_offsets_file(tmp_path: Path) -> None:
     path = written(tmp_path, "[zero.54]\nc = 5\n[zero.59]\nz = 1\n[secondary.1]\nx = 0.1\n")
     assert read_offset_rows(path)[2] == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
     assert sorted(read_offset_rows(path)[1]) == [1]
 
 
-def test_every_mistake_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_in_zero_offsets_are_reported_at_once(tmp_path: Path) -> None:
     path = written(tmp_path, "[zero.53]\nx = 1\n[zero.54]\ny = 1\nx = true\nc = 400\nz = nan\n")
     codes = "unknown-number unknown-key wrong-type out-of-range out-of-range"
     values = ("[zero.53]", "[zero.54] y", "zero.54.x", "mm", "zero.54.c = 400", "zero.54.z = nan")
@@ -58,7 +58,7 @@ def test_every_mistake_at_once(tmp_path: Path) -> None:
         read_offset_rows(written(tmp_path, "zero = 3\n"))
 
 
-def test_set_by_the_command_line_and_used_by_programs(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_zero_offset_set_by_command_is_used_by_programs(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("offsets", "set", "G54", "x=2", "z=-30.5", "c=-15")
     assert (told.status, told.out) == (0, "G54 X +2.000  Z -30.500 mm  C -15.000°\n")
     shown = json.loads(turndesk("offsets", "show", "--json").out)
@@ -81,14 +81,16 @@ def test_set_by_the_command_line_and_used_by_programs(turndesk: Turndesk, tmp_pa
         (("H4", "x=1"), "unknown-offset", "H4"),
     ],
 )
-def test_what_cannot_be_set(turndesk: Turndesk, argv: tuple[str, ...], code: str, value: str) -> None:
+def test_invalid_zero_offset_is_rejected_in_one_line(
+    turndesk: Turndesk, argv: tuple[str, ...], code: str, value: str
+) -> None:
     told = turndesk("offsets", "set", *argv)
     assert (told.status, told.code) == (2, code)
     assert value in told.err
     assert told.err.count("\n") == 1
 
 
-def test_an_export_holds_them_and_an_import_brings_them_back(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_export_and_import_transfer_zero_offsets(turndesk: Turndesk, tmp_path: Path) -> None:
     turndesk("offsets", "set", "G55", "z=-120", "c=7.5")
     assert turndesk("store", "export", str(tmp_path / "out")).status == 0
     turndesk("offsets", "set", "G55", "z=0", "c=0")
@@ -100,7 +102,7 @@ def test_an_export_holds_them_and_an_import_brings_them_back(turndesk: Turndesk,
     }
 
 
-def test_shipped_machines_by_their_names(turndesk: Turndesk) -> None:
+def test_shipped_machines_are_checked_by_name(turndesk: Turndesk) -> None:
     for name in ("sinumerik-modulo", "sinumerik-linear"):
         told = turndesk("machine", "check", name)
         assert told.status == 0

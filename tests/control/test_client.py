@@ -184,7 +184,7 @@ def connected(snapshot: Snapshot, folder: Path) -> Pair:
     return Pair(peer, ControlClient(StartedControl(ours, None), folder))
 
 
-def test_events_are_acknowledged_and_notes_are_handed_on(pair: Pair) -> None:
+def test_events_are_acknowledged_and_interruption_notes_forwarded(pair: Pair) -> None:
     job = broken_off()
     pair.peer.end.send(EventMessage(3, LogEvent(1.0, "part", "part 1")))
     assert pair.peer.next(EventStoredMessage) == EventStoredMessage(3)
@@ -197,7 +197,7 @@ def test_events_are_acknowledged_and_notes_are_handed_on(pair: Pair) -> None:
     assert pair.ear.ended == ["recorder"]
 
 
-def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, idle: Snapshot) -> None:
+def test_unknown_message_and_failing_listener_do_not_end_the_connection(pair: Pair, idle: Snapshot) -> None:
     pair.peer.end.send("what is this?")
     pair.ear.fails = True
     later = replace(idle, t=77.0)
@@ -208,7 +208,7 @@ def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, id
     assert pair.client.snapshot == later
 
 
-def test_an_event_that_could_not_be_kept_is_not_acknowledged(pair: Pair) -> None:
+def test_event_that_could_not_be_saved_is_not_acknowledged(pair: Pair) -> None:
     pair.ear.fails = True
     pair.peer.end.send(EventMessage(1, LogEvent(1.0, "part", "part 1")))
     pair.peer.end.send(ThreadEndedMessage("a mark"))
@@ -218,13 +218,13 @@ def test_an_event_that_could_not_be_kept_is_not_acknowledged(pair: Pair) -> None
     assert pair.mark() == [SetSwitch("single_block", True)]
 
 
-def test_what_cannot_be_pickled_keeps_nothing_else_from_the_control(pair: Pair) -> None:
+def test_command_that_cannot_be_pickled_does_not_block_later_commands(pair: Pair) -> None:
     pair.client.post_command(SetSwitch("single_block", threading.Lock()))  # type: ignore[arg-type]
     pair.client.post_command(SetSwitch("single_block", True))
     assert pair.mark() == [SetSwitch("single_block", True)]
 
 
-def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) -> None:
+def test_station_actions_and_life_signs_are_sent_with_their_time(pair: Pair, idle: Snapshot) -> None:
     ControlStationControls(pair.client.operate_station).press_left()
     hand = pair.peer.next(StationAction)
     assert isinstance(hand, StationAction)
@@ -237,14 +237,14 @@ def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) 
 
 
 @pytest.mark.parametrize("data", [b"", b"\x80", b"no pickle", b"cno.such\nmodule\n.", b"\x80\x05K\x01K\x02"])
-def test_damaged_bytes_are_a_lost_control(pair: Pair, data: bytes) -> None:
+def test_damaged_bytes_are_reported_as_lost_control(pair: Pair, data: bytes) -> None:
     pair.peer.end.send_bytes(data)
     until(lambda: bool(pair.ear.events))
     assert pair.client.snapshot.state is MachineState.FAULT
 
 
 @pytest.mark.parametrize("closed", [False, True])
-def test_a_control_that_ends_by_itself_is_an_alarm(pair: Pair, closed: bool) -> None:
+def test_unexpected_end_of_the_control_raises_an_alarm(pair: Pair, closed: bool) -> None:
     if closed:  # as SIGTERM ends it
         pair.peer.end.send(MachineClosedMessage())
     pair.peer.end.close()
@@ -256,7 +256,7 @@ def test_a_control_that_ends_by_itself_is_an_alarm(pair: Pair, closed: bool) -> 
     assert pair.client.snapshot.alarms == (event.alarm,)
 
 
-def test_a_control_that_the_screen_has_closed_is_none(idle: Snapshot, tmp_path: Path) -> None:
+def test_closing_the_control_from_the_screen_raises_no_alarm(idle: Snapshot, tmp_path: Path) -> None:
     pair = connected(idle, tmp_path)
     pair.begin()
     closing = threading.Thread(target=pair.client.stop_and_close)
@@ -274,7 +274,7 @@ def test_a_control_that_the_screen_has_closed_is_none(idle: Snapshot, tmp_path: 
 # --- a program that was under way -------------------------------------------------------------------------
 
 
-def test_a_program_that_is_loaded_during_a_cycle_follows_behind_it(idle: Snapshot, tmp_path: Path) -> None:
+def test_program_loaded_during_a_cycle_is_sent_after_the_cycle(idle: Snapshot, tmp_path: Path) -> None:
     running = replace(idle, state=MachineState.RUN)
     pair = connected(running, tmp_path)
     pair.begin()
@@ -298,7 +298,7 @@ def test_a_program_that_is_loaded_during_a_cycle_follows_behind_it(idle: Snapsho
     pair.client.stop_and_close()
 
 
-def test_a_program_that_a_worker_loads_just_then_is_not_lost(idle: Snapshot, tmp_path: Path) -> None:
+def test_program_loaded_while_the_cycle_ends_is_not_lost(idle: Snapshot, tmp_path: Path) -> None:
     running = replace(idle, state=MachineState.RUN)
     pair = connected(running, tmp_path)
     pair.begin()
@@ -366,7 +366,7 @@ def find(tmp_path: Path, path: Path, serve: Callable[[Connection], object]) -> C
         listening.close()
 
 
-def test_nobody_listens(tmp_path: Path, path: Path) -> None:
+def test_stale_socket_is_not_a_running_control(tmp_path: Path, path: Path) -> None:
     assert find_control(MACHINE, tmp_path, path) is None
     path.write_text("no socket")
     assert find_control(MACHINE, tmp_path, path) is None
@@ -376,7 +376,9 @@ def test_nobody_listens(tmp_path: Path, path: Path) -> None:
     assert find_control(MACHINE, tmp_path, path) is None
 
 
-def test_a_control_with_the_same_machine_file_is_taken(tmp_path: Path, path: Path, idle: Snapshot) -> None:
+def test_running_control_with_the_same_machine_file_is_joined(
+    tmp_path: Path, path: Path, idle: Snapshot
+) -> None:
     peers: list[Peer] = []
 
     def serve(connection: Connection) -> None:
@@ -391,7 +393,7 @@ def test_a_control_with_the_same_machine_file_is_taken(tmp_path: Path, path: Pat
 
 
 @pytest.mark.parametrize("state", [MachineState.RUN, MachineState.HOLD])
-def test_another_machine_file_under_way_is_refused(
+def test_active_control_with_another_machine_file_is_rejected(
     tmp_path: Path, path: Path, idle: Snapshot, state: MachineState
 ) -> None:
     other, running = replace(MACHINE, name="another"), replace(idle, state=state)
@@ -399,7 +401,7 @@ def test_another_machine_file_under_way_is_refused(
         find(tmp_path, path, lambda end: Peer(end, running, other).greet())
 
 
-def test_another_machine_file_at_rest_is_closed(tmp_path: Path, path: Path, idle: Snapshot) -> None:
+def test_idle_control_with_another_machine_file_is_closed(tmp_path: Path, path: Path, idle: Snapshot) -> None:
     other = replace(MACHINE, name="another")
     got: list[object] = []
 
@@ -413,7 +415,7 @@ def test_another_machine_file_at_rest_is_closed(tmp_path: Path, path: Path, idle
     assert got == [CloseRequest()]
 
 
-def test_another_machine_file_at_rest_that_does_not_end_keeps_nobody_waiting(
+def test_idle_control_that_does_not_close_is_given_up_after_timeout(
     tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(control_client, "CLOSE_TIMEOUT_S", 0.1)
@@ -427,18 +429,20 @@ def test_another_machine_file_at_rest_that_does_not_end_keeps_nobody_waiting(
 
 
 @pytest.mark.parametrize("version", [PROTOCOL_VERSION + 1, 0, "x"])
-def test_another_version_is_refused(tmp_path: Path, path: Path, idle: Snapshot, version: int) -> None:
+def test_control_of_another_version_is_rejected(
+    tmp_path: Path, path: Path, idle: Snapshot, version: int
+) -> None:
     with pytest.raises(DriverError):
         find(tmp_path, path, lambda end: Peer(end, idle, version=version).greet())
 
 
 @pytest.mark.parametrize("data", [b"no pickle", b"cno.such\nmodule\n.", b"capp.desk.desk\nNothing\n."])
-def test_a_message_that_cannot_be_read_is_another_version(tmp_path: Path, path: Path, data: bytes) -> None:
+def test_unreadable_hello_is_rejected_as_another_version(tmp_path: Path, path: Path, data: bytes) -> None:
     with pytest.raises(DriverError):
         find(tmp_path, path, lambda end: end.send_bytes(data))
 
 
-def test_a_control_that_says_nothing_is_not_joined_by_another(
+def test_silent_control_is_rejected_after_timeout(
     tmp_path: Path, path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(control_client, "REPLY_TIMEOUT_S", 0.1)
@@ -447,7 +451,7 @@ def test_a_control_that_says_nothing_is_not_joined_by_another(
         find(tmp_path, path, ends.append)
 
 
-def test_a_control_whose_queue_is_full_keeps_nobody_waiting(
+def test_control_with_a_full_queue_is_rejected_after_timeout(
     tmp_path: Path, path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(control_client, "REPLY_TIMEOUT_S", 0.1)
@@ -461,15 +465,15 @@ def test_a_control_whose_queue_is_full_keeps_nobody_waiting(
 
 
 @pytest.mark.parametrize("why", [SCREEN_CONNECTED])
-def test_a_control_that_has_a_screen_is_left_alone(tmp_path: Path, path: Path, why: str) -> None:
+def test_control_that_has_a_screen_is_not_joined(tmp_path: Path, path: Path, why: str) -> None:
     assert find(tmp_path, path, lambda end: end.send(ControlFailedMessage(why))) is None
 
 
-def test_a_control_that_ends_just_then_is_none(tmp_path: Path, path: Path) -> None:
+def test_control_that_ends_during_connection_is_not_found(tmp_path: Path, path: Path) -> None:
     assert find(tmp_path, path, lambda end: end.close()) is None
 
 
-def test_another_user_is_not_trusted(
+def test_peer_of_another_user_is_not_trusted(
     tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ours, theirs = Pipe()
@@ -482,7 +486,9 @@ def test_another_user_is_not_trusted(
     theirs.close()
 
 
-def test_a_process_that_does_not_start_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_control_process_that_does_not_start_raises_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
     started = start_control(MACHINE, tmp_path)
     with pytest.raises(DriverError):

@@ -108,7 +108,7 @@ KINDS = [each for each in vars(commands).values() if each in Command.__subclasse
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
-def test_every_command_arrives_as_it_was_sent(kind: type[Command]) -> None:
+def test_every_command_arrives_unchanged(kind: type[Command]) -> None:
     values = _values()
     command = kind(*(values[each.annotation] for each in inspect.signature(kind).parameters.values()))
     arrived = pickle.loads(pickle.dumps(command))
@@ -117,7 +117,7 @@ def test_every_command_arrives_as_it_was_sent(kind: type[Command]) -> None:
 
 
 @pytest.mark.parametrize("source", [OMNITURN, SINUMERIK, KLARTEXT], ids=lambda source: source.name)
-def test_a_job_of_each_language_runs_as_it_was_proved(source: ProgramSource) -> None:
+def test_job_gives_the_same_blocks_in_both_processes(source: ProgramSource) -> None:
     machine = machine_of("ac-table-mill.toml" if source is KLARTEXT else "gt75.toml")
     job = make_job(source, Setup(limits=get_control_limits(machine)))
     arrived: Job = pickle.loads(pickle.dumps(job))
@@ -129,7 +129,7 @@ def test_a_job_of_each_language_runs_as_it_was_proved(source: ProgramSource) -> 
 
 
 @pytest.mark.parametrize("machine", LINES)
-def test_what_a_line_leaves_is_the_same_in_both_processes(machine: str) -> None:
+def test_mdi_line_leaves_the_same_state_in_both_processes(machine: str) -> None:
     limits = get_control_limits(machine_of(machine))
     line = interpret_mdi_line(
         LINES[machine], Setup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
@@ -149,7 +149,7 @@ def test_what_a_line_leaves_is_the_same_in_both_processes(machine: str) -> None:
     assert blocks == same
 
 
-def test_what_two_lines_leave_differs() -> None:
+def test_states_left_by_two_mdi_lines_are_not_equal() -> None:
     limits = get_control_limits(machine_of("sinumerik-live.toml"))
     setup = Setup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
     first, second = (interpret_mdi_line(LINES["sinumerik-live.toml"], setup) for _ in range(2))
@@ -160,7 +160,7 @@ def test_what_two_lines_leave_differs() -> None:
     assert first.checkpoint.kept != None  # noqa: E711  it is compared, not looked for
 
 
-def test_snapshots_and_events_arrive_as_they_were_sent() -> None:
+def test_snapshots_and_events_arrive_unchanged() -> None:
     rig = Rig()
     rig.start(SHORT)
     rig.until(MachineState.IDLE)
@@ -174,11 +174,11 @@ def test_snapshots_and_events_arrive_as_they_were_sent() -> None:
         assert pickle.loads(pickle.dumps(kept)) == kept
 
 
-def test_the_screen_can_name_every_thread_that_the_control_tells_of() -> None:
+def test_every_thread_reported_by_the_control_has_a_name_on_screen() -> None:
     assert {"recorder", "pendant"} < set(list_watched_threads()) <= SUPERVISED_THREAD_TEXTS.keys()
 
 
-def test_every_shipped_machine_file_is_recognized_by_the_next_screen() -> None:
+def test_shipped_machine_file_reread_is_equal_to_itself_only() -> None:
     files = [file for file in Path(resources.__file__).parent.rglob("*.toml") if file.stem != "offsets"]
     read = [read_machine(str(file)) for file in files]
     assert len(read) > 10
@@ -236,7 +236,7 @@ def test_a_stop_overtakes_a_program_that_is_being_read(
 
 
 @pytest.mark.parametrize("hand", ["press_hold", "press_estop"])
-def test_a_hand_that_stops_drops_the_starts_before_it(
+def test_hold_or_estop_discards_start_commands_sent_before_it(
     bench: Bench, hand: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     screen = bench.screen()
@@ -260,7 +260,7 @@ def test_a_hand_that_stops_drops_the_starts_before_it(
     assert bench.shot.begun == 0
 
 
-def test_a_start_that_comes_late_is_refused_and_what_is_no_start_is_not(bench: Bench) -> None:
+def test_late_start_command_is_rejected_and_other_late_commands_are_not(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     screen.post(EnableDrives(), late=0.6)
@@ -270,7 +270,7 @@ def test_a_start_that_comes_late_is_refused_and_what_is_no_start_is_not(bench: B
     assert len(screen.events("refused")) == 1
 
 
-def test_a_program_is_read_once_for_all_commands_with_it(
+def test_program_text_is_parsed_once_for_all_its_commands(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     screen = bench.screen()
@@ -303,7 +303,7 @@ class Station:
             monkeypatch.setattr(PlantControls, name, lambda *_, name=name: self.did.append(name))
 
 
-def test_palms_that_come_late_do_nothing_and_all_else_does(
+def test_late_palm_presses_are_ignored_and_other_late_actions_are_not(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     station = Station(monkeypatch)
@@ -316,7 +316,7 @@ def test_palms_that_come_late_do_nothing_and_all_else_does(
     assert station.did == ["release_left", "press_hold", "press_estop", "set_feed_pot", "press_right"]
 
 
-def test_what_a_lost_screen_has_held_is_released_but_for_the_estop(bench: Bench) -> None:
+def test_station_buttons_of_a_lost_screen_are_released_except_estop(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     screen.hand("press_hold")

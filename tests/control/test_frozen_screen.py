@@ -49,7 +49,7 @@ def freeze(desk: Process) -> int:
     return made
 
 
-def test_a_frozen_screen_holds_the_cut_and_is_served_again(tmp_path: Path) -> None:
+def test_frozen_screen_causes_feed_hold_and_reconnects(tmp_path: Path) -> None:
     home = tmp_path / "home"
     with process(home, OPERATOR, *started(tmp_path, "hold")) as desk:
         made = freeze(desk)
@@ -61,7 +61,7 @@ def test_a_frozen_screen_holds_the_cut_and_is_served_again(tmp_path: Path) -> No
         assert [event.kind for event in store.events.read_events()].count("stop") == 1
 
 
-def test_a_frozen_screen_lets_the_part_be_finished_and_goes_on(tmp_path: Path) -> None:
+def test_frozen_screen_lets_parts_continue_with_continue_setting(tmp_path: Path) -> None:
     home = tmp_path / "home"
     with process(home, OPERATOR, *started(tmp_path, "continue")) as desk:
         made = freeze(desk)
@@ -74,7 +74,7 @@ def test_a_frozen_screen_lets_the_part_be_finished_and_goes_on(tmp_path: Path) -
         assert kinds.count("part") == store.runs.read_part_count("part.nc") >= made + 2
 
 
-def test_a_frozen_control_holds_and_is_served_again(tmp_path: Path) -> None:
+def test_frozen_control_holds_and_reconnects(tmp_path: Path) -> None:
     home = tmp_path / "home"
     with process(home, OPERATOR, *started(tmp_path, "hold")) as desk:
         until(lambda: desk.says("state", "RUNNING"), lambda: desk.lines[-3:])

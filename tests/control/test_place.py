@@ -52,7 +52,7 @@ def test_each_owner_has_its_own_socket(tmp_path: Path) -> None:
     assert sockets(tmp_path) == []
 
 
-def test_a_place_that_is_free_again_is_the_next_to_be_used(tmp_path: Path) -> None:
+def test_slot_that_becomes_free_is_used_next(tmp_path: Path) -> None:
     first = ControlSlot(tmp_path)
     with owned(tmp_path):
         first.close()
@@ -60,7 +60,7 @@ def test_a_place_that_is_free_again_is_the_next_to_be_used(tmp_path: Path) -> No
             assert sockets(tmp_path) == sorted(NAMES[:2])
 
 
-def test_an_old_socket_is_replaced(tmp_path: Path) -> None:
+def test_stale_socket_is_replaced(tmp_path: Path) -> None:
     path = tmp_path / NAMES[0]
     with socket.socket(socket.AF_UNIX) as left:
         left.bind(str(path))  # of a control that was killed
@@ -72,7 +72,7 @@ def test_an_old_socket_is_replaced(tmp_path: Path) -> None:
     assert not path.exists()
 
 
-def test_a_control_without_a_free_place_has_no_listener(tmp_path: Path) -> None:
+def test_control_without_a_free_slot_has_no_listener(tmp_path: Path) -> None:
     places = [ControlSlot(tmp_path) for _ in range(5)]
     assert [place.drivers_lock is not None for place in places] == [True, True, True, True, False]
     assert places[4].create_listener() is None
@@ -80,7 +80,7 @@ def test_a_control_without_a_free_place_has_no_listener(tmp_path: Path) -> None:
         place.close()
 
 
-def test_a_place_is_not_used_before_the_drivers_of_its_last_owner_have_ended(tmp_path: Path) -> None:
+def test_slot_is_not_reused_until_drivers_of_its_last_owner_have_ended(tmp_path: Path) -> None:
     killed = ControlSlot(tmp_path)
     assert killed.drivers_lock is not None
     host = os.dup(killed.drivers_lock)  # inherited by a driver host
@@ -100,7 +100,7 @@ def test_a_place_is_not_used_before_the_drivers_of_its_last_owner_have_ended(tmp
 
 
 @pytest.mark.real_time
-def test_a_driver_host_holds_the_lock_until_it_has_ended(tmp_path: Path) -> None:
+def test_driver_host_holds_the_slot_lock_until_it_has_ended(tmp_path: Path) -> None:
     place = ControlSlot(tmp_path)
     host = DriverHostProcess(load_machine(), RealClock(), place.drivers_lock)
     place.close()
@@ -110,7 +110,7 @@ def test_a_driver_host_holds_the_lock_until_it_has_ended(tmp_path: Path) -> None
     ControlSlot(tmp_path, 0.0).close()
 
 
-def test_other_programs_do_not_inherit_the_lock(tmp_path: Path) -> None:
+def test_other_processes_do_not_inherit_the_lock(tmp_path: Path) -> None:
     place = ControlSlot(tmp_path)
     with subprocess.Popen(["/bin/cat"], stdin=subprocess.PIPE, close_fds=False) as other:
         place.close()
@@ -120,7 +120,7 @@ def test_other_programs_do_not_inherit_the_lock(tmp_path: Path) -> None:
         other.stdin.close()
 
 
-def test_a_folder_that_cannot_be_written_has_no_place(tmp_path: Path) -> None:
+def test_unwritable_folder_has_no_slot(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     place = ControlSlot(tmp_path / "file" / "home")
     assert place.drivers_lock is None
@@ -128,14 +128,14 @@ def test_a_folder_that_cannot_be_written_has_no_place(tmp_path: Path) -> None:
     place.close()
 
 
-def test_a_folder_whose_path_is_too_long_for_a_socket_has_its_locks(tmp_path: Path) -> None:
+def test_slot_in_folder_with_too_long_socket_path_still_has_its_lock(tmp_path: Path) -> None:
     place = ControlSlot(tmp_path / ("long" * 30))
     assert place.drivers_lock is not None
     assert place.create_listener() is None
     place.close()
 
 
-def test_a_control_leaves_the_socket_of_another_one(tmp_path: Path) -> None:
+def test_closing_a_control_leaves_the_socket_of_another_one(tmp_path: Path) -> None:
     path = tmp_path / NAMES[0]
     first = ScreenListener(path)
     path.unlink()
@@ -146,7 +146,7 @@ def test_a_control_leaves_the_socket_of_another_one(tmp_path: Path) -> None:
     assert not path.exists()
 
 
-def test_a_folder_that_has_gone_is_no_trouble_at_the_end(tmp_path: Path) -> None:
+def test_listener_closes_without_error_if_its_folder_is_removed(tmp_path: Path) -> None:
     folder = tmp_path / "home"
     folder.mkdir()
     listener = ScreenListener(folder / NAMES[0])

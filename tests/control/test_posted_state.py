@@ -44,22 +44,22 @@ def after(*posted: Command, last: Snapshot = LAST) -> list[Command]:
     return state.list_commands(last)
 
 
-def test_a_control_without_a_program_gets_nothing() -> None:
+def test_control_without_a_program_needs_no_commands() -> None:
     assert after() == []
 
 
-def test_the_program_comes_with_its_proof_and_its_parts() -> None:
+def test_loaded_program_is_repeated_with_its_proof_and_part_count() -> None:
     proof = Proof(FIRST.digest, ())
     assert after(LoadJob(FIRST), SupplyProof(proof)) == [LoadJob(FIRST, proof), SetPartCount(17)]
 
 
-def test_a_proof_of_another_program_is_left_out() -> None:
+def test_proof_of_another_program_is_not_repeated() -> None:
     old = Proof(FIRST.digest, ())
     assert after(LoadJob(FIRST, old), LoadJob(SECOND)) == [LoadJob(SECOND), SetPartCount(17)]
     assert after(LoadJob(SECOND), SupplyProof(old)) == [LoadJob(SECOND), SetPartCount(17)]
 
 
-def test_changed_offsets_are_those_of_the_program() -> None:
+def test_changed_offsets_replace_the_job_of_the_program() -> None:
     proof = Proof(SECOND.digest, ())
     assert after(LoadJob(FIRST), ChangeOffsets(), ChangeOffsets(SECOND, proof)) == [
         LoadJob(SECOND, proof),
@@ -68,7 +68,7 @@ def test_changed_offsets_are_those_of_the_program() -> None:
 
 
 @pytest.mark.parametrize("announced", [ChangeOffsets(), ChangeOffsets(failure_reason="no proof")])
-def test_announced_offsets_still_prevent_a_start(announced: ChangeOffsets) -> None:
+def test_announced_offset_change_is_repeated_and_still_bars_the_start(announced: ChangeOffsets) -> None:
     assert after(LoadJob(FIRST), announced) == [LoadJob(FIRST), SetPartCount(17), announced]
 
 
@@ -85,7 +85,7 @@ def test_announced_offsets_still_prevent_a_start(announced: ChangeOffsets) -> No
         PrepareStart(StartAction.PROGRAM),
     ],
 )
-def test_what_moves_starts_or_permits_a_start_is_not_repeated(command: Command) -> None:
+def test_motion_and_start_commands_are_not_repeated(command: Command) -> None:
     assert after(command) == []
 
 
@@ -117,14 +117,14 @@ def test_switches_are_as_last_shown_except_cycle_repeat() -> None:
     assert after(SetSwitch("single_block", on=True)) == []  # the operator has turned it off since
 
 
-def test_an_interrupted_job_is_reported_once_more() -> None:
+def test_interrupted_job_is_reported_again() -> None:
     state = PostedState(broken_off())
     assert state.list_commands(LAST) == [ReportInterruptedJob(broken_off(), logged=True)]
     state.interrupted_job = None
     assert state.list_commands(LAST) == []
 
 
-def test_the_station_remains_as_it_was_set_without_its_presses() -> None:
+def test_station_settings_are_repeated_without_momentary_presses() -> None:
     state = PostedState(None)
     for name, values in (
         ("press_estop", ()),

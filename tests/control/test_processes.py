@@ -125,7 +125,7 @@ def found(folder: Path, place: int = 0) -> ControlClient:
     return clients[0]
 
 
-def test_closing_ends_everything(folder: Path) -> None:
+def test_closing_leaves_no_process_or_socket(folder: Path) -> None:
     before = sockets()
     with desk(folder) as (screen, process):
         screen.client.post_command(EnableDrives())
@@ -139,7 +139,7 @@ def test_closing_ends_everything(folder: Path) -> None:
     assert sockets() == before
 
 
-def test_a_control_that_is_terminated_is_an_alarm_of_its_screen(folder: Path) -> None:
+def test_terminated_control_raises_an_alarm_on_its_screen(folder: Path) -> None:
     with desk(folder) as (screen, process):
         screen.run()
         process.send_signal(signal.SIGTERM)
@@ -150,7 +150,7 @@ def test_a_control_that_is_terminated_is_an_alarm_of_its_screen(folder: Path) ->
     assert not (folder / "control.sock").exists()
 
 
-def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path) -> None:
+def test_killed_control_raises_an_alarm_and_next_start_finds_no_control(folder: Path) -> None:
     with desk(folder) as (screen, process):
         process.kill()
         screen.until(MachineState.FAULT)
@@ -161,7 +161,7 @@ def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path
         until(lambda: _listens(path))
 
 
-def test_a_control_that_stood_still_goes_on(folder: Path) -> None:
+def test_control_resumes_after_being_suspended(folder: Path) -> None:
     with desk(folder) as (screen, process):
         screen.client.post_command(EnableDrives())
         screen.until(MachineState.IDLE)
@@ -180,7 +180,7 @@ def test_a_control_that_stood_still_goes_on(folder: Path) -> None:
         assert [event.kind for event in screen.events].count("refused") == 1  # the start that came late
 
 
-def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
+def test_new_screen_joins_the_control_of_a_lost_screen(folder: Path) -> None:
     with desk(folder) as (screen, process):
         screen.run()
         screen.vanish()
@@ -195,7 +195,7 @@ def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
         assert second.state is not MachineState.FAULT
 
 
-def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: Path) -> None:
+def test_second_start_gets_its_own_control_while_a_screen_is_connected(folder: Path) -> None:
     with desk(folder) as (first, _):
         path = list_socket_paths(folder)[0]
         until(lambda: _listens(path))
@@ -210,7 +210,7 @@ def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: 
         first.until(MachineState.IDLE)
 
 
-def test_the_second_control_of_a_folder_is_found_at_its_own_socket(folder: Path) -> None:
+def test_second_control_of_a_folder_uses_its_own_socket(folder: Path) -> None:
     with desk(folder), desk(folder) as (second, process):
         second.client.post_command(EnableDrives())
         second.until(MachineState.IDLE)
@@ -226,7 +226,7 @@ def test_the_second_control_of_a_folder_is_found_at_its_own_socket(folder: Path)
         assert paths[0].is_socket()
 
 
-def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None:
+def test_next_control_uses_the_slot_of_a_killed_control(folder: Path) -> None:
     path = list_socket_paths(folder)[0]
     started = start_control(MACHINE, folder)
     ControlClient(started, folder)
@@ -261,7 +261,7 @@ def test_two_folders_have_two_controls(folder: Path) -> None:
         assert (folder / "two" / "control.sock").is_socket()
 
 
-def test_a_folder_in_which_no_socket_can_be_made_is_no_obstacle(folder: Path) -> None:
+def test_control_runs_in_a_folder_where_its_socket_cannot_be_created(folder: Path) -> None:
     (folder / "control.sock").mkdir()
     with desk(folder) as (screen, _):
         screen.client.post_command(EnableDrives())
@@ -269,7 +269,7 @@ def test_a_folder_in_which_no_socket_can_be_made_is_no_obstacle(folder: Path) ->
     assert (folder / "control.sock").is_dir()
 
 
-def test_a_folder_whose_path_is_too_long_for_a_socket_is_no_obstacle(folder: Path) -> None:
+def test_control_runs_in_a_folder_with_too_long_socket_path(folder: Path) -> None:
     long = folder / ("long" * 30)
     assert list_socket_paths(long) == []
     with desk(long) as (screen, _):
@@ -277,7 +277,7 @@ def test_a_folder_whose_path_is_too_long_for_a_socket_is_no_obstacle(folder: Pat
         screen.until(MachineState.IDLE)
 
 
-def test_a_disk_that_takes_nothing_is_no_obstacle(folder: Path) -> None:
+def test_control_runs_without_a_writable_disk(folder: Path) -> None:
     (folder / "file").write_text("")
     with desk(folder / "file" / "home") as (screen, _):  # no folder can be made there
         screen.client.post_command(EnableDrives())
@@ -285,7 +285,7 @@ def test_a_disk_that_takes_nothing_is_no_obstacle(folder: Path) -> None:
         assert screen.client.hello_message.disk_error
 
 
-def test_a_process_that_is_closed_at_once_leaves_nothing(folder: Path) -> None:
+def test_control_closed_immediately_after_start_leaves_no_socket(folder: Path) -> None:
     started = start_control(MACHINE, folder)
     started.kill_process()
     assert started.process is not None
@@ -293,7 +293,7 @@ def test_a_process_that_is_closed_at_once_leaves_nothing(folder: Path) -> None:
     assert not (folder / "control.sock").exists()
 
 
-def test_a_screen_that_dies_at_once_leaves_a_control_that_ends(folder: Path) -> None:
+def test_control_whose_first_screen_disconnected_can_be_joined_and_closed(folder: Path) -> None:
     started = start_control(MACHINE, folder)
     started.connection.close()
     assert started.process is not None
@@ -302,7 +302,7 @@ def test_a_screen_that_dies_at_once_leaves_a_control_that_ends(folder: Path) -> 
     assert started.process.wait(30.0) == 0
 
 
-def test_a_control_inherits_nothing_of_the_terminal(folder: Path) -> None:
+def test_control_does_not_inherit_terminal_or_open_files(folder: Path) -> None:
     with desk(folder) as (_, process):
         files = Path(f"/proc/{process.pid}/fd")
         assert os.readlink(files / "1") == "/dev/null"

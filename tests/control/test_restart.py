@@ -123,7 +123,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_reset_replaces_a_killed_control_with_its_program_and_starts_nothing(folder: Path) -> None:
+def test_reset_restarts_a_killed_control_with_its_program_and_no_motion(folder: Path) -> None:
     with desk(folder) as screen:
         job = screen.run()
         screen.post(SetSwitch("optional_stop", True))
@@ -145,7 +145,7 @@ def test_reset_replaces_a_killed_control_with_its_program_and_starts_nothing(fol
         assert [event.kind for event in screen.events].count("start") == 1
 
 
-def test_reset_ends_a_control_that_hangs_and_replaces_it(folder: Path) -> None:
+def test_reset_replaces_a_hanging_control(folder: Path) -> None:
     with desk(folder) as screen:
         screen.run()
         hanging = screen.process
@@ -160,7 +160,7 @@ def test_reset_ends_a_control_that_hangs_and_replaces_it(folder: Path) -> None:
         assert screen.live.snapshot.state is MachineState.DISABLED
 
 
-def test_a_control_that_responds_again_is_not_ended(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_control_that_responds_again_is_not_replaced(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live_control, "HANG_TIMEOUT_S", 600.0)
     with desk(folder) as screen:
         screen.run()
@@ -176,9 +176,7 @@ def test_a_control_that_responds_again_is_not_ended(folder: Path, monkeypatch: p
         assert "control-silent" not in screen.alarms
 
 
-def test_a_control_that_does_not_start_can_be_started_again(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_failed_control_restart_can_be_repeated(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with desk(folder) as screen:
         killed = screen.process
         os.kill(killed, signal.SIGKILL)
@@ -203,7 +201,7 @@ def test_no_control_is_started_after_the_screen_is_closed(folder: Path) -> None:
         assert not screen.live.is_restarting
 
 
-def test_a_process_that_does_not_end_is_not_joined_by_another(
+def test_control_is_not_restarted_while_the_old_process_is_alive(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with desk(folder) as screen:
@@ -237,7 +235,7 @@ def test_the_estop_and_the_stop_keys_act_on_the_new_control(folder: Path) -> Non
         line.close()
 
 
-def test_the_driver_host_of_a_killed_control_ends_before_another_begins(folder: Path) -> None:
+def test_driver_host_of_a_killed_control_ends_before_a_new_one_starts(folder: Path) -> None:
     machine = replace(MACHINE, hardware=replace(MACHINE.hardware, uses_driver_host=True))
     with desk(folder, machine) as screen:
         screen.run()
@@ -276,7 +274,9 @@ def children(pid: int) -> list[int]:
     return found
 
 
-def test_a_control_of_another_screen_is_replaced_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_control_joined_from_another_screen_can_be_restarted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     started = start_control(MACHINE, folder)
     first = ControlClient(started, folder)
     assert started.process is not None

@@ -50,14 +50,16 @@ class System:
             raise REFUSED
 
 
-def test_all_that_is_granted_misses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_granted_rights_are_not_reported_as_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=True)
     granted = acquire_rights()
     assert [right.missing for right in granted] == ["", ""]
     assert system.asked == [(os.SCHED_RR, REAL_TIME_PRIORITY)]  # no nice value beside it
 
 
-def test_all_that_is_refused_has_its_remedy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_each_missing_right_is_reported_with_its_remedy(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     grouped = tmp_path / "autogroup"
     grouped.write_text("1\n")
     monkeypatch.setattr(process_rights_check, "_AUTOGROUP", grouped)
@@ -71,7 +73,7 @@ def test_all_that_is_refused_has_its_remedy(monkeypatch: pytest.MonkeyPatch, tmp
     assert len(acquire_rights()) == 3
 
 
-def test_a_nice_value_helps_where_there_is_no_real_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nice_value_is_used_if_real_time_priority_is_denied(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=False)
     monkeypatch.setattr(os, "setpriority", lambda *_: None)
     real_time, _, nice, *_ = acquire_rights()
@@ -80,7 +82,7 @@ def test_a_nice_value_helps_where_there_is_no_real_time(monkeypatch: pytest.Monk
     assert system.asked == [(os.SCHED_RR, REAL_TIME_PRIORITY)]
 
 
-def test_a_limited_memory_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_limited_locked_memory_is_reported_with_its_size(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=True)
     system.memory = ("", 64 << 20)
     _, memory = acquire_rights()
@@ -89,7 +91,9 @@ def test_a_limited_memory_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("grants", [True, False])
-def test_looking_gives_everything_back(monkeypatch: pytest.MonkeyPatch, grants: bool) -> None:
+def test_checking_rights_restores_the_previous_priority(
+    monkeypatch: pytest.MonkeyPatch, grants: bool
+) -> None:
     system = System(monkeypatch, grants=grants)
     found = check_rights()
     assert bool(found[0].missing) is not grants
@@ -107,7 +111,7 @@ def test_a_thread_of_a_real_time_process_has_a_lower_priority(
     assert READING_PRIORITY < REAL_TIME_PRIORITY
 
 
-def test_a_thread_without_real_time_priority_remains_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_thread_without_real_time_priority_is_unchanged(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=True)
     lower_thread_priority(READING_PRIORITY)
     assert system.asked == []
@@ -116,14 +120,14 @@ def test_a_thread_without_real_time_priority_remains_as_it_is(monkeypatch: pytes
     assert system.asked == []
 
 
-def test_a_refused_lower_priority_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_denied_lower_priority_is_not_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=False)
     monkeypatch.setattr(os, "sched_getscheduler", lambda _: os.SCHED_RR)
     lower_thread_priority(READING_PRIORITY)
     assert system.asked == [(os.SCHED_RR, 1)]
 
 
-def test_a_system_without_these_calls_refuses_them(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_system_without_priority_calls_reports_missing_rights(monkeypatch: pytest.MonkeyPatch) -> None:
     System(monkeypatch, grants=True)
     monkeypatch.delattr(os, "sched_setscheduler")
     monkeypatch.delattr(os, "setpriority")

@@ -43,7 +43,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
         yield made
 
 
-def test_a_screen_that_comes_gets_what_the_lost_one_has_not_kept(bench: Bench) -> None:
+def test_new_screen_receives_events_not_confirmed_by_the_lost_one(bench: Bench) -> None:
     first = bench.screen()
     first.meet()
     for text in ("one", "two"):
@@ -63,7 +63,7 @@ def test_a_screen_that_comes_gets_what_the_lost_one_has_not_kept(bench: Bench) -
     assert [each.event.text for each in third.events("warning")] == ["two", "three"]
 
 
-def test_events_without_a_screen_do_not_fill_the_memory(bench: Bench) -> None:
+def test_number_of_events_buffered_without_a_screen_is_limited(bench: Bench) -> None:
     for number in range(10_050):
         bench.server.outbox.add_event(LogEvent(0.0, "test", str(number)))
     screen = bench.screen()
@@ -85,7 +85,7 @@ def test_the_executor_does_not_wait_for_a_screen_that_does_not_read(bench: Bench
     assert shown.snapshot.t > t + 0.4  # those in between were replaced
 
 
-def test_a_screen_that_does_not_read_can_be_lost(bench: Bench) -> None:
+def test_screen_that_does_not_read_can_be_replaced(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     for number in range(3000):
@@ -108,7 +108,7 @@ def test_a_second_screen_is_refused_while_one_is_connected(bench: Bench) -> None
     bench.screen().meet()
 
 
-def test_a_screen_that_ends_before_it_was_greeted_leaves_the_control_whole(bench: Bench) -> None:
+def test_screen_that_disconnects_before_hello_does_not_harm_the_control(bench: Bench) -> None:
     screen = bench.screen()
     screen.end.close()
     screen.thread.join()
@@ -118,7 +118,7 @@ def test_a_screen_that_ends_before_it_was_greeted_leaves_the_control_whole(bench
 @pytest.mark.parametrize(
     "data", [b"", b"\x80", b"no pickle", b"cno.such\nmodule\n.", b"(lp0\n0.", b"\x80\x05K\x01K\x02"]
 )
-def test_damaged_bytes_end_the_connection_and_nothing_else(bench: Bench, data: bytes) -> None:
+def test_damaged_bytes_end_only_the_connection(bench: Bench, data: bytes) -> None:
     screen = bench.screen()
     screen.meet()
     screen.end.send_bytes(data)
@@ -140,7 +140,7 @@ def test_an_unknown_message_changes_nothing(bench: Bench, message: object) -> No
     screen.take(SnapshotMessage, lambda each: each.snapshot.single_block)
 
 
-def test_what_cannot_be_pickled_keeps_nothing_else_from_the_screen(bench: Bench) -> None:
+def test_event_that_cannot_be_pickled_does_not_block_later_messages(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.server.outbox.add_event(LogEvent(0.0, "test", threading.Lock()))  # type: ignore[arg-type]
@@ -152,7 +152,7 @@ def test_what_cannot_be_pickled_keeps_nothing_else_from_the_screen(bench: Bench)
 # --- hold and continue ------------------------------------------------------------------------------------
 
 
-def test_a_screen_that_is_lost_holds_the_program(bench: Bench) -> None:
+def test_lost_screen_causes_feed_hold(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -164,7 +164,7 @@ def test_a_screen_that_is_lost_holds_the_program(bench: Bench) -> None:
     assert len(other.events("stop")) == 1
 
 
-def test_a_silent_screen_holds_although_its_threads_answer(bench: Bench) -> None:
+def test_screen_without_life_signs_causes_hold_even_if_threads_respond(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -177,7 +177,7 @@ def test_a_silent_screen_holds_although_its_threads_answer(bench: Bench) -> None
     bench.until(MachineState.HOLD)
 
 
-def test_a_screen_that_is_alive_holds_nothing(bench: Bench) -> None:
+def test_screen_with_life_signs_causes_no_hold(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -191,7 +191,7 @@ def test_a_screen_that_is_alive_holds_nothing(bench: Bench) -> None:
     assert bench.shot.state in ACTIVE_STATES
 
 
-def test_what_the_machine_starts_by_itself_while_the_screen_is_silent_is_held(bench: Bench) -> None:
+def test_automatic_start_while_the_screen_is_silent_is_put_on_hold(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     job = bench.run(screen)
@@ -237,7 +237,7 @@ def test_a_part_is_finished_without_a_screen_and_no_other_begins(tmp_path: Path)
 
 
 @pytest.mark.parametrize("late", [False, True])
-def test_why_the_screen_had_barred_the_next_part_stands_again(tmp_path: Path, late: bool) -> None:
+def test_previous_bar_of_next_part_applies_again_when_screen_returns(tmp_path: Path, late: bool) -> None:
     with control(tmp_path, one_button(alone=True)) as bench:
         screen = bench.screen()
         screen.meet()
@@ -256,7 +256,7 @@ def test_why_the_screen_had_barred_the_next_part_stands_again(tmp_path: Path, la
 
 
 @pytest.mark.parametrize(("looks", "runs"), [(REST_CHECK_COUNT - 1, False), (REST_CHECK_COUNT, False)])
-def test_a_machine_at_rest_without_a_screen_is_closed(bench: Bench, looks: int, runs: bool) -> None:
+def test_control_at_rest_closes_without_a_screen(bench: Bench, looks: int, runs: bool) -> None:
     screen = bench.screen()
     screen.meet()
     screen.lose()
@@ -265,7 +265,7 @@ def test_a_machine_at_rest_without_a_screen_is_closed(bench: Bench, looks: int, 
     assert bench.server.closing_event.is_set() is (looks >= REST_CHECK_COUNT)
 
 
-def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
+def test_control_in_feed_hold_waits_longer_for_a_screen(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -282,9 +282,7 @@ def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
 # --- the note -------------------------------------------------------------------------------------------
 
 
-def test_what_is_interrupted_without_a_screen_is_noted_for_the_next_start(
-    bench: Bench, tmp_path: Path
-) -> None:
+def test_job_interrupted_without_a_screen_is_noted_for_next_start(bench: Bench, tmp_path: Path) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -300,7 +298,7 @@ def test_what_is_interrupted_without_a_screen_is_noted_for_the_next_start(
     assert read_note(tmp_path) == (False, None)
 
 
-def test_that_nothing_is_interrupted_is_noted_too(bench: Bench, tmp_path: Path) -> None:
+def test_absence_of_an_interrupted_job_is_noted_too(bench: Bench, tmp_path: Path) -> None:
     screen = bench.screen()
     screen.meet()
     screen.lose()  # its store may have the note of a part that has ended since
@@ -311,7 +309,7 @@ def test_that_nothing_is_interrupted_is_noted_too(bench: Bench, tmp_path: Path) 
     assert not (tmp_path / NOTE_FILE_NAME).exists()
 
 
-def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path) -> None:
+def test_screen_that_disconnects_immediately_leaves_the_note(bench: Bench, tmp_path: Path) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -327,7 +325,7 @@ def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path
     assert left is not None
 
 
-def test_a_screen_that_takes_its_time_to_open_is_not_silent(bench: Bench) -> None:
+def test_screen_that_opens_slowly_is_not_treated_as_silent(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
@@ -335,14 +333,14 @@ def test_a_screen_that_takes_its_time_to_open_is_not_silent(bench: Bench) -> Non
     assert bench.shot.state in ACTIVE_STATES
 
 
-def test_a_control_that_closes_takes_no_screen(bench: Bench) -> None:
+def test_closing_control_accepts_no_screen(bench: Bench) -> None:
     bench.server.closing_event.set()
     screen = bench.screen()
     with pytest.raises(EOFError):
         screen.end.recv()
 
 
-def test_a_screen_that_comes_while_the_note_is_saved_leaves_none(
+def test_screen_that_connects_while_the_note_is_saved_removes_it(
     bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     screen = bench.screen()
@@ -358,7 +356,7 @@ def test_a_screen_that_comes_while_the_note_is_saved_leaves_none(
     assert not (tmp_path / NOTE_FILE_NAME).exists()
 
 
-def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> None:
+def test_events_not_saved_by_any_screen_are_saved_when_control_closes(tmp_path: Path) -> None:
     with control(tmp_path, one_button(alone=True)) as bench:
         screen = bench.screen()
         screen.meet()
@@ -384,9 +382,7 @@ def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("left", [None, broken_off(program="part.nc")])
-def test_the_note_of_a_control_without_a_screen_is_newer_than_the_store(
-    tmp_path: Path, left: InterruptedJob | None
-) -> None:
+def test_interruption_note_overrides_the_older_store(tmp_path: Path, left: InterruptedJob | None) -> None:
     before = Journal(tmp_path)
     before.note(broken_off(program="old.nc"))
     before.close()
@@ -401,7 +397,7 @@ def test_the_note_of_a_control_without_a_screen_is_newer_than_the_store(
         journal.close()
 
 
-def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_path: Path) -> None:
+def test_note_is_retained_if_the_store_cannot_be_opened(tmp_path: Path) -> None:
     save_note(tmp_path, broken_off())
     row = EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")
     save_events(tmp_path, UnconfirmedEvents("part.nc", (row,), (EventOrigin("control", 5),)))
@@ -416,7 +412,7 @@ def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_pat
         assert store.runs.read_part_count("part.nc") == 1
 
 
-def test_left_events_that_a_screen_has_stored_are_not_stored_again(tmp_path: Path) -> None:
+def test_unconfirmed_events_already_in_the_store_are_not_stored_again(tmp_path: Path) -> None:
     row = EventRow("2026-05-04T09:30:00.000Z", "part", "part")
     origins = tuple(EventOrigin("control", number) for number in (5, 6, 7))
     with Store.open(tmp_path) as store:
@@ -434,7 +430,7 @@ def test_left_events_that_a_screen_has_stored_are_not_stored_again(tmp_path: Pat
         assert store.runs.read_part_count("part.nc") == 5
 
 
-def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path) -> None:
+def test_confirmed_events_are_not_saved_again_when_control_closes(bench: Bench, tmp_path: Path) -> None:
     screen = bench.screen()
     screen.meet()
     bench.server.outbox.add_event(LogEvent(0.0, "test", "text"))
@@ -450,24 +446,24 @@ def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path
     "data",
     [b"", b"{", b"\xff", b"[]", b"3", b'["a", [[1]]]', b'["a", 3]', b'["a", [["2", "part", "", 1, "", ""]]]'],
 )
-def test_damaged_events_are_none(tmp_path: Path, data: bytes) -> None:
+def test_damaged_unconfirmed_events_are_ignored_and_deleted(tmp_path: Path, data: bytes) -> None:
     (tmp_path / EVENTS_FILE_NAME).write_bytes(data)
     assert pop_events(tmp_path) == UnconfirmedEvents()
     assert not (tmp_path / EVENTS_FILE_NAME).exists()
 
 
 @pytest.mark.parametrize("data", [b"", b"{", b"\xff\xfe", b"[1"])
-def test_a_damaged_note_is_none(tmp_path: Path, data: bytes) -> None:
+def test_damaged_note_is_ignored(tmp_path: Path, data: bytes) -> None:
     (tmp_path / NOTE_FILE_NAME).write_bytes(data)
     assert read_note(tmp_path) == (False, None)
 
 
-def test_a_note_that_is_no_job_says_that_nothing_is_known_to_be_interrupted(tmp_path: Path) -> None:
+def test_note_without_a_valid_job_means_no_interrupted_job(tmp_path: Path) -> None:
     (tmp_path / NOTE_FILE_NAME).write_text('{"program": 3}')
     assert read_note(tmp_path) == (True, None)
 
 
-def test_a_note_comes_back_as_it_was(tmp_path: Path) -> None:
+def test_saved_note_is_read_back_unchanged(tmp_path: Path) -> None:
     job = broken_off(program="part.nc")
     save_note(tmp_path, job)
     assert read_note(tmp_path) == (True, job)

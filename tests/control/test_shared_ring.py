@@ -29,7 +29,7 @@ while n < 300_000:
 """
 
 
-def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
+def test_ring_written_by_another_process_never_shows_a_partial_row() -> None:
     file = os.memfd_create("ring")
     os.ftruncate(file, calculate_buffer_size(64, 8))
     rows = RowBuffer(64, 8, SharedMemory(file).memory_view)
@@ -50,7 +50,7 @@ def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
     assert rows.last_time_s >= 300_000
 
 
-def test_a_ring_in_shared_memory_shows_what_the_other_end_writes() -> None:
+def test_shared_ring_shows_rows_written_by_the_other_process() -> None:
     ours, theirs = Pipe()
     memory = SharedMemory.create(RECORDED.size_bytes)
     send_descriptor(theirs, memory.descriptor)
@@ -64,7 +64,7 @@ def test_a_ring_in_shared_memory_shows_what_the_other_end_writes() -> None:
     theirs.close()
 
 
-def test_memory_that_does_not_come_is_the_end_of_the_connection() -> None:
+def test_missing_shared_memory_ends_the_connection() -> None:
     ours, theirs = Pipe()
     theirs.close()
     with pytest.raises(EOFError):

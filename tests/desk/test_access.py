@@ -112,7 +112,7 @@ NO_CHANGE = {
 # --- the table -------------------------------------------------------------------------------------------
 
 
-def test_each_level_may_what_stands_in_the_table(room: Room) -> None:
+def test_each_level_allows_the_changes_of_the_access_table(room: Room) -> None:
     room.enter_people()
     may = {}
     for level in AccessLevel:
@@ -123,19 +123,19 @@ def test_each_level_may_what_stands_in_the_table(room: Room) -> None:
     assert may[AccessLevel.SERVICE] == set(ProtectedChange) == set(ACCESS_RULES)
 
 
-def test_the_page_is_the_table() -> None:
+def test_access_page_matches_the_access_table() -> None:
     assert (HOUSE / "docs" / "access.md").read_text("utf-8") == make_page()
 
 
 @WHOLE_PRODUCT
 @pytest.mark.parametrize("act", list(ProtectedChange))
-def test_somebody_asks_for_every_act(act: ProtectedChange) -> None:
+def test_every_access_rule_is_used_in_the_program(act: ProtectedChange) -> None:
     """A rule that no page and no command asks for would be a promise that nobody keeps."""
     sources = (path.read_text("utf-8") for path in (HOUSE / "app").rglob("*.py"))
     assert any(f"ProtectedChange.{act.name}" in text for text in sources)
 
 
-def test_whoever_writes_asks_a_rule_or_is_known_to_need_none() -> None:
+def test_every_module_that_writes_checks_a_rule_or_is_exempt() -> None:
     """A new writer of the store, the program folder, outputs or inputs comes to this list, or to a rule."""
     app = HOUSE / "app"
     texts = {path.relative_to(app).as_posix(): path.read_text("utf-8") for path in app.rglob("*.py")}
@@ -148,7 +148,7 @@ def test_whoever_writes_asks_a_rule_or_is_known_to_need_none() -> None:
 # --- off -------------------------------------------------------------------------------------------------
 
 
-def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) -> None:
+def test_access_is_neither_checked_nor_logged_without_users(room: Room) -> None:
     assert [room.access.find_refusal(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
     assert room.access.header_text == ""
     room.desk.offset_book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
@@ -163,7 +163,7 @@ def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) 
 # --- refusals --------------------------------------------------------------------------------------------
 
 
-def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
+def test_access_refusal_names_the_required_level_and_how_to_get_it(room: Room) -> None:
     room.enter_people()
     why = room.desk.offset_book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
     assert why == wording("screen.level-needed", what="TOOL OFFSETS", level="SETUP", now="OPERATOR")
@@ -171,7 +171,7 @@ def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
     assert room.store.offsets.tool_offsets.read_rows() == {}
 
 
-def test_where_nobody_can_sign_in_stored_people_still_have_levels(room: Room) -> None:
+def test_stored_users_have_levels_even_if_sign_in_is_unavailable(room: Room) -> None:
     room.enter_people()
     with_sign_in = room.access.find_refusal(ProtectedChange.TOOLS)
     session, room.access.sign_in_session = room.access.sign_in_session, None
@@ -182,7 +182,7 @@ def test_where_nobody_can_sign_in_stored_people_still_have_levels(room: Room) ->
     room.access.sign_in_session = session
 
 
-def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
+def test_operator_may_change_wear_but_not_position(room: Room) -> None:
     room.store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
     room.enter_people()
     book = room.desk.offset_book
@@ -208,7 +208,7 @@ def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
     assert room.store.offsets.secondary_offsets.read_rows()[1].x == -0.01
 
 
-def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
+def test_change_not_allowed_by_the_level_asks_no_confirmation(room: Room) -> None:
     room.store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
     room.desk.offset_book.read_store()
     room.enter_people()
@@ -225,7 +225,7 @@ def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
     assert room.desk.confirm_key  # wear is the operator's, and this wear is large
 
 
-def test_pages_without_a_book_refuse_too(room: Room) -> None:
+def test_pages_without_offsets_also_refuse_protected_changes(room: Room) -> None:
     room.enter_people()
     programs, editor = (
         room.desk.page_registry.find_model(ProgramListModel),
@@ -245,7 +245,7 @@ def test_pages_without_a_book_refuse_too(room: Room) -> None:
     assert programs.import_export.is_open
 
 
-def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room) -> None:
+def test_operator_may_lower_but_not_raise_the_spindle_limit(room: Room) -> None:
     room.enter_people()
     limit = room.find(SpindleLimitFunction)
     assert limit.take("1500")
@@ -276,7 +276,7 @@ def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room)
     ]
 
 
-def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> None:
+def test_manual_outputs_need_setup_level_and_lamp_test_does_not(room: Room) -> None:
     room.enter_people()
     page = room.find(SignalsFunction)
     page.list_kind = Shown.OUTPUTS
@@ -294,7 +294,7 @@ def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> No
     assert room.log("change") == [(wording("log.output-on-by-hand", name="coolant"), "BEN")]
 
 
-def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: Room) -> None:
+def test_received_program_is_not_stored_after_level_expires(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
     line = room.find(SerialTransferFunction)
@@ -306,7 +306,7 @@ def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: 
     assert not (line.own_folder / "PIN").exists()
 
 
-def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
+def test_stop_and_reset_need_no_level(room: Room) -> None:
     room.enter_people()
     desk = room.desk
     desk.enable_drives()
@@ -327,7 +327,7 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
 # --- who did it ------------------------------------------------------------------------------------------
 
 
-def test_every_history_has_the_name(room: Room) -> None:
+def test_every_history_has_the_user_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
     book, watch = room.desk.offset_book, room.desk.page_registry.find_model(PartsWatch)
@@ -358,7 +358,7 @@ def test_every_history_has_the_name(room: Room) -> None:
     assert "change" in EVENT_FILTERS["OPERATOR"]
 
 
-def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
+def test_changes_of_settings_sounds_and_notes_are_logged(room: Room) -> None:
     room.enter_people()
     room.sign_in("CARLA")
     room.desk.apply_setting("theme", "light")
@@ -381,7 +381,7 @@ def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
     assert [begins(text, "log.paper-size") for text in texts[5:]] == [True]
 
 
-def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
+def test_accepted_machine_file_is_logged_with_the_user_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("ANNA")
     room.desk.changes.accept_changes()
@@ -391,7 +391,7 @@ def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
 # --- people ------------------------------------------------------------------------------------------------
 
 
-def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
+def test_removed_user_loses_the_level(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
     room.journal.require_store().people.remove_user("BEN").result()
@@ -399,14 +399,14 @@ def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
     assert room.access.header_text == "OPERATOR"
 
 
-def test_a_second_desk_has_the_levels_of_the_first(room: Room, tmp_path: Path) -> None:
+def test_second_instance_uses_the_levels_of_the_first(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     beside = Journal(tmp_path / "home")
     assert beside.people() == room.store.people.read_users()
     beside.close()
 
 
-def test_one_of_service_stays(room: Room) -> None:
+def test_last_service_user_can_only_be_removed_after_all_others(room: Room) -> None:
     room.enter_people()
     with pytest.raises(StoreError, match=pattern("desk.service-stays")):
         room.journal.require_store().people.remove_user("ANNA").result()
@@ -416,7 +416,7 @@ def test_one_of_service_stays(room: Room) -> None:
     assert not room.access.users.is_access_restricted
 
 
-def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_path: Path) -> None:
+def test_damaged_user_row_denies_access_and_is_reported(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     with closing(sqlite3.connect(tmp_path / "home" / STORE_FILE_NAME)) as outside, outside:
         outside.execute("UPDATE people SET level = 3 WHERE name = 'CARLA'")
@@ -429,7 +429,7 @@ def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_p
     )
 
 
-def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> None:
+def test_store_of_an_older_version_has_no_levels_and_retains_its_log(tmp_path: Path) -> None:
     folder = tmp_path / "older"
     folder.mkdir()
     before = next(n for n, text in enumerate(database.load_migrations()) if "CREATE TABLE people" in text)

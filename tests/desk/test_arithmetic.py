@@ -29,7 +29,7 @@ from tests.texts import pattern
         ("3*-2", -6.0),
     ],
 )
-def test_entries(entry: str, value: float) -> None:
+def test_expression_is_evaluated(entry: str, value: float) -> None:
     assert evaluate_expression(entry) == pytest.approx(value, abs=1e-12)
 
 
@@ -54,24 +54,24 @@ def test_entries(entry: str, value: float) -> None:
         ("1" * 81, pattern("desk.entry-too-long", most=80)),
     ],
 )
-def test_refusals(entry: str, told: str) -> None:
+def test_invalid_expression_is_rejected(entry: str, told: str) -> None:
     with pytest.raises(EntryError, match=told):
         evaluate_expression(entry)
 
 
-def test_no_entry_is_too_deep() -> None:
+def test_deeply_nested_expression_is_evaluated_or_rejected() -> None:
     assert evaluate_expression("(" * 39 + "1" + ")" * 39) == 1.0
     with pytest.raises(EntryError, match=pattern("desk.stops-short")):
         evaluate_expression("(" * 80)
 
 
 @given(st.floats(-1000, 1000), st.floats(-1000, 1000))
-def test_difference_of_two_numbers(a: float, b: float) -> None:
+def test_difference_of_two_numbers_is_exact(a: float, b: float) -> None:
     assert evaluate_expression(f"{a:.6f}-{b:.6f}") == float(f"{a:.6f}") - float(f"{b:.6f}")
 
 
 @given(st.text(max_size=30))
-def test_any_text_is_a_number_or_a_sentence(text: str) -> None:
+def test_any_text_gives_a_number_or_a_one_line_error(text: str) -> None:
     try:
         assert isfinite(evaluate_expression(text))
     except EntryError as error:
@@ -95,5 +95,5 @@ def test_any_text_is_a_number_or_a_sentence(text: str) -> None:
         ("", None),
     ],
 )
-def test_a_line_is_a_whole_number_from_one(entry: str, line: int | None) -> None:
+def test_line_number_is_a_positive_integer(entry: str, line: int | None) -> None:
     assert evaluate_line_number(entry) == line

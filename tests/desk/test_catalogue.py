@@ -68,36 +68,36 @@ def test_a_text_is_shown_in_spanish(text: str, shown: str) -> None:
 
 
 @pytest.mark.usefixtures("spanish")
-def test_a_message_in_a_hole_for_names_is_translated() -> None:
+def test_message_used_as_a_name_value_is_translated() -> None:
     assert tr(Message("{name} SAVED", name=OFF)) == "Z está a 2.1 GUARDADO"
     assert tr(Message("{name} SAVED", name="READY")) == "READY GUARDADO"
 
 
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize("code", [14011, "following"])
-def test_the_sentence_of_a_sinumerik_fault_is_translated(code: int | str) -> None:
+def test_sinumerik_alarm_text_is_translated(code: int | str) -> None:
     found = make_alarm(1, 1, code, "N10", "following error", "")
     assert tr(found.message).endswith("block N10: error de seguimiento")
 
 
-def test_without_a_language_texts_stay_english() -> None:
+def test_texts_are_english_without_a_translation_catalog() -> None:
     assert tr(OFF) == "Z is 2.1 off"
     assert tr(mark_untranslated("STEP")) == "STEP"
     assert type(tr(OFF)) is str
 
 
-def test_a_message_keeps_its_values_in_another_process() -> None:
+def test_pickled_message_retains_template_and_values() -> None:
     made = pickle.loads(pickle.dumps(Message("REFUSED: {why}", why=OFF).upper()))
     assert (made, made.template) == ("REFUSED: Z IS 2.1 OFF", "REFUSED: {why}")
     assert made.values["why"].values == {"axis": "Z", "distance": 2.1}
 
 
-def test_a_value_that_is_missing_is_refused() -> None:
+def test_message_with_a_missing_value_is_rejected() -> None:
     with pytest.raises(KeyError, match="distance"):
         Message("{axis} is {distance} off", axis="Z")
 
 
-def test_the_values_of_messages_in_messages_are_named_too() -> None:
+def test_values_of_nested_messages_are_collected() -> None:
     nested = Message("REFUSED: {why}", why=Message("{axis}: {why}", axis="X", why=OFF))
     values = collect_values(nested)
     assert values == {"axis": "X", "distance": 2.1, "why": "X: Z is 2.1 off"}

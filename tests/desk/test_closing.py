@@ -76,9 +76,7 @@ def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
 
 @pytest.mark.parametrize("how", ["raises", "hangs"])
 @pytest.mark.parametrize("bad", STEPS)
-def test_each_step_of_closing_is_carried_out_whatever_another_does(
-    machine: FakeMachine, bad: str, how: str
-) -> None:
+def test_every_closing_step_runs_even_if_another_fails(machine: FakeMachine, bad: str, how: str) -> None:
     closings = Closings(bad, how)
     desk = desk_of(machine, closings)
     desk.close()
@@ -93,7 +91,7 @@ def machine() -> FakeMachine:
     return FakeMachine()
 
 
-def test_a_load_that_hangs_does_not_keep_the_machine_running(
+def test_hanging_program_load_does_not_prevent_switching_drives_off(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """The drives are off while the worker still waits for its dead network folder."""

@@ -53,7 +53,7 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_one_a_day_and_the_newest_stay(home: Path, tmp_path: Path) -> None:
+def test_one_backup_a_day_is_made_and_the_newest_are_retained(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "nas" / "lathe3"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     for _ in range(5 * 24):
@@ -66,7 +66,7 @@ def test_one_a_day_and_the_newest_stay(home: Path, tmp_path: Path) -> None:
         assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
 
 
-def test_it_waits_for_a_standstill_but_not_for_ever(home: Path, tmp_path: Path) -> None:
+def test_backup_waits_for_standstill_up_to_a_limit(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     daily.make_if_due()
@@ -77,7 +77,7 @@ def test_it_waits_for_a_standstill_but_not_for_ever(home: Path, tmp_path: Path) 
     assert daily.make_if_due() is not None
 
 
-def test_a_clock_that_was_set_back_keeps_nothing_from_being_backed_up(home: Path, tmp_path: Path) -> None:
+def test_clock_set_back_does_not_prevent_backups(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     daily.make_if_due()
@@ -85,9 +85,7 @@ def test_a_clock_that_was_set_back_keeps_nothing_from_being_backed_up(home: Path
     assert daily.make_if_due() is not None
 
 
-def test_a_backup_that_is_no_good_is_told_once_a_day_and_leaves_the_others(
-    home: Path, tmp_path: Path
-) -> None:
+def test_failed_backup_is_reported_once_a_day_and_leaves_older_ones(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
 
     def copy(target: Path) -> None:
@@ -109,7 +107,7 @@ def test_a_backup_that_is_no_good_is_told_once_a_day_and_leaves_the_others(
     assert len(days.told) == 3
 
 
-def test_a_folder_that_is_not_there_and_cannot_be_made_is_told(home: Path, tmp_path: Path) -> None:
+def test_backup_folder_that_cannot_be_created_is_reported(home: Path, tmp_path: Path) -> None:
     days = Days()
     (tmp_path / "nas").write_text("a file")
     daily = days.daily(tmp_path / "nas" / "lathe3", lambda target: backup.back_up_store(home, target))
@@ -117,7 +115,7 @@ def test_a_folder_that_is_not_there_and_cannot_be_made_is_told(home: Path, tmp_p
     assert "lathe3" in days.told[0]
 
 
-def test_a_damaged_store_is_not_backed_up_over_good_ones(tmp_path: Path) -> None:
+def test_damaged_store_is_not_backed_up(tmp_path: Path) -> None:
     days = Days()
 
     def copy(_target: Path) -> None:
@@ -128,14 +126,14 @@ def test_a_damaged_store_is_not_backed_up_over_good_ones(tmp_path: Path) -> None
     assert days.told == [f"{tmp_path / 'b'}: T3 is not as it was saved"]
 
 
-def test_it_ends_with_the_desk(home: Path, tmp_path: Path) -> None:
+def test_daily_backup_ends_when_turndesk_closes(home: Path, tmp_path: Path) -> None:
     daily = Days().daily(tmp_path / "b", lambda target: backup.back_up_store(home, target))
     daily.start()
     daily.close()
     assert not (tmp_path / "b").exists()  # the first look is a minute later
 
 
-def test_with_an_empty_battery_of_the_clock_the_backup_of_today_stays(home: Path, tmp_path: Path) -> None:
+def test_todays_backup_is_retained_after_clock_reset(home: Path, tmp_path: Path) -> None:
     """What is dated later than now was made before the clock went back, and goes first."""
     days, folder = Days(), tmp_path / "b"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
@@ -155,7 +153,7 @@ def test_with_an_empty_battery_of_the_clock_the_backup_of_today_stays(home: Path
     assert len(names(folder)) == 3
 
 
-def test_a_place_that_is_no_other_disk_is_said_once(home: Path, tmp_path: Path) -> None:
+def test_backup_folder_on_the_same_disk_is_reported_once(home: Path, tmp_path: Path) -> None:
     """A disk that is not mounted leaves its folder on this one: better such a backup than none."""
     days, hints = Days(), list[str]()
     daily = days.daily(tmp_path / "mnt" / "nas", lambda target: backup.back_up_store(home, target))
@@ -166,7 +164,7 @@ def test_a_place_that_is_no_other_disk_is_said_once(home: Path, tmp_path: Path) 
     assert hints == ["same disk"]
 
 
-def test_a_place_on_another_disk_is_not_hinted_at(home: Path, tmp_path: Path) -> None:
+def test_backup_folder_on_another_disk_gives_no_hint(home: Path, tmp_path: Path) -> None:
     days, hints = Days(), list[str]()
     with small_disk(tmp_path / "mnt") as disk:
         daily = days.daily(disk.path / "lathe3", lambda target: backup.back_up_store(home, target))

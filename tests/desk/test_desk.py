@@ -47,13 +47,13 @@ def at(machine: FakeMachine, state: MachineState) -> None:
 
 
 @pytest.mark.parametrize("name", ["single_block", "optional_stop", "cycle_repeat"])
-def test_switches_turn_over(desk: Desk, machine: FakeMachine, name: str) -> None:
+def test_switch_toggles_on_and_off(desk: Desk, machine: FakeMachine, name: str) -> None:
     desk.toggle_switch(name)
     desk.toggle_switch(name)
     assert machine.posted == [SetSwitch(name, True), SetSwitch(name, False)]
 
 
-def test_an_unknown_switch_is_a_mistake(desk: Desk) -> None:
+def test_unknown_switch_raises_an_error(desk: Desk) -> None:
     with pytest.raises(ValueError, match="block_delete"):
         desk.toggle_switch("block_delete")
 
@@ -62,7 +62,7 @@ def test_an_unknown_switch_is_a_mistake(desk: Desk) -> None:
     "state",
     [MachineState.RUN, MachineState.HOLD, MachineState.WAIT, MachineState.PROGRAM_STOP, MachineState.JOG],
 )
-def test_no_other_program_while_one_is_under_way(
+def test_program_is_not_loaded_while_another_one_is_active(
     desk: Desk, machine: FakeMachine, state: MachineState
 ) -> None:
     at(machine, state)
@@ -78,7 +78,7 @@ def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:
     assert desk.program_loader.loaded.phase is LoadingPhase.EMPTY
 
 
-def test_block_delete_needs_a_program_and_rest(desk: Desk, machine: FakeMachine) -> None:
+def test_block_delete_needs_a_loaded_program_at_rest(desk: Desk, machine: FakeMachine) -> None:
     desk.program_choice.toggle_block_delete()
     assert shows(desk.prompt_notice, "screen.choose-program-for-block-delete")
     assert desk.program_choice.load_by_name("grooves")
@@ -92,7 +92,7 @@ def test_block_delete_needs_a_program_and_rest(desk: Desk, machine: FakeMachine)
 
 
 @pytest.mark.parametrize("state", list(MachineState))
-def test_feed_hold_is_always_posted(desk: Desk, machine: FakeMachine, state: MachineState) -> None:
+def test_feed_hold_is_posted_in_every_state(desk: Desk, machine: FakeMachine, state: MachineState) -> None:
     at(machine, state)
     desk.start_feed_hold()
     assert FeedHold() in machine.posted
@@ -106,7 +106,7 @@ def test_reset_of_a_moving_machine_is_refused(desk: Desk, machine: FakeMachine, 
     assert shows(desk.prompt_notice, "screen.feed-hold-first")
 
 
-def test_an_answer_to_a_question_of_another_state_is_none(desk: Desk, machine: FakeMachine) -> None:
+def test_confirmation_after_a_state_change_is_ignored(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.HOLD)
     desk.reset_control()
     desk.prompt_answers._since = float("-inf")
@@ -115,7 +115,7 @@ def test_an_answer_to_a_question_of_another_state_is_none(desk: Desk, machine: F
     assert machine.posted == []
 
 
-def test_giving_a_program_up_is_asked_once(desk: Desk, machine: FakeMachine) -> None:
+def test_reset_in_feed_hold_needs_one_confirmation(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.HOLD)
     desk.reset_control()
     assert desk.prompt_notice == CONFIRM_CANCEL
@@ -133,7 +133,7 @@ def test_giving_a_program_up_is_asked_once(desk: Desk, machine: FakeMachine) -> 
     assert machine.posted == [Reset()]
 
 
-def test_another_key_takes_the_question_back(desk: Desk, machine: FakeMachine) -> None:
+def test_another_key_cancels_the_question(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.HOLD)
     desk.reset_control()
     desk.toggle_switch("single_block")
@@ -141,7 +141,7 @@ def test_another_key_takes_the_question_back(desk: Desk, machine: FakeMachine) -
     assert Reset() not in machine.posted
 
 
-def test_an_alarm_is_acknowledged_at_once(desk: Desk, machine: FakeMachine) -> None:
+def test_reset_acknowledges_an_alarm_without_confirmation(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.FAULT)
     desk.reset_control()
     assert machine.posted == [Reset()]
@@ -165,13 +165,13 @@ def test_drives_on_is_refused_unless_they_are_off(
     assert answer in desk.prompt_notice
 
 
-def test_drives_on(desk: Desk, machine: FakeMachine) -> None:
+def test_drives_on_is_posted_with_drives_off(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.DISABLED)
     desk.enable_drives()
     assert machine.posted == [EnableDrives()]
 
 
-def test_escape_holds_what_moves(desk: Desk, machine: FakeMachine) -> None:
+def test_escape_posts_feed_hold_for_moving_machine(desk: Desk, machine: FakeMachine) -> None:
     desk.handle_escape()
     assert machine.posted == []
     at(machine, MachineState.RUN)
@@ -179,14 +179,14 @@ def test_escape_holds_what_moves(desk: Desk, machine: FakeMachine) -> None:
     assert machine.posted == [FeedHold()]
 
 
-def test_one_palm_does_not_start_and_is_told(desk: Desk, machine: FakeMachine) -> None:
+def test_single_palm_press_does_not_start_and_is_reported(desk: Desk, machine: FakeMachine) -> None:
     desk.station_controls.palm("left", is_down=True)
     desk.station_controls.palm("left", is_down=False)
     assert CycleStart() not in machine.posted
     assert desk.prompt_notice == ONE_PALM_PRESSED
 
 
-def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeMachine) -> None:
+def test_single_palm_press_on_simulated_machine_explains_one_hand_start(machine: FakeMachine) -> None:
     """A finger at a touch panel has pressed one, and knew of no other way."""
     desk = desk_on(machine, one_hand=True)
     desk.station_controls.palm("left", is_down=True)
@@ -195,7 +195,7 @@ def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeM
     assert desk.prompt_notice == ONE_HAND_HINT
 
 
-def test_the_prompt_says_how_the_palms_on_the_glass_start(machine: FakeMachine) -> None:
+def test_prompt_explains_how_on_screen_palm_buttons_start(machine: FakeMachine) -> None:
     desk = desk_on(machine, one_hand=True)
     assert desk.start_instruction == text("screen.both-palms")
     desk.apply_setting("latched", True)
@@ -205,14 +205,14 @@ def test_the_prompt_says_how_the_palms_on_the_glass_start(machine: FakeMachine) 
     assert desk.start_instruction == text("screen.both-palms")
 
 
-def test_a_held_palm_that_repeats_is_pressed_once(desk: Desk, machine: FakeMachine) -> None:
+def test_auto_repeat_of_a_pressed_palm_button_is_one_press(desk: Desk, machine: FakeMachine) -> None:
     desk.station_controls.palm("left", is_down=True)
     desk.station_controls.palm("left", is_down=True)
     desk.station_controls.palm("left", is_down=False)
     assert machine.palms == set()
 
 
-def test_losing_the_window_lets_the_palms_go(desk: Desk, machine: FakeMachine) -> None:
+def test_losing_window_focus_releases_the_palm_buttons(desk: Desk, machine: FakeMachine) -> None:
     desk.station_controls.palm("left", is_down=True)
     desk.station_controls.release_all()
     assert machine.palms == set()
@@ -220,7 +220,7 @@ def test_losing_the_window_lets_the_palms_go(desk: Desk, machine: FakeMachine) -
     assert CycleStart() not in machine.posted
 
 
-def test_a_refused_start_says_why_each_time(desk: Desk, machine: FakeMachine) -> None:
+def test_refused_start_shows_its_reason_each_time(desk: Desk, machine: FakeMachine) -> None:
     for _ in range(2):
         desk.station_controls.palm("left", is_down=True)
         desk.station_controls.palm("right", is_down=True)
@@ -230,14 +230,16 @@ def test_a_refused_start_says_why_each_time(desk: Desk, machine: FakeMachine) ->
         desk.clear_prompt_line()
 
 
-def test_what_the_executor_refuses_is_said(desk: Desk, machine: FakeMachine) -> None:
+def test_refusal_of_the_executor_is_shown(desk: Desk, machine: FakeMachine) -> None:
     desk.hear(LogEvent(1.0, "refused", text("desk.slides-at-rest")))
     desk.hear(LogEvent(1.1, "state", "READY"))
     desk.update()
     assert desk.prompt_notice == text("screen.refused", why=text("desk.slides-at-rest"))
 
 
-def test_an_answer_outlives_the_state_and_never_covers_it(desk: Desk, machine: FakeMachine) -> None:
+def test_message_remains_after_state_change_and_does_not_hide_the_prompt(
+    desk: Desk, machine: FakeMachine
+) -> None:
     desk.say("AN ANSWER")
     at(machine, MachineState.DISABLED)
     snapshot, _view, loaded = desk.update()
@@ -245,7 +247,7 @@ def test_an_answer_outlives_the_state_and_never_covers_it(desk: Desk, machine: F
     assert desk.prompt_answers.message == "AN ANSWER"
 
 
-def test_n_takes_a_question_back_and_does_nothing_else(desk: Desk, machine: FakeMachine) -> None:
+def test_n_key_only_cancels_the_question(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.HOLD)
     desk.reset_control()
     assert desk.confirm_key == "Y"
@@ -255,7 +257,7 @@ def test_n_takes_a_question_back_and_does_nothing_else(desk: Desk, machine: Fake
     assert len(machine.posted) == posted
 
 
-def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
+def test_override_key_turns_the_pot_of_the_simulated_station(machine: FakeMachine) -> None:
     ticks = iter(range(1000))
     desk = desk_on(machine)
     desk.station_controls.clock = lambda: next(ticks) / 10
@@ -282,7 +284,7 @@ def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path
     desk.close()
 
 
-def test_one_button_starts_only_where_the_machine_file_says_one(machine: FakeMachine) -> None:
+def test_one_button_starts_cycle_only_if_machine_file_allows_it(machine: FakeMachine) -> None:
     two, one = desk_on(machine), desk_on(machine, two_hand=False)
     two.station_keys.press_start()
     assert machine.posted == []
@@ -292,7 +294,7 @@ def test_one_button_starts_only_where_the_machine_file_says_one(machine: FakeMac
         desk.close()
 
 
-def test_the_log_keeps_an_alarm_that_is_over_and_counts_it_once(desk: Desk, machine: FakeMachine) -> None:
+def test_alarm_log_retains_a_cleared_alarm_and_lists_it_once(desk: Desk, machine: FakeMachine) -> None:
     machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "", "", line=4))
     desk.update()
     machine.now = replace(machine.now, alarms=())
@@ -300,7 +302,7 @@ def test_the_log_keeps_an_alarm_that_is_over_and_counts_it_once(desk: Desk, mach
     assert [(entry.local_time, entry.alarm.number) for entry in desk.alarm_log.entries] == [("09:41:07", 102)]
 
 
-def test_a_control_that_has_died_is_told_and_its_figures_are_not_believed(
+def test_silent_control_is_reported_and_its_values_are_not_shown_as_valid(
     desk: Desk, machine: FakeMachine
 ) -> None:
     seconds = [100.0]
@@ -317,7 +319,7 @@ def test_a_control_that_has_died_is_told_and_its_figures_are_not_believed(
     assert desk.update()[1].tone is Tone.RUN
 
 
-def test_reset_restarts_a_silent_control_and_nothing_else(machine: FakeMachine, desk: Desk) -> None:
+def test_reset_only_restarts_a_silent_control(machine: FakeMachine, desk: Desk) -> None:
     restarts = list[int]()
     desk.desk_control.restart = lambda: restarts.append(1)
     seconds = [100.0]
@@ -337,9 +339,7 @@ def test_reset_restarts_a_silent_control_and_nothing_else(machine: FakeMachine, 
     assert machine.posted == posted
 
 
-def test_reset_of_a_silent_control_that_cannot_be_restarted_is_the_usual_one(
-    machine: FakeMachine, desk: Desk
-) -> None:
+def test_reset_is_posted_if_a_silent_control_cannot_be_restarted(machine: FakeMachine, desk: Desk) -> None:
     seconds = [100.0]
     desk.station_controls.clock = lambda: seconds[0]
     at(machine, MachineState.FAULT)
@@ -353,7 +353,7 @@ def test_reset_of_a_silent_control_that_cannot_be_restarted_is_the_usual_one(
     assert machine.posted[-1] == Reset()
 
 
-def test_a_screen_that_was_away_does_not_blame_the_control(desk: Desk) -> None:
+def test_suspended_screen_does_not_report_a_silent_control(desk: Desk) -> None:
     seconds = [100.0]
     desk.station_controls.clock = lambda: seconds[0]
     desk.update()
@@ -361,7 +361,7 @@ def test_a_screen_that_was_away_does_not_blame_the_control(desk: Desk) -> None:
     assert desk.update()[1].state_text == MachineState.IDLE.value
 
 
-def test_time_left_stands_still_at_override_zero(desk: Desk, machine: FakeMachine) -> None:
+def test_time_left_is_infinite_at_zero_override(desk: Desk, machine: FakeMachine) -> None:
     snapshot, _view, loaded = desk.update()
     assert find_time_left(snapshot, loaded) == float("inf")
 
@@ -373,7 +373,7 @@ def _no_workshop() -> LoadingSteps:
     return LoadingSteps(refuse, refuse, refuse, refuse)  # type: ignore[arg-type]
 
 
-def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, machine: FakeMachine) -> None:
+def test_store_failure_during_a_run_is_reported_once(desk: Desk, machine: FakeMachine) -> None:
     trouble = ""
     desk.storage_state.set_store_readers(lambda: trouble)
     at(machine, MachineState.HOLD)
@@ -399,7 +399,7 @@ class _PageReady:
         """Nothing is open."""
 
 
-def test_nothing_starts_from_any_page_while_a_backup_is_restored(desk: Desk, machine: FakeMachine) -> None:
+def test_starts_are_barred_on_all_pages_while_a_backup_is_restored(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.IDLE)
     desk.page_registry.add_start_handler(_PageReady())
     assert desk.barred() == ""
@@ -419,7 +419,7 @@ class _Other(_Model):
     pass
 
 
-def test_what_is_attached_for_later_is_made_once_when_it_is_asked_for(desk: Desk) -> None:
+def test_lazily_attached_model_is_created_once_on_first_use(desk: Desk) -> None:
     made: list[_Model] = []
 
     def make() -> _Model:
@@ -433,7 +433,7 @@ def test_what_is_attached_for_later_is_made_once_when_it_is_asked_for(desk: Desk
     assert (len(made), made[0].closed) == (1, 1)
 
 
-def test_what_nobody_asked_for_is_not_made_by_closing(desk: Desk) -> None:
+def test_closing_does_not_create_an_unused_lazy_model(desk: Desk) -> None:
     def make() -> _Model:
         raise AssertionError("made although nobody asked")
 

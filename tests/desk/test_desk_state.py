@@ -28,7 +28,7 @@ class Other(Model):
     """Another class of model."""
 
 
-def test_a_model_is_found_by_its_class_and_no_other_is() -> None:
+def test_model_is_found_only_by_its_class() -> None:
     pages, model = PageRegistry(), Model()
     pages.attach_model(model)
     assert pages.find_model(Model) is model
@@ -36,7 +36,7 @@ def test_a_model_is_found_by_its_class_and_no_other_is() -> None:
     assert [step.name for step in pages.make_closing_steps()] == ["Model"]
 
 
-def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
+def test_lazy_model_is_created_once_on_first_lookup() -> None:
     pages, made = PageRegistry(), list[Other]()
 
     def make() -> Other:
@@ -50,7 +50,7 @@ def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
     assert len(made) == 1
 
 
-def test_of_the_pages_with_a_start_the_open_one_has_the_buttons() -> None:
+def test_open_page_with_a_start_receives_the_start_buttons() -> None:
     pages, first, second = PageRegistry(), Model("first"), Model("second")
     for each in (first, second):
         pages.add_start_handler(each)
@@ -59,7 +59,7 @@ def test_of_the_pages_with_a_start_the_open_one_has_the_buttons() -> None:
     assert pages.active_start_handler is second
 
 
-def test_without_a_feature_nothing_is_offered() -> None:
+def test_program_key_is_offered_only_if_a_feature_adds_it() -> None:
     pages = PageRegistry()
     assert pages.find_notice(Snapshot()) is None
     assert dict(pages.program_keys) == {}
@@ -68,7 +68,7 @@ def test_without_a_feature_nothing_is_offered() -> None:
     assert dict(pages.program_keys) == {"F10": key}
 
 
-def test_a_window_that_is_not_there_bars_nothing_and_a_page_may() -> None:
+def test_missing_window_bars_nothing_and_page_may_bar_start() -> None:
     window = WindowState(LatePressFilter(Snapshot, float))
     assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_held()) == (True, False, False)
     assert (window.has_text_field(), window.find_press_age()) == (False, 0.0)
@@ -82,7 +82,7 @@ def test_a_window_that_is_not_there_bars_nothing_and_a_page_may() -> None:
 
 
 @pytest.mark.parametrize("problem", ["", "the disk is full"])
-def test_the_state_of_storage_is_that_of_the_store_it_follows(problem: str) -> None:
+def test_storage_state_follows_its_store(problem: str) -> None:
     storage, checked = StorageState(), list[bool]()
     assert (storage.read_problem(), storage.read_unsaved(), storage.read_file_difference()) == ("", "", "")
     storage.set_store_readers(lambda: problem, lambda: "20 parts")
@@ -96,7 +96,7 @@ def test_the_state_of_storage_is_that_of_the_store_it_follows(problem: str) -> N
     assert checked == [True]
 
 
-def test_starts_are_barred_from_the_begin_of_a_restore_to_its_end() -> None:
+def test_starts_are_barred_from_begin_to_end_of_a_restore() -> None:
     storage = StorageState()
     assert not storage.is_restoring
     storage.begin_restore()

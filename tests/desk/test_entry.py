@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.desk.pages.table_content import InputField
 
 
-def test_the_first_character_replaces_what_is_offered() -> None:
+def test_first_character_replaces_the_offered_text() -> None:
     entry = InputField(words=True)
     entry.propose("knob")
     for key in "kn2":
@@ -13,7 +13,7 @@ def test_the_first_character_replaces_what_is_offered() -> None:
     assert entry.text == "kn2"
 
 
-def test_back_edits_what_is_offered() -> None:
+def test_backspace_edits_the_offered_text() -> None:
     entry = InputField(words=True)
     entry.propose("knob")
     entry.handle_key("Back")
@@ -21,7 +21,7 @@ def test_back_edits_what_is_offered() -> None:
     assert entry.text == "knot"
 
 
-def test_what_was_typed_is_not_replaced() -> None:
+def test_typed_text_is_not_replaced() -> None:
     entry = InputField(words=True)
     for key in "ab":
         entry.handle_key(key)

@@ -26,7 +26,7 @@ def loaded(*, errors: bool = False, missing: bool = False) -> LoadedProgram:
 NOTHING = cast("LoadedProgram", SimpleNamespace(path=None, proof=None, job=None, phase=LoadingPhase.READY))
 
 
-def test_each_step_waits_for_what_it_asks() -> None:
+def test_first_job_step_waits_for_its_condition() -> None:
     card = FirstJobCard()
     card.advance(REST, NOTHING, 0)
     assert card.step_index == 0
@@ -55,13 +55,13 @@ def test_each_step_waits_for_what_it_asks() -> None:
     assert card.notice_row.text == text("desk.first-job-done")
 
 
-def test_where_every_tool_is_set_nobody_is_asked_to_touch_one_off() -> None:
+def test_first_job_skips_touch_off_if_all_tools_are_set() -> None:
     card = FirstJobCard()
     card.advance(REST, loaded(), 0)  # as the demo begins: its store has the offsets of the samples
     assert "DRY RUN" in card.notice_row.text
 
 
-def test_the_card_says_which_step_of_how_many() -> None:
+def test_first_job_card_shows_step_number_and_count() -> None:
     row = FirstJobCard().notice_row
     assert row.text == text(
         "desk.first-job-step", number=1, count=f"{len(FIRST_JOB_STEPS)}: CHOOSE A PROGRAM"

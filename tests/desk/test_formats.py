@@ -26,24 +26,24 @@ from app.desk.status import formats
         (-101.6, False, "−4.00000"),
     ],
 )
-def test_length(mm: float, metric: bool, shown: str) -> None:
+def test_length_is_formatted_in_its_unit(mm: float, metric: bool, shown: str) -> None:
     assert formats.format_length(mm, metric) == shown
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_is_a_dash(value: float) -> None:
+def test_invalid_number_is_shown_as_a_dash(value: float) -> None:
     assert formats.format_length(value, is_metric=False) == "—"
     assert formats.format_duration(value) == "—"
 
 
 @given(st.floats(-1000, 1000), st.booleans())
-def test_no_figure_is_a_negative_zero(mm: float, metric: bool) -> None:
+def test_negative_zero_is_shown_without_a_sign(mm: float, metric: bool) -> None:
     shown = formats.format_length(mm, metric)
     assert not (shown.startswith("−") and set(shown) <= set("−0."))
 
 
 @given(st.floats(-1000, 1000))
-def test_figures_have_the_places_of_their_unit(mm: float) -> None:
+def test_length_has_four_decimals_in_mm_and_five_in_inches(mm: float) -> None:
     assert len(formats.format_length(mm, is_metric=True).partition(".")[2]) == 4
     assert len(formats.format_length(mm, is_metric=False).partition(".")[2]) == 5
 
@@ -58,7 +58,7 @@ def test_figures_have_the_places_of_their_unit(mm: float) -> None:
         (0.0, True, False, "0.0"),
     ],
 )
-def test_feed(value: float, metric: bool, per_rev: bool, shown: str) -> None:
+def test_feed_is_formatted_in_its_unit(value: float, metric: bool, per_rev: bool, shown: str) -> None:
     assert formats.format_feed(value, metric, per_rev) == shown
 
 
@@ -66,7 +66,7 @@ def test_feed(value: float, metric: bool, per_rev: bool, shown: str) -> None:
     ("metric", "per_rev", "unit"),
     [(False, False, "in/min"), (False, True, "in/rev"), (True, False, "mm/min"), (True, True, "mm/rev")],
 )
-def test_feed_unit(metric: bool, per_rev: bool, unit: str) -> None:
+def test_feed_unit_depends_on_units_and_feed_mode(metric: bool, per_rev: bool, unit: str) -> None:
     assert formats.find_feed_unit(metric, per_rev) == unit
 
 
@@ -80,12 +80,12 @@ def test_surface_speed_has_no_sign() -> None:
     ("seconds", "shown"),
     [(0.0, "0:00"), (59.99, "0:59"), (60.0, "1:00"), (3599.0, "59:59"), (3661.0, "1:01:01"), (-1.0, "—")],
 )
-def test_duration(seconds: float, shown: str) -> None:
+def test_duration_is_formatted(seconds: float, shown: str) -> None:
     assert formats.format_duration(seconds) == shown
 
 
 @pytest.mark.parametrize(
     ("fraction", "shown"), [(1.0, "100 %"), (0.0, "0 %"), (1.5, "150 %"), (0.555, "56 %")]
 )
-def test_percent(fraction: float, shown: str) -> None:
+def test_percentage_is_formatted(fraction: float, shown: str) -> None:
     assert formats.format_percent(fraction) == shown

@@ -39,7 +39,7 @@ def figures(snapshot: Snapshot, units: DisplayUnits = DisplayUnits.PROGRAM) -> s
     return found.values_text
 
 
-def test_line_tool_part_time_and_cause_stand_in_one_row() -> None:
+def test_interrupted_row_shows_line_tool_part_time_and_cause() -> None:
     now = datetime.now().astimezone().replace(hour=12, minute=30).isoformat()  # today, where the desk stands
     found = interrupted_notice.make_interrupted_notice(
         replace(STOOD, interrupted=broken_off(at=now)), LoadedProgram(), DisplayUnits.PROGRAM
@@ -59,12 +59,12 @@ def test_line_tool_part_time_and_cause_stand_in_one_row() -> None:
     )
 
 
-def test_yesterdays_job_has_its_date() -> None:
+def test_interruption_on_another_day_is_shown_with_its_date() -> None:
     assert format_wall_time("2026-05-04T09:30:00Z").startswith("2026-05-0")
     assert format_wall_time("half past nine") == "half past nine"
 
 
-def test_where_it_stood_and_where_it_stands_now() -> None:
+def test_interrupted_and_present_positions_are_shown() -> None:
     assert figures(STOOD) == text("desk.stands-at", stood="X R0.37500 Z −2.30000")
     moved = replace(STOOD, actual=(25.4, -58.42, 0.0))
     assert figures(moved) == text(
@@ -75,7 +75,7 @@ def test_where_it_stood_and_where_it_stands_now() -> None:
     assert figures(STOOD, DisplayUnits.METRIC) == text("desk.stands-at", stood="X R9.5250 Z −58.4200")
 
 
-def test_after_a_power_cut_it_says_what_nobody_knows() -> None:
+def test_position_is_marked_as_uncertain_after_a_power_failure() -> None:
     cut = replace(STOOD, interrupted=broken_off(why=POWER_LOST_REASON))
     assert figures(cut).startswith(
         text("desk.stands-at", stood="X R0.37500 Z −2.30000") + text("desk.not-certain")
@@ -83,7 +83,7 @@ def test_after_a_power_cut_it_says_what_nobody_knows() -> None:
     assert not shows(figures(STOOD), "desk.not-certain")  # an E-stop is noted where the tool has come to rest
 
 
-def test_without_a_home_nobody_knows_where_it_stands() -> None:
+def test_unhomed_axis_has_a_lost_interrupted_position() -> None:
     lost = replace(STOOD, homed=(True, False, True), actual=(9.525, 0.0, 0.0))
     assert figures(lost) == (text("desk.stood-position-lost", stood="X R0.37500 Z −2.30000"))
 
@@ -97,7 +97,7 @@ def test_without_a_home_nobody_knows_where_it_stands() -> None:
         replace(STOOD, starts=StartAction.MDI_LINE),
     ],
 )
-def test_where_the_next_start_begins_something_else_it_is_not_asked_for(other: Snapshot) -> None:
+def test_interrupted_prompt_appears_only_if_next_start_runs_that_job(other: Snapshot) -> None:
     assert begins(
         interrupted_notice.make_interrupted_prompt(STOOD, LoadedProgram(), "PRESS"),
         "desk.was-interrupted",
@@ -110,7 +110,7 @@ def test_where_the_next_start_begins_something_else_it_is_not_asked_for(other: S
     assert interrupted_notice.make_interrupted_prompt(other, LoadedProgram(), "PRESS") == ""
 
 
-def test_where_searchto_does_not_read_the_language_it_is_not_offered() -> None:
+def test_searchto_is_not_offered_for_a_language_it_does_not_support() -> None:
     loaded = LoadedProgram(source=ProgramSource("PIN.NC", "G0 X10\n", Dialect.SINUMERIK))
     assert interrupted_notice.make_interrupted_prompt(STOOD, loaded, "PRESS") == (
         text("desk.was-interrupted-jog-clear", line=8)
@@ -147,13 +147,13 @@ def posted(desk: Desk) -> list[object]:
     return list(desk.desk_control.station_panel.posted)
 
 
-def test_y_answers_for_the_job_that_is_shown(desk: Desk) -> None:
+def test_y_key_confirms_the_interrupted_job_shown(desk: Desk) -> None:
     desk.confirm_question()
     assert posted(desk) == [ConfirmStart(broken_off().at)]
     desk.close()
 
 
-def test_y_means_nothing_where_no_cycle_is_started(desk: Desk) -> None:
+def test_y_key_is_rejected_on_a_page_without_cycle_start(desk: Desk) -> None:
     desk.window_state.set_page(can_start=False)
     desk.confirm_question()
     assert posted(desk) == []
@@ -161,7 +161,7 @@ def test_y_means_nothing_where_no_cycle_is_started(desk: Desk) -> None:
     desk.close()
 
 
-def test_another_program_is_asked_for_and_loaded_by_y_alone(desk: Desk) -> None:
+def test_loading_another_program_than_the_interrupted_needs_y(desk: Desk) -> None:
     loads = desk.program_loader.load_count
     assert desk.program_choice.load_by_name("OTHER.NC")
     assert desk.program_loader.load_count == loads
@@ -176,7 +176,7 @@ def test_another_program_is_asked_for_and_loaded_by_y_alone(desk: Desk) -> None:
     desk.close()
 
 
-def test_another_key_takes_the_question_back(desk: Desk) -> None:
+def test_escape_cancels_the_question(desk: Desk) -> None:
     assert desk.program_choice.load_by_name("OTHER.NC")
     assert desk.handle_escape()
     desk.confirm_question()
@@ -185,7 +185,7 @@ def test_another_key_takes_the_question_back(desk: Desk) -> None:
     desk.close()
 
 
-def test_an_answer_covers_no_question(desk: Desk) -> None:
+def test_message_does_not_replace_an_open_question(desk: Desk) -> None:
     assert desk.program_choice.load_by_name("OTHER.NC")
     has_been_read(desk)
     desk.say("NOT KEPT: the disk is full")
@@ -199,9 +199,7 @@ def test_an_answer_covers_no_question(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("question", ["rename", "delete"])
-def test_the_interrupted_program_keeps_its_name_and_its_file(
-    desk: Desk, question: str, tmp_path: Path
-) -> None:
+def test_interrupted_program_cannot_be_renamed_or_deleted(desk: Desk, question: str, tmp_path: Path) -> None:
     files = desk.page_registry.find_model(ProgramListModel)
     assert files is not None
     files.on_open()
@@ -218,28 +216,28 @@ def test_the_interrupted_program_keeps_its_name_and_its_file(
     desk.close()
 
 
-def test_the_same_program_is_read_again_without_a_question(desk: Desk) -> None:
+def test_interrupted_program_is_reloaded_without_a_question(desk: Desk) -> None:
     loads = desk.program_loader.load_count
     assert desk.program_choice.load_by_name("PIN.NC")
     assert desk.program_loader.load_count == loads + 1
     desk.close()
 
 
-def test_at_the_start_the_interrupted_program_goes_before_the_one_of_the_command_line(desk: Desk) -> None:
+def test_interrupted_program_is_loaded_instead_of_the_command_line_program(desk: Desk) -> None:
     load_first_program(desk, "OTHER.NC")
     assert desk.program_loader.wait_until_loaded(20).name == "PIN.NC"
     assert desk.prompt_notice == text("desk.not-loaded-interrupted", name="OTHER.NC")
     desk.close()
 
 
-def test_at_the_start_an_interrupted_program_that_is_not_there_is_told(desk: Desk, tmp_path: Path) -> None:
+def test_missing_interrupted_program_is_reported_at_startup(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "PIN.NC").unlink()
     load_first_program(desk, None)
     assert desk.prompt_notice == text("desk.interrupted-not-in-folder", name="PIN.NC")
     desk.close()
 
 
-def test_closing_with_something_unwritten_says_so_and_means_it_only_later(desk: Desk) -> None:
+def test_closing_with_unsaved_data_warns_first_and_closes_on_repeat(desk: Desk) -> None:
     closed: list[bool] = []
     assert desk.can_close(lambda: closed.append(True))
     desk.storage_state.set_store_readers(read_unsaved=lambda: "20 parts, 61 events")

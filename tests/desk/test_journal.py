@@ -35,7 +35,7 @@ def journal(tmp_path: Path) -> Iterator[Journal]:
     journal.close()
 
 
-def test_the_journal_keeps_all_that_there_is_to_keep() -> None:
+def test_journal_implements_all_persistence_members() -> None:
     offered = (
         name for name, what in vars(Persistence).items() if callable(what) or isinstance(what, property)
     )
@@ -44,7 +44,7 @@ def test_the_journal_keeps_all_that_there_is_to_keep() -> None:
     assert asked <= vars(Journal).keys()
 
 
-def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Path) -> None:
+def test_invalid_backup_leaves_the_store_unchanged(journal: Journal, tmp_path: Path) -> None:
     bad = tmp_path / "bad.db"
     bad.write_bytes(b"no database" * 50)
     journal.hear(LogEvent(0.0, "start", "before"))
@@ -72,7 +72,7 @@ def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal
     assert book.changes == 1
 
 
-def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal, tmp_path: Path) -> None:
+def test_restore_neither_adds_nor_removes_an_interrupted_job(journal: Journal, tmp_path: Path) -> None:
     """Whose tool stands in a part is of this machine and of now."""
     journal.note(broken_off(line=3))
     journal.save_version("pin.nc", b"M30", "so that all is written")
@@ -92,7 +92,7 @@ def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal
     last.close()
 
 
-def test_a_job_that_cannot_be_read_is_none(journal: Journal, tmp_path: Path) -> None:
+def test_unreadable_interrupted_job_is_ignored(journal: Journal, tmp_path: Path) -> None:
     journal.save_setting(INTERRUPTED_JOB_KEY, {"line": "eight"})
     journal.close()
     again = Journal(tmp_path / "home")
@@ -100,7 +100,7 @@ def test_a_job_that_cannot_be_read_is_none(journal: Journal, tmp_path: Path) -> 
     again.close()
 
 
-def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> None:
+def test_backup_and_restore_are_refused_without_a_store(tmp_path: Path) -> None:
     (tmp_path / "home").write_text("a file where the folder should be")
     journal = Journal(tmp_path / "home")
     assert journal.write_error
@@ -123,7 +123,7 @@ def part(number: int, confirmed: list[int], control: str = "control") -> tuple[L
     return LogEvent(float(number), "part", f"part {number}"), receipt
 
 
-def test_an_event_is_confirmed_when_it_is_on_the_disk(journal: Journal, tmp_path: Path) -> None:
+def test_event_is_confirmed_when_it_is_on_disk(journal: Journal, tmp_path: Path) -> None:
     confirmed = list[int]()
     journal.hear(LogEvent(0.0, "load", "pin.nc"))
     with sqlite3.connect(tmp_path / "home" / STORE_FILE_NAME, timeout=30.0) as other:
@@ -161,7 +161,7 @@ def test_an_event_that_an_earlier_screen_has_stored_is_not_counted_again(
         assert store.runs.read_part_count("pin.nc") == 3
 
 
-def test_the_events_of_another_control_have_their_own_numbers(journal: Journal, tmp_path: Path) -> None:
+def test_events_of_another_control_are_numbered_separately(journal: Journal, tmp_path: Path) -> None:
     journal.hear(LogEvent(0.0, "load", "pin.nc"))
     journal.hear(*part(7, []))
     journal.close()
@@ -181,7 +181,7 @@ def test_events_without_a_store_are_not_confirmed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("value", [3, ["a"], ["a", "b"], [1, 2], {"a": 1}])
-def test_a_damaged_origin_is_none(journal: Journal, tmp_path: Path, value: object) -> None:
+def test_damaged_event_origin_is_ignored(journal: Journal, tmp_path: Path, value: object) -> None:
     journal.save_setting(LAST_ORIGIN_KEY, value)
     journal.close()
     again = Journal(tmp_path / "home")
@@ -218,7 +218,7 @@ def raising(error: StoreError) -> Callable[[object], NoReturn]:
     return refuse
 
 
-def test_offsets_are_changed_as_soon_as_the_store_is_there(away: Journal) -> None:
+def test_offsets_can_be_changed_when_the_store_becomes_available(away: Journal) -> None:
     book, parts = away.book(), away.create_parts_book()
     assert shows(
         book.change_fields(OffsetKind.TOOL, 3, {"x": 2.0}, "test"),
@@ -239,7 +239,7 @@ def test_offsets_are_changed_as_soon_as_the_store_is_there(away: Journal) -> Non
     parts.worker.close()
 
 
-def test_a_store_that_stays_away_changes_nothing(away: Journal, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unavailable_store_rejects_changes(away: Journal, monkeypatch: pytest.MonkeyPatch) -> None:
     book, parts = away.book(), away.create_parts_book()
     locked = StoreErrorCause.LOCKED.make_error(Path("turndesk.db"), "")
     monkeypatch.setattr("core.store.store.open_for_writing", raising(locked))
@@ -252,7 +252,7 @@ def test_a_store_that_stays_away_changes_nothing(away: Journal, monkeypatch: pyt
     parts.worker.close()
 
 
-def test_an_interrupted_job_is_still_one_when_its_store_comes_late(away: Journal, tmp_path: Path) -> None:
+def test_interrupted_job_is_found_when_its_store_opens_late(away: Journal, tmp_path: Path) -> None:
     """The tool stands in that part, whatever the disk was at the start."""
     told: list[object] = []
     away.on_late_open(lambda: told.append(away.left))
@@ -267,7 +267,7 @@ def test_an_interrupted_job_is_still_one_when_its_store_comes_late(away: Journal
     again.close()
 
 
-def test_what_this_control_has_begun_counts_more(away: Journal, tmp_path: Path) -> None:
+def test_job_interrupted_meanwhile_overrides_the_one_in_a_late_store(away: Journal, tmp_path: Path) -> None:
     away.note(broken_off(line=3))
     away._reopen()
     assert away.left is None
@@ -280,7 +280,7 @@ def test_what_this_control_has_begun_counts_more(away: Journal, tmp_path: Path) 
 # --- a store that opened at the start and could not be read ------------------------------------------------
 
 
-def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
+def test_store_unreadable_at_startup_is_opened_by_a_later_retry(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The first try had opened it: its lock must be free again, and what happened meanwhile is written."""
@@ -347,7 +347,7 @@ def test_offsets_of_a_machine_without_a_store_are_unset(tmp_path: Path) -> None:
     journal.close()
 
 
-def test_what_a_second_instance_cannot_keep_names_the_first(tmp_path: Path) -> None:
+def test_unsaved_change_in_a_second_instance_names_the_first(tmp_path: Path) -> None:
     """It said that there was no room."""
     first = Journal(tmp_path / "home")
     second = Journal(tmp_path / "home")

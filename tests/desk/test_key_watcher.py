@@ -76,13 +76,13 @@ MOVING = FocusRecord(frozenset({OURS}), is_esc_stop_key=True)
 
 
 @pytest.mark.parametrize(("code", "kind"), [(PAUSE, StopKind.HOLD), (SCROLL_LOCK, StopKind.ESTOP)])
-def test_a_stop_key_is_sent_with_its_press(bench: Bench, code: int, kind: StopKind) -> None:
+def test_stop_key_press_is_sent_with_its_press_number(bench: Bench, code: int, kind: StopKind) -> None:
     bench.show(HERE)
     bench.watcher.handle_press(RawKey(code, 5000))
     assert bench.sent() == [StopPress(kind, make_press_number(code, 5000))]
 
 
-def test_every_press_is_another(bench: Bench) -> None:
+def test_each_press_has_a_different_number(bench: Bench) -> None:
     bench.show(HERE)
     for stamp in (5000, 5100):
         bench.watcher.handle_press(RawKey(PAUSE, stamp))
@@ -98,7 +98,7 @@ def test_no_other_key_is_sent(bench: Bench, code: int) -> None:
 
 
 @pytest.mark.parametrize("front", [OTHER, 0, 1])
-def test_nothing_is_sent_while_another_program_has_the_keyboard(bench: Bench, front: int) -> None:
+def test_stop_key_is_not_sent_while_another_program_has_the_keyboard(bench: Bench, front: int) -> None:
     bench.show(MOVING)
     bench.keys.front = front
     for code in (PAUSE, SCROLL_LOCK, ESC):
@@ -106,12 +106,12 @@ def test_nothing_is_sent_while_another_program_has_the_keyboard(bench: Bench, fr
     assert bench.sent() == []
 
 
-def test_nothing_is_sent_before_there_is_a_window(bench: Bench) -> None:
+def test_stop_key_is_not_sent_before_the_window_opens(bench: Bench) -> None:
     bench.watcher.handle_press(RawKey(PAUSE, 5000))
     assert bench.sent() == []
 
 
-def test_esc_is_sent_where_it_holds_by_the_layout_of_now(bench: Bench) -> None:
+def test_esc_is_sent_only_with_motion_and_the_current_keyboard_layout(bench: Bench) -> None:
     bench.show(MOVING)
     bench.watcher.handle_press(RawKey(ESC, 5000))
     assert [each.kind for each in bench.sent()] == [StopKind.ESC]
@@ -120,19 +120,19 @@ def test_esc_is_sent_where_it_holds_by_the_layout_of_now(bench: Bench) -> None:
     assert bench.sent() == []
 
 
-def test_the_end_of_the_screen_ends_it(bench: Bench) -> None:
+def test_key_watcher_ends_when_the_screen_closes(bench: Bench) -> None:
     bench.screen.close()
     assert not bench.watcher.read_focus()
 
 
-def test_a_screen_that_ends_without_reading_all_ends_it_too(bench: Bench) -> None:
+def test_key_watcher_ends_if_the_screen_closes_with_unread_data(bench: Bench) -> None:
     bench.show(HERE)
     bench.watcher.handle_press(RawKey(PAUSE, 5000))
     bench.screen.close()
     assert not bench.watcher.read_focus()
 
 
-def test_a_control_that_has_ended_is_no_end_of_the_watcher(bench: Bench) -> None:
+def test_key_watcher_continues_after_the_control_has_ended(bench: Bench) -> None:
     bench.show(HERE)
     bench.control.close()
     bench.watcher.handle_press(RawKey(PAUSE, 5000))
@@ -140,18 +140,18 @@ def test_a_control_that_has_ended_is_no_end_of_the_watcher(bench: Bench) -> None
 
 
 @pytest.mark.parametrize("record", [b"", b"1", bytes(8), bytes(10), b"\x09" + bytes(8)])
-def test_a_record_that_is_no_stop_is_rejected(record: bytes) -> None:
+def test_invalid_stop_record_is_rejected(record: bytes) -> None:
     with pytest.raises(ValueError, match="not a"):
         StopPress.from_bytes(record)
 
 
 @pytest.mark.parametrize("record", [b"", b"12", bytes(4)])
-def test_a_record_that_is_no_focus_is_rejected(record: bytes) -> None:
+def test_invalid_focus_record_is_rejected(record: bytes) -> None:
     with pytest.raises(ValueError, match="not a"):
         FocusRecord.from_bytes(record)
 
 
-def test_records_are_read_as_they_were_written() -> None:
+def test_records_are_decoded_as_they_were_encoded() -> None:
     focus, stop = (
         FocusRecord(frozenset({OURS, OTHER}), is_esc_stop_key=True),
         StopPress(StopKind.ESC, make_press_number(9, 2**32 - 1)),
@@ -160,5 +160,5 @@ def test_records_are_read_as_they_were_written() -> None:
     assert StopPress.from_bytes(stop.to_bytes()) == stop
 
 
-def test_an_event_without_a_stamp_has_no_number() -> None:
+def test_key_event_without_a_timestamp_has_press_number_zero() -> None:
     assert make_press_number(PAUSE, 0) == 0

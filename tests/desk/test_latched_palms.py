@@ -35,7 +35,7 @@ class Bench:
         )
 
 
-def test_one_after_the_other_presses_both_at_once_and_lets_both_go() -> None:
+def test_latching_second_palm_presses_and_releases_both() -> None:
     bench = Bench()
     hands = bench.hands()
     hands.latch("left")
@@ -49,7 +49,7 @@ def test_one_after_the_other_presses_both_at_once_and_lets_both_go() -> None:
     assert not hands.update_latched_side()
 
 
-def test_a_latched_palm_waits_only_for_a_while_and_the_same_again_lets_it_go() -> None:
+def test_latched_palm_times_out_and_second_tap_releases_it() -> None:
     bench = Bench()
     hands = bench.hands()
     hands.latch("left")
@@ -60,7 +60,7 @@ def test_a_latched_palm_waits_only_for_a_while_and_the_same_again_lets_it_go() -
     assert (bench.pressed, hands.update_latched_side()) == ([], "")
 
 
-def test_nothing_starts_while_it_is_barred_or_after_hands_off() -> None:
+def test_latched_palms_do_nothing_while_barred_or_after_release_all() -> None:
     bench = Bench(barred="NO START: THE PROGRAM IS BEING READ ANEW")
     hands = bench.hands()
     hands.latch("left")

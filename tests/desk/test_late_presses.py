@@ -31,13 +31,13 @@ def every_command() -> set[type[Command]]:
     return {each for each in named if isinstance(each, type) and issubclass(each, Command)} - {Command}
 
 
-def test_every_command_is_either_one_that_starts_or_one_that_does_not() -> None:
+def test_every_command_is_classified_as_starting_or_harmless() -> None:
     assert STARTING_COMMANDS.keys() | HARMLESS_COMMANDS == every_command()
     assert not STARTING_COMMANDS.keys() & HARMLESS_COMMANDS
     assert set(STARTS_OF_CONTROL) <= STARTING_COMMANDS.keys()
 
 
-def test_every_name_is_another() -> None:
+def test_every_starting_action_has_a_unique_name() -> None:
     assert len({name_starting_action(each) for each in StartingAction}) == len(StartingAction)
 
 
@@ -100,7 +100,7 @@ def test_a_late_press_starts_nothing(command: Command, starting: StartingAction)
 
 
 @pytest.mark.parametrize(("command", "starting"), STARTING)
-def test_a_press_in_time_starts_it(command: Command, starting: StartingAction) -> None:
+def test_press_in_time_starts_the_action(command: Command, starting: StartingAction) -> None:
     bench = Bench()
     bench.post(command)
     assert bench.posted == [command]
@@ -109,7 +109,7 @@ def test_a_press_in_time_starts_it(command: Command, starting: StartingAction) -
 
 
 @pytest.mark.parametrize("command", NOT_STARTING)
-def test_what_starts_nothing_is_posted_however_late(command: Command) -> None:
+def test_late_command_that_starts_nothing_is_posted(command: Command) -> None:
     bench = Bench()
     bench.late.is_late = True
     bench.post(command)
@@ -124,14 +124,14 @@ def test_a_late_reset_acknowledges_no_alarm() -> None:
     assert bench.posted == []
 
 
-def test_a_late_override_from_zero_moves_nothing() -> None:
+def test_late_override_from_zero_is_not_posted() -> None:
     bench = Bench(shown=Snapshot(state=MachineState.RUN, feed_override=0.0))
     bench.late.is_late = True
     bench.post(commands.SetFeedOverride(0.1))
     assert bench.posted == []
 
 
-def test_one_message_names_all_that_was_dropped_once() -> None:
+def test_one_message_names_all_discarded_late_presses() -> None:
     bench = Bench()
     bench.late.is_late = True
     for command in (commands.EnableDrives(), commands.CycleStart(), commands.CycleStart()):
@@ -145,7 +145,7 @@ def test_one_message_names_all_that_was_dropped_once() -> None:
     assert bench.told[-1] == (name_starting_action(StartingAction.HOME),)
 
 
-def test_an_answer_that_is_dropped_is_noted_and_nothing_else_is() -> None:
+def test_only_a_discarded_confirmation_is_recorded_as_a_late_answer() -> None:
     bench = Bench()
     bench.late.is_late = True
     assert bench.late.refuse_late_press(StartingAction.CYCLE)
@@ -154,7 +154,7 @@ def test_an_answer_that_is_dropped_is_noted_and_nothing_else_is() -> None:
     assert bench.answers == 1
 
 
-def test_what_is_renewed_once_a_frame_is_not_the_press() -> None:
+def test_jog_renewal_is_exempt_from_the_late_press_check() -> None:
     bench = Bench()
     bench.late.is_late = True
     with bench.late.suspend_check():
@@ -184,7 +184,7 @@ def hands_on(bench: Bench, pressed: list[str]) -> StationControls:
     return hands
 
 
-def test_late_palms_press_nothing_and_one_that_stays_down_is_no_half_of_a_pair() -> None:
+def test_late_palm_press_is_ignored_even_if_it_remains_down() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
     bench.late.is_late = True
@@ -194,7 +194,7 @@ def test_late_palms_press_nothing_and_one_that_stays_down_is_no_half_of_a_pair()
     assert pressed == ["press_right"]
 
 
-def test_a_late_tap_latches_no_palm() -> None:
+def test_late_tap_does_not_latch_a_palm_button() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
     bench.late.is_late = True
@@ -213,7 +213,7 @@ def test_a_late_press_turns_the_spindle_switch_off_only(auto: bool, done: list[s
     assert pressed == done
 
 
-def test_a_late_press_hits_the_mushroom_and_frees_it_not() -> None:
+def test_late_press_can_press_estop_but_not_release_it() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
     bench.late.is_late = True
@@ -224,7 +224,7 @@ def test_a_late_press_hits_the_mushroom_and_frees_it_not() -> None:
 
 
 @pytest.mark.parametrize("which", ["spindle_pot", "feed_pot"])
-def test_a_pot_at_zero_stays_there_and_any_other_turns(which: str) -> None:
+def test_late_pot_change_from_zero_is_ignored_and_others_apply(which: str) -> None:
     bench = Bench()
     pot = getattr(hands_on(bench, []), which)
     bench.late.is_late = True
@@ -240,7 +240,7 @@ def test_a_pot_at_zero_stays_there_and_any_other_turns(which: str) -> None:
 # --- two presses before the next snapshot -------------------------------------------------------------------
 
 
-def test_a_switch_pressed_twice_at_once_is_as_it_was() -> None:
+def test_switch_pressed_twice_before_the_update_returns_to_its_state() -> None:
     now = [5.0]
     posted = PostedValues(lambda: now[0])
     assert posted.toggle_value("single_block", False)
@@ -249,7 +249,7 @@ def test_a_switch_pressed_twice_at_once_is_as_it_was() -> None:
     assert posted.toggle_value("single_block", False)
 
 
-def test_an_override_turned_twice_at_once_turns_by_two_steps() -> None:
+def test_override_changed_twice_before_the_update_moves_two_steps() -> None:
     posted = PostedValues(lambda: 5.0)
     assert posted.change_value("feed", 1.0, lambda value: value - 0.25) == 0.75
     assert posted.change_value("feed", 1.0, lambda value: value - 0.25) == 0.5

@@ -51,7 +51,7 @@ class Slow:
         return "slow"
 
 
-def test_an_answer_is_given_by_the_poll_of_whoever_asked(worker: LatestRequestWorker) -> None:
+def test_result_is_delivered_by_the_poll_of_the_requester(worker: LatestRequestWorker) -> None:
     heard, threads = Heard(), []
 
     def done(name: str) -> None:
@@ -67,7 +67,7 @@ def test_an_answer_is_given_by_the_poll_of_whoever_asked(worker: LatestRequestWo
     assert len(threads) == 2
 
 
-def test_the_newest_request_gives_up_the_one_in_hand(worker: LatestRequestWorker) -> None:
+def test_newer_request_cancels_the_running_one(worker: LatestRequestWorker) -> None:
     heard, slow = Heard(), Slow()
     worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
@@ -77,7 +77,7 @@ def test_the_newest_request_gives_up_the_one_in_hand(worker: LatestRequestWorker
     assert (heard.answers, heard.failures) == (["new"], [])
 
 
-def test_an_answer_that_nobody_took_up_goes_with_its_request(worker: LatestRequestWorker) -> None:
+def test_undelivered_result_is_dropped_by_a_newer_request(worker: LatestRequestWorker) -> None:
     heard, ready = Heard(), threading.Event()
     worker.request_work(lambda _watch: ready.set(), heard.done, heard.failed)
     assert ready.wait(LIMIT)
@@ -86,7 +86,7 @@ def test_an_answer_that_nobody_took_up_goes_with_its_request(worker: LatestReque
     assert heard.answers == ["new"]
 
 
-def test_work_that_never_looks_up_is_not_answered_once_it_is_overtaken(worker: LatestRequestWorker) -> None:
+def test_canceled_work_that_ignores_cancellation_delivers_no_result(worker: LatestRequestWorker) -> None:
     heard, begun, go = Heard(), threading.Event(), threading.Event()
 
     def deaf(_watch: ProgressCallback) -> str:
@@ -104,7 +104,7 @@ def test_work_that_never_looks_up_is_not_answered_once_it_is_overtaken(worker: L
     assert heard.answers == ["new"]
 
 
-def test_what_is_queued_is_done_in_its_turn_and_never_given_up(worker: LatestRequestWorker) -> None:
+def test_queued_work_runs_in_order_and_is_never_canceled(worker: LatestRequestWorker) -> None:
     heard, slow = Heard(), Slow()
     worker.request_work(slow, heard.done, heard.failed)
     worker.enqueue_work(lambda: 1, heard.done, heard.failed)
@@ -123,7 +123,7 @@ def test_what_is_queued_is_done_in_its_turn_and_never_given_up(worker: LatestReq
         (SystemExit(), "SystemExit"),
     ],
 )
-def test_a_failure_is_a_sentence_and_the_next_request_is_worked_at(
+def test_failed_request_reports_an_error_and_the_next_one_runs(
     worker: LatestRequestWorker, error: BaseException, told: str
 ) -> None:
     heard = Heard()
@@ -142,7 +142,7 @@ def test_a_failure_is_a_sentence_and_the_next_request_is_worked_at(
 @pytest.mark.parametrize(
     ("error", "logged"), [(KeyError("x"), 1), (ValueError("no number"), 0), (OSError(28, "full"), 0)]
 )
-def test_of_a_defect_the_traceback_is_logged(
+def test_unexpected_exception_is_logged_with_its_traceback(
     worker: LatestRequestWorker, caplog: pytest.LogCaptureFixture, error: Exception, logged: int
 ) -> None:
     heard = Heard()
@@ -156,7 +156,7 @@ def test_of_a_defect_the_traceback_is_logged(
     assert len(heard.failures) == 1
 
 
-def test_an_answer_may_ask_again(worker: LatestRequestWorker) -> None:
+def test_result_callback_may_make_a_new_request(worker: LatestRequestWorker) -> None:
     heard = Heard()
 
     def again(answer: int) -> None:
@@ -169,7 +169,7 @@ def test_an_answer_may_ask_again(worker: LatestRequestWorker) -> None:
     assert heard.answers == [1, 2, 3]
 
 
-def test_how_far_it_has_come_is_that_of_the_work_in_hand(worker: LatestRequestWorker) -> None:
+def test_progress_is_that_of_the_running_request(worker: LatestRequestWorker) -> None:
     slow, heard = Slow(), Heard()
     worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
@@ -178,7 +178,7 @@ def test_how_far_it_has_come_is_that_of_the_work_in_hand(worker: LatestRequestWo
     assert worker.progress == 0
 
 
-def test_what_is_published_on_the_way_is_that_of_the_newest_request_alone(
+def test_intermediate_results_come_only_from_the_newest_request(
     worker: LatestRequestWorker,
 ) -> None:
     seen: list[str] = []
@@ -201,7 +201,7 @@ def test_what_is_published_on_the_way_is_that_of_the_newest_request_alone(
     assert (seen, heard.answers) == (["new"], ["new"])
 
 
-def test_closing_gives_up_what_was_asked_and_finishes_what_was_queued() -> None:
+def test_closing_cancels_requests_and_finishes_queued_work() -> None:
     worker, slow, heard, written = LatestRequestWorker("tried"), Slow(), Heard(), []
     worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
@@ -215,7 +215,7 @@ def test_closing_gives_up_what_was_asked_and_finishes_what_was_queued() -> None:
     assert not [t for t in threading.enumerate() if t.name.startswith("tried")]
 
 
-def test_a_request_with_patience_behind_it_may_come_to_its_end() -> None:
+def test_request_within_its_grace_time_may_finish() -> None:
     t = [0.0]
     worker, heard = LatestRequestWorker("typed", grace_time_s=1.0, read_time_s=lambda: t[0]), Heard()
     slow, slower = Slow(), Slow()
@@ -232,7 +232,7 @@ def test_a_request_with_patience_behind_it_may_come_to_its_end() -> None:
     worker.close()
 
 
-def test_keys_are_waited_for_but_not_for_ever() -> None:
+def test_worker_waits_for_a_pause_in_requests_up_to_a_limit() -> None:
     heard = Heard()
     worker = LatestRequestWorker("typed", quiet_time_s=60.0, max_delay_s=0.02)
     for number in range(20):

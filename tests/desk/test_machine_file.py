@@ -83,9 +83,7 @@ def room(file: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
         journal.close()
 
 
-def test_a_file_that_is_new_here_is_accepted_by_being_chosen(
-    file: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_new_machine_file_is_accepted_without_a_question(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for _ in range(2):
         with room(file, monkeypatch) as made:
             assert made.desk.changes.barred == ""
@@ -96,7 +94,7 @@ def test_a_file_that_is_new_here_is_accepted_by_being_chosen(
             assert made.state is MachineState.IDLE
 
 
-def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
+def test_changed_machine_file_bars_drives_until_it_is_accepted(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with room(file, monkeypatch):
@@ -128,7 +126,7 @@ def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
         assert made.desk.changes.barred == ""
 
 
-def test_what_was_not_accepted_is_asked_again_at_the_next_start(
+def test_unaccepted_change_is_asked_again_at_the_next_start(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with room(file, monkeypatch):
@@ -142,7 +140,7 @@ def test_what_was_not_accepted_is_asked_again_at_the_next_start(
         assert made.desk.changes.barred == ""
 
 
-def test_the_changes_and_their_acceptance_are_in_the_log(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_machine_file_changes_and_acceptance_are_logged(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with room(file, monkeypatch):
         pass
     file.write_text(SHIPPED.replace("seed = 1", "seed = 2"))
@@ -163,7 +161,7 @@ def bus_machine(tmp_path: Path) -> Machine:
     return load_machine(path)
 
 
-def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: Path) -> None:
+def test_changed_drive_settings_count_as_a_machine_file_change(tmp_path: Path) -> None:
     machine, kept = bus_machine(tmp_path), Persistence()
     record = create_record(machine)
     drives = record["drives"]
@@ -178,7 +176,7 @@ def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: 
 
 
 @pytest.mark.parametrize("damaged", [None, 3, {}, {"text": 5}])
-def test_a_record_that_is_none_counts_as_a_first_start(tmp_path: Path, damaged: object) -> None:
+def test_damaged_machine_file_record_is_treated_as_a_first_start(tmp_path: Path, damaged: object) -> None:
     machine, kept = bus_machine(tmp_path), Persistence()
     kept.save_setting(get_settings_key(machine), damaged)
     assert list_differences(machine, kept) is None

@@ -35,7 +35,7 @@ def shown(snapshot: Snapshot, readout: ReadoutKind = ReadoutKind.POSITION) -> li
     ]
 
 
-def test_radius_in_inch() -> None:
+def test_inch_readout_shows_radius_position_and_distance_to_go() -> None:
     assert shown(AT) == [
         ("R", "0.50000", "0.25000"),
         ("", "−1.00000", "−0.25000"),
@@ -43,13 +43,13 @@ def test_radius_in_inch() -> None:
     ]
 
 
-def test_a_diameter_doubles_position_and_distance_to_go_of_x_alone() -> None:
+def test_diameter_mode_doubles_only_x_position_and_distance_to_go() -> None:
     diameter = replace(AT, modal=ModalState(diameter=True))
     assert shown(diameter)[0] == ("Ø", "1.00000", "0.50000")
     assert shown(diameter)[1] == shown(AT)[1]
 
 
-def test_metric_has_four_places_and_says_so() -> None:
+def test_metric_readout_has_four_decimals_and_its_unit() -> None:
     metric = replace(AT, modal=ModalState(metric=True))
     assert shown(metric)[0] == ("R", "12.7000", "6.3500")
     assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).position.unit == "MM"
@@ -58,19 +58,19 @@ def test_metric_has_four_places_and_says_so() -> None:
 @pytest.mark.parametrize(
     ("readout", "x"), [(ReadoutKind.POSITION, 0.5), (ReadoutKind.TO_GO, 0.25), (ReadoutKind.HOME, 1.5)]
 )
-def test_three_readouts(readout: ReadoutKind, x: float) -> None:
+def test_readout_kind_selects_the_coordinates(readout: ReadoutKind, x: float) -> None:
     assert find_coordinates(AT, readout)[0] == pytest.approx(x * INCH)
 
 
-def test_nothing_to_go_outside_a_block() -> None:
+def test_distance_to_go_is_zero_outside_a_block() -> None:
     assert find_coordinates(replace(AT, block=0), ReadoutKind.TO_GO) == (0.0, 0.0, 0.0)
 
 
-def test_readouts_come_round() -> None:
+def test_readout_kinds_cycle_back_to_the_first() -> None:
     assert ReadoutKind.POSITION.next_kind.next_kind.next_kind is ReadoutKind.POSITION
 
 
-def test_beside_distance_to_go_stands_the_position() -> None:
+def test_distance_to_go_readout_also_shows_the_position() -> None:
     assert make_status(AT, ReadoutKind.TO_GO, has_c_axis=True).position.second_kind is ReadoutKind.POSITION
 
 
@@ -86,7 +86,7 @@ def test_tiny_negative_positions_have_no_sign() -> None:
     assert [row[1] for row in shown(near)] == ["0.00000", "0.00000", "0.00"]
 
 
-def test_feed_per_revolution_is_measured_against_the_spindle() -> None:
+def test_measured_feed_per_revolution_uses_the_spindle_speed() -> None:
     # .005 in/rev at 1200 rpm = 20 rev/s: 2.54 mm/s
     modal = ModalState(per_rev=True)
     view = make_status(
@@ -99,14 +99,14 @@ def test_feed_per_revolution_is_measured_against_the_spindle() -> None:
     )
 
 
-def test_feed_per_revolution_of_a_standing_spindle_is_not_a_number() -> None:
+def test_feed_per_revolution_with_a_stopped_spindle_is_a_dash() -> None:
     view = make_status(
         replace(AT, modal=ModalState(per_rev=True), feed=0.127, velocity=0.0), ReadoutKind.POSITION, True
     )
     assert view.feed.measured_value == "—"
 
 
-def test_a_rapid_is_told_per_minute_even_under_g95() -> None:
+def test_rapid_is_shown_per_minute_even_in_g95() -> None:
     view = make_status(
         replace(AT, modal=ModalState(per_rev=True), rapid=True, velocity=127.0), ReadoutKind.POSITION, True
     )
@@ -114,14 +114,14 @@ def test_a_rapid_is_told_per_minute_even_under_g95() -> None:
     assert (view.feed.measured_value, view.feed.measured_unit) == ("300.00", "in/min")
 
 
-def test_metric_feeds_carry_the_prefix() -> None:
+def test_metric_feed_is_shown_in_millimeters() -> None:
     view = make_status(
         replace(AT, modal=ModalState(metric=True), feed=2.0, velocity=1.9), ReadoutKind.POSITION, True
     )
     assert (view.feed.programmed_value, view.feed.measured_value) == ("120.0", "114.0")
 
 
-def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> None:
+def test_surface_speed_is_shown_without_sign_for_a_reversed_spindle() -> None:
     # 2 · pi · .5 in · 1000 rpm / 12 = 261.8 ft/min
     back = replace(AT, actual=(0.5 * INCH, 0.0, 0.0), rpm_command=-1000.0, rpm_actual=-1000.0)
     spindle = make_status(back, ReadoutKind.POSITION, True).spindle
@@ -130,7 +130,7 @@ def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> N
     assert (spindle.direction, spindle.commanded_rpm, spindle.measured_rpm) == ("M04 REV", "1000", "1000")
 
 
-def test_constant_surface_speed_is_named() -> None:
+def test_constant_surface_speed_mode_is_shown() -> None:
     turning = replace(AT, modal=ModalState(css=True, metric=True), rpm_command=500.0)
     spindle = make_status(turning, ReadoutKind.POSITION, True).spindle
     assert spindle.direction == "M03 FWD · G96"
@@ -147,7 +147,7 @@ def test_constant_surface_speed_is_named() -> None:
         (0.0, 400.0, text("desk.spindle-coasts"), True, True),
     ],
 )
-def test_spindle_lamp_tells_what_turns(
+def test_spindle_lamp_shows_measured_rotation(
     command: float, actual: float, word: str, lit: bool, warn: bool
 ) -> None:
     view = make_status(replace(AT, rpm_command=command, rpm_actual=actual), ReadoutKind.POSITION, True)
@@ -155,7 +155,7 @@ def test_spindle_lamp_tells_what_turns(
     assert (lamp.label, lamp.is_lit, lamp.is_warning) == (word, lit, warn)
 
 
-def test_a_spindle_that_is_held_at_an_angle_is_told_and_does_not_coast_on_its_way_there() -> None:
+def test_spindle_lamp_shows_orientation_in_progress_and_reached_angle() -> None:
     turning = make_status(replace(AT, is_orienting=True, rpm_actual=90.0), ReadoutKind.POSITION, True)
     held = make_status(replace(AT, oriented=90.0), ReadoutKind.POSITION, True)
     assert (turning.lamps[0].label, turning.lamps[0].is_warning) == (text("desk.spindle-orients"), True)
@@ -165,7 +165,7 @@ def test_a_spindle_that_is_held_at_an_angle_is_told_and_does_not_coast_on_its_wa
     assert make_status(AT, ReadoutKind.POSITION, True).spindle.direction == "M05 OFF"
 
 
-def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
+def test_lamps_show_the_outputs_instead_of_the_programmed_state() -> None:
     make_alarm = replace(AT, modal=ModalState(coolant=True, collet_closed=True), outputs=frozenset())
     words = {lamp.label: lamp.is_lit for lamp in make_status(make_alarm, ReadoutKind.POSITION, True).lamps}
     assert words["COOLANT"] is False
@@ -175,7 +175,7 @@ def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
     assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
 
 
-def test_every_state_has_a_word_and_a_tone() -> None:
+def test_every_machine_state_has_a_text_and_a_tone() -> None:
     for state in MachineState:
         view = make_status(replace(AT, state=state), ReadoutKind.POSITION, True)
         assert view.state_text == state.value
@@ -183,14 +183,14 @@ def test_every_state_has_a_word_and_a_tone() -> None:
     assert make_status(replace(AT, state=MachineState.FAULT), ReadoutKind.POSITION, True).tone is Tone.ALARM
 
 
-def test_a_wait_says_for_what() -> None:
+def test_wait_state_shows_its_condition() -> None:
     view = make_status(
         replace(AT, state=MachineState.WAIT, waiting_for="AT SPEED"), ReadoutKind.POSITION, True
     )
     assert view.state_text == text("desk.waiting", what="AT SPEED")
 
 
-def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
+def test_stop_message_is_shown_only_during_the_stop() -> None:
     stop = replace(AT, state=MachineState.PROGRAM_STOP, message="CHECK THE BORE")
     assert make_status(stop, ReadoutKind.POSITION, True).message == "CHECK THE BORE"
     assert make_status(replace(stop, message=""), ReadoutKind.POSITION, True).message == text(
@@ -199,7 +199,7 @@ def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
     assert make_status(replace(stop, state=MachineState.RUN), ReadoutKind.POSITION, True).message == ""
 
 
-def test_the_alarm_that_came_first_is_named_first() -> None:
+def test_first_alarm_is_shown_first() -> None:
     """What comes behind it follows from it more often than not."""
     first, then = (Alarm(n, "axis", f"TROUBLE {n}", "", "") for n in (101, 102))
     view = make_status(
@@ -209,7 +209,7 @@ def test_the_alarm_that_came_first_is_named_first() -> None:
     assert view.state_text == text("screen.alarm", number=101, what="TROUBLE 101")
 
 
-def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -> None:
+def test_automatic_hold_shows_its_cause_and_operator_hold_does_not() -> None:
     silent = make_alarm("station-silent", "", 4, 0.0)
     view = make_status(replace(AT, state=MachineState.HOLD, stop=silent), ReadoutKind.POSITION, True)
     assert view.stop_cause is silent
@@ -229,7 +229,7 @@ def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -
         (-350.0, 0.0, False, "−350.00", "−350.00"),
     ],
 )
-def test_c_from_0_to_under_360_or_as_it_counts(
+def test_c_position_is_shown_modulo_360_or_continuous(
     machine: float, shift: float, wraps: bool, c: str, home: str
 ) -> None:
     """With the offsets of C in the program's figure, without them in the machine's."""
@@ -238,7 +238,7 @@ def test_c_from_0_to_under_360_or_as_it_counts(
     assert shown(at, ReadoutKind.HOME)[2][1] == home
 
 
-def test_the_feed_of_c_alone_is_in_degrees() -> None:
+def test_feed_of_c_axis_alone_is_shown_in_degrees() -> None:
     alone = replace(AT, turns=True, feed=50.0, modal=ModalState(metric=True))
     feed = make_status(alone, ReadoutKind.POSITION, has_c_axis=True).feed
     assert (feed.programmed_value, feed.programmed_unit) == ("3000.0", "°/min")
@@ -247,7 +247,7 @@ def test_the_feed_of_c_alone_is_in_degrees() -> None:
     assert (feed.programmed_value, feed.programmed_unit) == ("2.0000", "°/rev")
 
 
-def test_what_nothing_is_heard_of_is_not_shown_as_standing_or_off() -> None:
+def test_silent_parts_are_shown_as_unknown() -> None:
     """The last that was known: 0 rpm, coolant off, collet closed. None of it may be read as so."""
     stood = replace(AT, outputs=frozenset({"collet"}), unknown=ALL_UNKNOWN_PARTS)
     view = make_status(stood, ReadoutKind.POSITION, True)
@@ -264,7 +264,7 @@ def test_what_nothing_is_heard_of_is_not_shown_as_standing_or_off() -> None:
     assert told == [(word, True, True) for word in words]
 
 
-def test_drives_are_on_where_they_say_so_whatever_the_state_is() -> None:
+def test_drives_lamp_follows_the_power_and_not_the_machine_state() -> None:
     """An alarm that takes the power leaves FAULT, not DRIVES OFF; what is not heard is neither."""
     assert make_drives_lamp(replace(AT, state=MachineState.FAULT, powered=False), "D") == Lamp(
         "DRIVES ON", False, "D"
@@ -281,18 +281,18 @@ def test_only_the_part_that_is_silent_is_unknown() -> None:
     assert view.lamps[1].label == "COOLANT"
 
 
-def test_a_hold_that_waits_for_a_tap_is_in_the_title() -> None:
+def test_hold_that_waits_for_tapping_to_end_is_shown() -> None:
     held = replace(AT, state=MachineState.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
     assert make_status(held, ReadoutKind.POSITION, True).state_text == text("desk.hold-after-tap")
 
 
-def test_a_metric_feed_has_its_prefix_and_an_inch_feed_has_none() -> None:
+def test_metric_feed_has_a_prefix_and_inch_feed_does_not() -> None:
     metric = replace(Snapshot(), modal=ModalState(metric=True), feed=5.0)
     assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == "MM"
     assert make_status(Snapshot(), ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == ""
 
 
-def test_the_readout_is_doubled_exactly_where_it_is_marked() -> None:
+def test_x_readout_is_doubled_exactly_when_marked_as_diameter() -> None:
     """The mode that remains after a program is that of the value, of the mark and of the words."""
     left = replace(Snapshot(), actual=(12.7, 0.0, 0.0), x_diameter=True)
     view = make_status(left, ReadoutKind.POSITION, has_c_axis=True)

@@ -22,7 +22,7 @@ def shift(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NightShif
         yield shift
 
 
-def test_what_was_made_is_what_everybody_counts_and_nothing_drifts(shift: NightShift) -> None:
+def test_all_part_counts_agree_and_turned_sizes_do_not_drift(shift: NightShift) -> None:
     operator = Operator(shift, 1, {})
     operator.begin()
     operator.make(2)
@@ -46,7 +46,7 @@ def test_what_was_made_is_what_everybody_counts_and_nothing_drifts(shift: NightS
     assert drift(shift)["turned radii with one offset, spread mm"] == 0.0
 
 
-def test_a_count_that_is_not_what_was_made_is_told(shift: NightShift) -> None:
+def test_wrong_part_count_is_reported(shift: NightShift) -> None:
     operator = Operator(shift, 1, {})
     operator.begin()
     operator.make(1)
@@ -60,7 +60,7 @@ def test_a_count_that_is_not_what_was_made_is_told(shift: NightShift) -> None:
     ]
 
 
-def test_a_spindle_that_was_off_while_the_feeder_pushed_is_given_up_and_begun_anew(shift: NightShift) -> None:
+def test_part_with_spindle_off_at_bar_push_is_abandoned_and_restarted(shift: NightShift) -> None:
     operator = Operator(shift, 1, {})
     operator.begin()
     shift.run(0.3)
@@ -72,7 +72,7 @@ def test_a_spindle_that_was_off_while_the_feeder_pushed_is_given_up_and_begun_an
     assert shift.witness.truth.alarms == {"collet-open": 1}
 
 
-def test_an_insert_that_cannot_be_changed_is_told_and_not_counted(
+def test_insert_that_cannot_be_changed_is_reported_and_not_counted(
     shift: NightShift, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     operator = Operator(shift, 1, {})
@@ -85,7 +85,7 @@ def test_an_insert_that_cannot_be_changed_is_told_and_not_counted(
     assert operator.did["insert"] == 0
 
 
-def test_whoever_cannot_get_a_part_says_so_instead_of_going_on_for_ever(
+def test_simulated_operator_gives_up_if_no_part_is_made(
     shift: NightShift, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(night_operator, "STUCK", 5.0)

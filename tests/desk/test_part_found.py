@@ -87,14 +87,14 @@ def part_of(loaded: LoadedProgram) -> PartProof:
     return loaded.part_proof
 
 
-def test_a_sound_program_has_nothing_to_announce_and_is_given_once(desk: Make) -> None:
+def test_valid_program_has_no_findings_and_is_posted_once(desk: Make) -> None:
     bench = desk()
     loaded = bench.load(SHAFT)
     assert (loaded.phase, loaded.diagnostics, part_of(loaded).warning_texts) == (LoadingPhase.READY, (), ())
     assert bench.kinds == [LoadJob, SupplyProof]
 
 
-def test_what_rests_on_an_assumed_bar_is_a_warning_that_is_announced(desk: Make) -> None:
+def test_finding_based_on_assumed_stock_is_a_warning(desk: Make) -> None:
     bench = desk()
     loaded = bench.load(SLIP)
     (found,) = loaded.diagnostics
@@ -110,7 +110,7 @@ def test_what_rests_on_an_assumed_bar_is_a_warning_that_is_announced(desk: Make)
     assert (last.errors, last.warnings) == ((), ("LINE 11: RAPID-INTO-STOCK",))
 
 
-def test_a_stated_stock_makes_an_error_of_what_every_tool_would_hit(desk: Make) -> None:
+def test_rapid_into_specified_stock_with_assumed_tool_is_an_error(desk: Make) -> None:
     bench = desk(BAR)
     loaded = bench.load(SLIP)
     assert [(d.assumptions, d.severity) for d in loaded.diagnostics] == [((), Severity.ERROR)]
@@ -118,7 +118,7 @@ def test_a_stated_stock_makes_an_error_of_what_every_tool_would_hit(desk: Make) 
     assert loaded.phase is LoadingPhase.REFUSED
 
 
-def test_on_a_stock_and_a_tool_that_were_said_it_refuses_the_start(desk: Make) -> None:
+def test_rapid_into_specified_stock_with_specified_tool_refuses_the_start(desk: Make) -> None:
     bench = desk(BAR, {1: TURNING})
     loaded = bench.load(SLIP)
     assert loaded.phase is LoadingPhase.REFUSED
@@ -129,7 +129,7 @@ def test_on_a_stock_and_a_tool_that_were_said_it_refuses_the_start(desk: Make) -
     assert desk(BAR, {1: TURNING}).load(SHAFT).phase is LoadingPhase.READY
 
 
-def test_it_is_not_proved_before_its_part_is_known_where_that_may_refuse(desk: Make) -> None:
+def test_proof_waits_for_the_part_check_if_that_may_refuse_the_start(desk: Make) -> None:
     for kept, given in ((BAR, [LoadJob]), (StoredPart(), [LoadJob, SupplyProof])):
         bench = desk(kept, {1: TURNING})
         making, go_on = threading.Event(), threading.Event()
@@ -157,7 +157,7 @@ def test_it_is_not_proved_before_its_part_is_known_where_that_may_refuse(desk: M
         bench.session.wait_until_loaded(LIMIT)
 
 
-def test_a_silenced_check_is_a_note_with_its_reason(desk: Make) -> None:
+def test_disabled_check_is_a_note_with_its_reason(desk: Make) -> None:
     silenced = replace(BAR, silenced_checks={"rapid-into-stock": "the bar is drilled before"})
     loaded = desk(silenced, {1: TURNING}).load(SLIP)
     (found,) = loaded.diagnostics
@@ -167,7 +167,7 @@ def test_a_silenced_check_is_a_note_with_its_reason(desk: Make) -> None:
     assert part_of(loaded).warning_texts == ()
 
 
-def test_too_fast_for_its_chuck_rests_on_no_stock(desk: Make) -> None:
+def test_chuck_overspeed_error_needs_no_stock(desk: Make) -> None:
     machine = replace(load_machine(None), clamping=ClampingModel(max_rpm=1200.0))
     bench = desk(machine=machine)
     loaded = bench.load(SHAFT)
@@ -177,7 +177,7 @@ def test_too_fast_for_its_chuck_rests_on_no_stock(desk: Make) -> None:
 
 
 @pytest.mark.parametrize("stock", ["rod", "profile:gone.csv", "after:gone.nc"])
-def test_a_stock_that_cannot_be_used_is_told_before_the_start(desk: Make, stock: str) -> None:
+def test_unusable_stock_is_reported_before_the_start(desk: Make, stock: str) -> None:
     loaded = desk(StoredPart(stock=stock)).load(SHAFT)
     (found,) = loaded.diagnostics
     assert (found.line, found.code, found.severity) == (0, NO_STOCK, Severity.WARNING)
@@ -185,7 +185,7 @@ def test_a_stock_that_cannot_be_used_is_told_before_the_start(desk: Make, stock:
     assert loaded.phase is LoadingPhase.READY
 
 
-def test_the_stock_is_what_another_program_leaves(desk: Make, tmp_path: Path) -> None:
+def test_stock_may_be_the_part_left_by_another_program(desk: Make, tmp_path: Path) -> None:
     (tmp_path / "before.nc").write_text(SHAFT)
     loaded = desk(StoredPart(stock=f"after:{tmp_path / 'before.nc'}")).load(SHAFT)
     report = part_of(loaded).report
@@ -194,7 +194,7 @@ def test_the_stock_is_what_another_program_leaves(desk: Make, tmp_path: Path) ->
     assert desk(StoredPart()).load(SHAFT).part_proof != loaded.part_proof
 
 
-def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
+def test_failed_part_proof_does_not_prevent_loading(
     desk: Make, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def broken(*_given: object) -> None:
@@ -208,7 +208,7 @@ def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
     assert [each.exc_info[0] for each in caplog.records if each.exc_info] == [ZeroDivisionError]
 
 
-def test_of_a_program_that_is_too_long_it_is_told_why_there_is_no_part(
+def test_program_too_long_for_the_part_model_is_reported_and_loaded(
     desk: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(part_history, "MAX_MOVES", 5)
@@ -225,7 +225,7 @@ def test_of_a_program_that_is_too_long_it_is_told_why_there_is_no_part(
 
 
 @pytest.mark.parametrize(("kept", "errors"), [(BAR, 1), (StoredPart(), 0)])
-def test_changed_offsets_are_taken_up_with_what_the_part_says(
+def test_changed_offsets_apply_together_with_the_new_part_check(
     desk: Make, kept: StoredPart, errors: int
 ) -> None:
     bench = desk(kept, {1: TURNING})
@@ -248,14 +248,14 @@ def test_changed_offsets_are_taken_up_with_what_the_part_says(
 # --- on the prompt line -------------------------------------------------------------------------------
 
 
-def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
+def test_part_warning_is_announced_where_cycles_are_started() -> None:
     starts = wording("screen.spindle-starts", rpm=900, direction="FORWARD")
     shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", starts))
     assert find_announcements(shot) == ("WARNING: LINE 11: RAPID-INTO-STOCK", starts)
     assert find_announcements(shot, can_start_here=False) == (starts,)
 
 
-def test_beside_the_warning_stands_what_to_do(desk: Make) -> None:
+def test_part_warning_is_shown_with_its_remedy(desk: Make) -> None:
     loaded = desk().load(SLIP)
     words = find_remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START: PRESS BOTH PALM BUTTONS")
     assert find_remedy(loaded, wording("search.start-restart", start="CYCLE START")) == words

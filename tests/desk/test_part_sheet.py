@@ -108,14 +108,14 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
     "words",
     ["bar:1", "bar:0.75:3+0.02", "bar:25mm", "tube:1:0.5:2.5", "profile:/a/blank.csv+0.1", "after:/b/op1.nc"],
 )
-def test_what_is_kept_comes_back_as_it_was_said(words: str) -> None:
+def test_stored_stock_is_shown_as_it_was_entered(words: str) -> None:
     entry = StockEntry.of(StoredPart(words, 20.0))
     assert entry.words == words
     assert entry.stick_out == 20.0
     assert entry.missing_field is None
 
 
-def test_words_mean_the_lengths_that_were_typed() -> None:
+def test_stock_text_has_the_lengths_that_were_typed() -> None:
     entry = StockEntry(StockKind.TUBE).typed(StockField.DIAMETER, "1+1/8", is_metric=False)
     entry = entry.typed(StockField.BORE, "10", is_metric=True)
     spec = parse_specification(entry.words)
@@ -131,7 +131,7 @@ def test_words_mean_the_lengths_that_were_typed() -> None:
         (StockField.BORE, "1"),
     ],
 )
-def test_what_no_stock_can_be_is_refused(name: StockField, text: str) -> None:
+def test_impossible_stock_dimension_is_rejected(name: StockField, text: str) -> None:
     with pytest.raises(EntryError):
         StockEntry(StockKind.TUBE, diameter=25.4).typed(name, text, is_metric=False)
 
@@ -139,7 +139,7 @@ def test_what_no_stock_can_be_is_refused(name: StockField, text: str) -> None:
 # --- saying it ----------------------------------------------------------------------------------------
 
 
-def test_a_bar_is_said_kept_and_the_program_proved_on_it(bench: Bench) -> None:
+def test_bar_stock_is_entered_saved_and_used_for_the_proof(bench: Bench) -> None:
     bench.load(SLIP)
     assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
     bench.press("F2")
@@ -164,7 +164,7 @@ def test_a_bar_is_said_kept_and_the_program_proved_on_it(bench: Bench) -> None:
     assert shows(make_table(bench.page).notes[0], "desk.needs-clamping")
 
 
-def test_what_was_said_is_forgotten(bench: Bench) -> None:
+def test_entered_stock_can_be_cleared(bench: Bench) -> None:
     bench.load(SLIP)
     bench.press("F2", "Right", "Down")
     bench.types("1")
@@ -176,7 +176,7 @@ def test_what_was_said_is_forgotten(bench: Bench) -> None:
     assert bench.desk.prompt_notice == wording("desk.no-stock")
 
 
-def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Bench) -> None:
+def test_stock_file_is_found_next_to_the_program_and_saved_with_full_path(bench: Bench) -> None:
     (bench.folder / "blank.csv").write_text("-2,.5\n0,.5\n")
     bench.load(SHAFT)
     bench.press("F2", "Left", "Left")
@@ -196,7 +196,7 @@ def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Be
 
 
 @pytest.mark.parametrize("text", ["-1", "1..", ""])
-def test_what_is_no_length_changes_nothing(bench: Bench, text: str) -> None:
+def test_invalid_length_changes_nothing(bench: Bench, text: str) -> None:
     bench.load(SHAFT)
     bench.press("F2", "Right", "Down")
     bench.types(text)
@@ -204,7 +204,7 @@ def test_what_is_no_length_changes_nothing(bench: Bench, text: str) -> None:
     assert bench.kept == StoredPart()
 
 
-def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
+def test_stock_cannot_be_changed_while_the_program_runs(bench: Bench) -> None:
     bench.load(SLIP)
     bench.state = MachineState.RUN
     bench.press("F4")
@@ -215,7 +215,7 @@ def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
     assert bench.kept == StoredPart()
 
 
-def test_on_a_mill_no_stock_is_said(tmp_path: Path) -> None:
+def test_stock_cannot_be_entered_on_a_mill(tmp_path: Path) -> None:
     mill = parse_machine(resources.read_machine_file("ac-table-mill.toml"), "mill")
     bench = Bench(tmp_path, model=mill)
     bench.load(SHAFT)
@@ -225,7 +225,7 @@ def test_on_a_mill_no_stock_is_said(tmp_path: Path) -> None:
     bench.desk.close()
 
 
-def test_without_a_program_there_is_nothing_to_say(bench: Bench) -> None:
+def test_stock_cannot_be_entered_without_a_program(bench: Bench) -> None:
     bench.page.poll()
     assert make_table(bench.page).rows == ()
     bench.press("F2", "Right")
@@ -233,7 +233,7 @@ def test_without_a_program_there_is_nothing_to_say(bench: Bench) -> None:
     assert not bench.page.accepts_key("1")
 
 
-def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failure_to_save_the_stock_is_reported(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_given: object) -> None:
         raise StoreError("the disk is full")
 
@@ -248,7 +248,7 @@ def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.Mon
 # --- findings -----------------------------------------------------------------------------------------
 
 
-def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -> None:
+def test_finding_is_listed_with_its_remedy_and_shows_its_location(bench: Bench) -> None:
     bench.load(SLIP)
     (row,) = make_table(bench.page).rows
     assert row.cells[:2] == ("11", "rapid-into-stock")
@@ -257,7 +257,7 @@ def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -
     assert [found.line for found in bench.shown] == [11]
 
 
-def test_a_check_is_silenced_with_a_reason_and_speaks_again(bench: Bench) -> None:
+def test_check_is_disabled_with_a_reason_and_enabled_again(bench: Bench) -> None:
     bench.load(SLIP)
     bench.press("F4")
     assert make_table(bench.page).question == wording("desk.why-silenced", check="rapid-into-stock")
@@ -283,7 +283,7 @@ def test_escape_leaves_the_check_on(bench: Bench) -> None:
     assert not bench.page.handle_escape()
 
 
-def test_what_the_interpreter_has_found_is_not_silenced(bench: Bench) -> None:
+def test_interpreter_findings_cannot_be_disabled(bench: Bench) -> None:
     bench.load("G90G94F100\nT1\nX.5Q7\nM30\n")
     assert bench.page.selected_finding is not None
     bench.press("F4")
@@ -291,7 +291,7 @@ def test_what_the_interpreter_has_found_is_not_silenced(bench: Bench) -> None:
     assert not bench.page.is_entering_text
 
 
-def test_what_the_machine_file_silences_is_not_undone_here(tmp_path: Path) -> None:
+def test_check_disabled_by_the_machine_file_cannot_be_enabled_here(tmp_path: Path) -> None:
     bench = Bench(tmp_path, frozenset({"rapid-into-stock"}))
     bench.load(SLIP)
     bench.press("F4")

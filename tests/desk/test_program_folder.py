@@ -37,21 +37,23 @@ def test_the_operators_folder_hides_the_samples(program_folders: ProgramFolders)
 
 
 @pytest.mark.parametrize("typed", ["knob", "KNOB.NC", " knob.nc "])
-def test_case_and_ending_do_not_matter(program_folders: ProgramFolders, typed: str) -> None:
+def test_program_is_found_regardless_of_case_and_extension(
+    program_folders: ProgramFolders, typed: str
+) -> None:
     assert program_folders.find_path(typed) == program_folders.folders[1] / "knob.nc"
 
 
-def test_a_path_is_taken_as_it_is(program_folders: ProgramFolders) -> None:
+def test_path_is_used_as_given(program_folders: ProgramFolders) -> None:
     there = program_folders.folders[1] / "notes.md"
     assert program_folders.find_path(str(there)) == there
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "nosuch", "par", "/nowhere/knob.nc", "notes"])
-def test_unknown_names_find_nothing(program_folders: ProgramFolders, typed: str) -> None:
+def test_unknown_program_name_is_not_found(program_folders: ProgramFolders, typed: str) -> None:
     assert program_folders.find_path(typed) is None
 
 
-def test_typing_narrows_the_list(program_folders: ProgramFolders) -> None:
+def test_typed_text_filters_the_list(program_folders: ProgramFolders) -> None:
     assert [entry.name for entry in program_folders.find_matching("PART")] == ["PART1", "part10.nc"]
     assert program_folders.find_matching("xyz") == ()
 
@@ -74,7 +76,7 @@ def touched(path: Path, text: str) -> None:
     os.utime(path, ns=(before + 10**9, before + 10**9))
 
 
-def test_a_file_that_stays_is_no_news(tmp_path: Path) -> None:
+def test_unchanged_file_is_not_reported(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     file = ProgramFileMonitor(lambda: on_the_desk(path))
@@ -85,7 +87,7 @@ def test_a_file_that_stays_is_no_news(tmp_path: Path) -> None:
     assert file.difference_text == ""
 
 
-def test_a_changed_file_is_told_until_it_is_read_or_put_back(tmp_path: Path) -> None:
+def test_changed_file_is_reported_until_it_is_reloaded_or_restored(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     desk = [on_the_desk(path)]
@@ -103,7 +105,7 @@ def test_a_changed_file_is_told_until_it_is_read_or_put_back(tmp_path: Path) -> 
     assert file.difference_text == ""
 
 
-def test_a_file_that_is_gone_or_spoilt_is_told(tmp_path: Path) -> None:
+def test_missing_or_unreadable_file_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     loaded = on_the_desk(path)
@@ -116,7 +118,7 @@ def test_a_file_that_is_gone_or_spoilt_is_told(tmp_path: Path) -> None:
     assert begins(file.difference_text, "programs.not-on-disk", name="part.nc")
 
 
-def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
+def test_change_in_a_called_subprogram_is_reported(tmp_path: Path) -> None:
     path, called = tmp_path / "ring.mpf", tmp_path / "cut.spf"
     path.write_text(TEXT)
     called.write_text("G1 X5\nM17\n")
@@ -131,7 +133,7 @@ def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
     assert begins(file.difference_text, "programs.changed-on-disk", name="cut.spf")
 
 
-def test_without_a_program_there_is_nothing_to_compare() -> None:
+def test_monitor_without_a_program_reports_nothing() -> None:
     file = ProgramFileMonitor(LoadedProgram)
     file.compare_files()
     assert file.difference_text == ""
@@ -141,7 +143,7 @@ def test_without_a_program_there_is_nothing_to_compare() -> None:
 
 
 @pytest.mark.parametrize("number", [errno.EACCES, errno.EIO, errno.ESTALE])
-def test_a_folder_that_cannot_be_read_is_shown_and_watched_on(
+def test_unreadable_folder_is_reported_and_monitoring_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
 ) -> None:
     path = tmp_path / "part.nc"
@@ -164,7 +166,9 @@ def test_a_folder_that_cannot_be_read_is_shown_and_watched_on(
     assert begins(file.difference_text, "programs.changed-on-disk", name="part.nc")
 
 
-def test_the_watch_survives_any_failure_of_a_look(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_monitor_survives_any_exception_of_a_check(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     loaded = on_the_desk(path)
@@ -181,7 +185,7 @@ def test_the_watch_survives_any_failure_of_a_look(tmp_path: Path, monkeypatch: p
     assert file.difference_text == ""
 
 
-def test_a_look_that_hangs_is_shown_while_it_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hanging_check_is_reported_while_it_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     loaded, clock, seen = on_the_desk(path), ManualClock(), list[str]()
@@ -201,13 +205,13 @@ def test_a_look_that_hangs_is_shown_while_it_hangs(tmp_path: Path, monkeypatch: 
 
 
 @pytest.mark.parametrize(("name", "known"), [("a.DXF", True), ("a.dxf.nc", False), ("dxf", False)])
-def test_a_drawing_is_known_by_the_endings_that_a_feature_names(name: str, known: bool) -> None:
+def test_drawing_is_recognized_by_extensions_of_a_feature(name: str, known: bool) -> None:
     folders = ProgramFolders((), (".dxf",))
     assert folders.is_drawing_name(name) is known
     assert not ProgramFolders(()).is_drawing_name(name)
 
 
-def test_drawings_are_listed_beside_the_programs_only_where_a_feature_reads_them(tmp_path: Path) -> None:
+def test_drawings_are_listed_only_if_a_feature_reads_them(tmp_path: Path) -> None:
     for name in ("a.nc", "b.dxf", "c.pdf"):
         (tmp_path / name).write_text("")
     assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).list_drawings()] == ["b.dxf"]

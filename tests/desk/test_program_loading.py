@@ -91,7 +91,7 @@ def test_a_program_is_loaded_proved_and_drawn(bench: Bench) -> None:
     assert [type(command) for command in bench.posted] == [LoadJob, SupplyProof]
 
 
-def test_it_is_loaded_before_it_is_proved_and_then_without_a_proof(bench: Bench) -> None:
+def test_program_is_posted_without_a_proof_while_it_is_proved(bench: Bench) -> None:
     bench.go_on.clear()
     bench.session.start_loading(Path("part.nc"))
     assert bench.proving.wait(LIMIT)
@@ -101,7 +101,7 @@ def test_it_is_loaded_before_it_is_proved_and_then_without_a_proof(bench: Bench)
     assert bench.session.loaded.phase is LoadingPhase.PROVING
 
 
-def test_a_newer_choice_goes_before_the_one_under_way(bench: Bench) -> None:
+def test_newer_choice_replaces_a_load_in_progress(bench: Bench) -> None:
     bench.go_on.clear()
     bench.session.start_loading(Path("first.nc"))
     assert bench.proving.wait(LIMIT)
@@ -113,7 +113,7 @@ def test_a_newer_choice_goes_before_the_one_under_way(bench: Bench) -> None:
     assert proofs == ["digest of second.nc"]
 
 
-def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
+def test_program_errors_refuse_the_start_and_name_the_line(bench: Bench) -> None:
     bench.found = (BAD, BAD)
     bench.session.start_loading(Path("part.nc"))
     loaded = bench.settled()
@@ -123,7 +123,7 @@ def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
     )
 
 
-def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
+def test_tools_without_offsets_are_named_before_the_start() -> None:
     source = ProgramSource("part.nc", "G90")
     job = Job(source, Setup(), "digest", SharedProgram(source), frozenset({1}))
     loaded = LoadedProgram(
@@ -136,7 +136,7 @@ def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
 @pytest.mark.parametrize(
     ("name", "why"), [("gone.nc", "No such file or directory"), ("broken.nc", "the reader fell over")]
 )
-def test_what_cannot_be_loaded_says_why(bench: Bench, name: str, why: str) -> None:
+def test_program_that_cannot_be_loaded_shows_the_reason(bench: Bench, name: str, why: str) -> None:
     bench.session.start_loading(Path(name))
     loaded = bench.settled()
     assert loaded.phase is LoadingPhase.UNREADABLE
@@ -153,7 +153,7 @@ def test_block_delete_is_part_of_the_job(bench: Bench) -> None:
     assert load.job.setup.block_delete
 
 
-def test_closing_gives_up_what_is_under_way(bench: Bench) -> None:
+def test_closing_cancels_a_load_in_progress(bench: Bench) -> None:
     bench.go_on.clear()
     bench.session.start_loading(Path("part.nc"))
     assert bench.proving.wait(LIMIT)

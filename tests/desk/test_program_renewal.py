@@ -49,7 +49,7 @@ def shop() -> Iterator[Shop]:
     shop.session.close()
 
 
-def test_it_is_announced_before_it_is_proved(shop: Shop) -> None:
+def test_changed_offsets_are_announced_before_the_new_proof(shop: Shop) -> None:
     shop.go_on.clear()
     assert shop.renewing.begin_renewal()
     assert shop.posted == [ChangeOffsets()]
@@ -62,7 +62,7 @@ def test_it_is_announced_before_it_is_proved(shop: Shop) -> None:
     assert (ready.job.digest, ready.proof.digest) == ("renewed 1", "renewed 1")
 
 
-def test_the_screen_keeps_the_old_program_until_the_executor_has_the_new_one(shop: Shop) -> None:
+def test_screen_shows_the_old_job_until_the_executor_uses_the_new_one(shop: Shop) -> None:
     before = shop.session.loaded
     shop.renewing.begin_renewal()
     shop.renewing.worker.wait_for_results(LIMIT)
@@ -75,7 +75,7 @@ def test_the_screen_keeps_the_old_program_until_the_executor_has_the_new_one(sho
     assert now.picture is not None
 
 
-def test_a_later_one_takes_its_place(shop: Shop) -> None:
+def test_later_offset_change_replaces_the_pending_one(shop: Shop) -> None:
     shop.go_on.clear()
     shop.renewing.begin_renewal()
     assert shop.proving.wait(LIMIT)
@@ -89,7 +89,7 @@ def test_a_later_one_takes_its_place(shop: Shop) -> None:
     assert shop.renewing.poll_error() == ""
 
 
-def test_a_program_that_is_loaded_meanwhile_ends_it(shop: Shop) -> None:
+def test_loading_a_program_cancels_the_pending_renewal(shop: Shop) -> None:
     shop.go_on.clear()
     shop.renewing.begin_renewal()
     assert shop.proving.wait(LIMIT)
@@ -102,7 +102,7 @@ def test_a_program_that_is_loaded_meanwhile_ends_it(shop: Shop) -> None:
     assert [command for command in shop.posted if isinstance(command, ChangeOffsets)] == [ChangeOffsets()]
 
 
-def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
+def test_errors_of_new_offsets_are_reported_once_while_the_part_runs(shop: Shop) -> None:
     shop.found = (BAD,)
     shop.renewing.begin_renewal()
     shop.renewing.worker.wait_for_results(LIMIT)
@@ -112,7 +112,7 @@ def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
     assert shop.session.loaded.phase is LoadingPhase.REFUSED
 
 
-def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) -> None:
+def test_unreadable_offsets_are_reported_to_the_executor(shop: Shop) -> None:
     shop.broken = True
     shop.renewing.begin_renewal()
     shop.renewing.worker.wait_for_results(LIMIT)
@@ -121,7 +121,7 @@ def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) ->
     assert shop.renewing.poll_error() == ""
 
 
-def test_without_a_program_there_is_nothing_to_renew() -> None:
+def test_renewal_without_a_program_does_nothing() -> None:
     bench = Bench()
     assert not RunningRenewal(bench.session).begin_renewal()
     assert bench.posted == []

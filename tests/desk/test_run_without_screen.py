@@ -59,13 +59,13 @@ class Stopped(Idle):
 
 
 @pytest.mark.parametrize("released", [False, True])
-def test_an_estop_is_an_alarm_with_its_name_and_no_refusal(released: bool) -> None:
+def test_estop_ends_a_headless_run_as_an_alarm(released: bool) -> None:
     ended = outcome(Stopped(snapshot=Snapshot(state=MachineState.DISABLED), released=released), [])
     assert ended.final_state == "alarm"
     assert ended.reason.startswith(ESTOP.text)
 
 
-def test_palms_that_nobody_presses_are_waited_for_and_then_it_is_said() -> None:
+def test_headless_run_times_out_if_the_palm_buttons_are_not_pressed() -> None:
     said: list[str] = []
     ended = outcome(Idle(), said)
     assert said == ["homing X, Z, C", "palms"]
@@ -73,7 +73,7 @@ def test_palms_that_nobody_presses_are_waited_for_and_then_it_is_said() -> None:
     assert "no Cycle Start received" in ended.reason
 
 
-def test_slides_that_do_not_find_home_are_no_complete_run() -> None:
+def test_headless_run_is_not_complete_if_homing_does_not_finish() -> None:
     ended = outcome(Idle(homes=False), [])
     assert ended.final_state == "waiting"
     assert "homing did not finish" in ended.reason

@@ -19,7 +19,7 @@ from tests.screen.desks import SAMPLES
 
 
 @pytest.mark.parametrize("name", ["pinbar.nc", "bushing.nc", "grooves.nc", "knob.nc", "pin.nc"])
-def test_sample_proves(name: str) -> None:
+def test_shipped_sample_proves_without_findings(name: str) -> None:
     machine = load_machine(None)
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     report = prove(
@@ -57,7 +57,7 @@ def test_the_sinumerik_sample_proves_on_every_lathe(name: str | None) -> None:
         ("fitting.mpf", "sinumerik-linear"),
     ],
 )
-def test_a_sample_of_another_control_proves_on_its_machine(name: str, machine: str) -> None:
+def test_sample_of_another_control_proves_on_its_machine(name: str, machine: str) -> None:
     found = load_named_machine(machine)
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     source = load_called_files(load_source(SAMPLES / name), [SAMPLES])
@@ -67,7 +67,7 @@ def test_a_sample_of_another_control_proves_on_its_machine(name: str, machine: s
     assert report.cutting_length_mm > 50.0
 
 
-def test_no_hole_of_the_nozzle_begins_in_metal() -> None:
+def test_every_hole_of_the_nozzle_sample_starts_above_the_stock() -> None:
     """The drill's edge is 2.5 mm beside its tip, and the block's top is Z0: what is rapid stays above, or in
     the hole as deep as it is."""
     found = load_named_machine("ac-table-mill")

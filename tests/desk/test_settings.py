@@ -8,19 +8,19 @@ from app.desk.persistence import Persistence
 from app.desk.screen_settings import SETTINGS_KEY, DisplayUnits, ScreenSettings, SettingsStore
 
 
-def test_a_choice_is_kept() -> None:
+def test_chosen_setting_is_saved() -> None:
     keep = Persistence()
     SettingsStore(keep).choose("theme", "light")
     assert SettingsStore(keep).current == ScreenSettings(theme="light")
 
 
 @pytest.mark.parametrize("kept", [{"theme": "pink"}, {"dock": 1}, {"nothing": 2}, ["dark"], "dark", None, 7])
-def test_what_is_no_choice_is_forgotten(kept: object) -> None:
+def test_invalid_saved_setting_is_ignored(kept: object) -> None:
     assert SettingsStore(Persistence({SETTINGS_KEY: kept})).current == ScreenSettings()
 
 
 @pytest.mark.parametrize(("name", "value"), [("theme", "pink"), ("colour", "dark"), ("dock", 1)])
-def test_what_is_no_choice_is_refused(name: str, value: object) -> None:
+def test_invalid_setting_is_rejected(name: str, value: object) -> None:
     book = SettingsStore()
     with pytest.raises(ValueError, match=name):
         book.choose(name, value)
@@ -36,5 +36,7 @@ def test_what_is_no_choice_is_refused(name: str, value: object) -> None:
         (DisplayUnits.METRIC, False, True),
     ],
 )
-def test_units_of_the_figures(units: DisplayUnits, control: bool, metric: bool) -> None:
+def test_display_units_follow_the_setting_or_the_control(
+    units: DisplayUnits, control: bool, metric: bool
+) -> None:
     assert units.metric(control) is metric

@@ -34,7 +34,7 @@ def sheet_of(text: str, stock: Stock | None = None, shapes: dict[int, ToolShape]
 
 
 @pytest.mark.parametrize(("stock", "shapes"), [(None, {}), (None, {1: TOOL})])
-def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
+def test_setup_sheet_lists_assumption_based_findings_as_warnings(
     stock: Stock | None, shapes: dict[int, ToolShape]
 ) -> None:
     sheet = sheet_of(SLIP, stock, shapes)
@@ -44,17 +44,17 @@ def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
     assert sheet.findings_summary == (one if sheet.warning_count == 1 else some)
 
 
-def test_one_warning_is_told_as_one() -> None:
+def test_single_warning_is_summarized_in_the_singular() -> None:
     assert sheet_of(SLIP).findings_summary == wording("desk.one-warning")
 
 
-def test_an_error_of_what_is_said_is_one() -> None:
+def test_finding_on_specified_stock_and_tool_is_an_error_on_setup_sheet() -> None:
     sheet = sheet_of(SLIP, ROD, {1: TOOL})
     assert begins(sheet.findings_summary, "desk.many-errors")
     assert sheet_of(TURNED, ROD, {1: TOOL}).findings_summary == ""
 
 
-def test_a_groove_tool_without_a_width_is_assumed_and_so_is_its_width() -> None:
+def test_groove_tool_without_width_is_marked_as_assumed() -> None:
     grooved = "G90G94F300\nM03S900\nT1\nX.6Z-.5\nG95F.002X.4\nG94F300X.6\nZ1\nM30\n"
     groover = ToolShape(ToolKind.GROOVING, tip=3, stick_out=30.0)
     (tool,) = sheet_of(grooved, ROD, {1: groover}).setup_tools
@@ -91,7 +91,7 @@ def milled(preset: int = 0) -> SetupSheet:
     )
 
 
-def test_a_mill_has_blank_preset_length_and_radius_and_no_bar_nor_chuck() -> None:
+def test_mill_setup_sheet_has_blank_preset_and_tool_lengths() -> None:
     sheet = milled()
     assert sheet.stock_text == wording("desk.stock", size="104.000 mm × 74.000 mm × 20.000 mm")
     assert sheet.clamping_texts == (("PRESET", f"0   {wording('desk.of-machine-file')}"),)
@@ -101,6 +101,6 @@ def test_a_mill_has_blank_preset_length_and_radius_and_no_bar_nor_chuck() -> Non
     assert [sheet.format_stop(stop) for stop in sheet.program_stops if stop.is_optional] == ["M1"]
 
 
-def test_the_preset_in_force_says_where_it_lies() -> None:
+def test_active_preset_is_listed_with_its_position() -> None:
     wanted = "3   X 10.000 mm   Y -20.000 mm   Z -81.500 mm   C 30.000°   ROT 2.500°"
     assert milled(preset=3).clamping_texts == (("PRESET", wanted),)

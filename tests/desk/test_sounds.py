@@ -65,7 +65,7 @@ def day(made: EventSounds, *snapshots: Snapshot) -> list[tuple[int, ...]]:
 RUNS = replace(REST, state=MachineState.RUN)
 
 
-def test_ends_stops_and_alarms_sound_once_when_they_begin() -> None:
+def test_cycle_end_stop_and_alarm_sound_once() -> None:
     made, _ = desk_sounds()
     held, fault = replace(REST, state=MachineState.HOLD), replace(REST, state=MachineState.FAULT)
     done = replace(REST, ends=1)
@@ -76,44 +76,44 @@ def test_ends_stops_and_alarms_sound_once_when_they_begin() -> None:
     ]
 
 
-def test_a_part_that_the_next_one_follows_is_not_heard() -> None:
+def test_part_followed_by_another_makes_no_sound() -> None:
     made, _ = desk_sounds()
     assert day(made, RUNS, replace(RUNS, ends=1), replace(RUNS, ends=2)) == []
 
 
-def test_a_tool_at_the_end_of_its_life_is_heard_while_the_cycle_runs() -> None:
+def test_end_of_tool_life_sounds_during_the_cycle() -> None:
     made, _ = desk_sounds()
     assert day(made, RUNS, replace(RUNS, next_barred="T1"), replace(RUNS, next_barred="T1")) == [
         MACHINE_SIGNALS["tool-life"].tones_hz
     ]
 
 
-def test_what_is_silenced_and_what_has_no_volume_is_not_heard() -> None:
+def test_disabled_or_zero_volume_sound_is_not_played() -> None:
     assert day(desk_sounds(silent=frozenset({"stop"}))[0], RUNS, replace(REST, state=MachineState.HOLD)) == []
     assert day(desk_sounds(volume=0)[0], RUNS, replace(REST, state=MachineState.FAULT)) == []
     fresh = EventSounds(cast("Desk", SimpleNamespace()), Persistence(), Noted())
     assert day(fresh, RUNS, replace(REST, state=MachineState.FAULT)) == []  # off by default
 
 
-def test_an_alarm_that_stands_when_the_desk_begins_is_shown_and_not_heard() -> None:
+def test_alarm_present_at_startup_makes_no_sound() -> None:
     assert day(desk_sounds()[0], replace(REST, state=MachineState.FAULT)) == []
 
 
 @pytest.mark.parametrize("kept", [7, {"volume": "loud"}, {"volume": 5}, [], {"volume": 10**9, "silent": [3]}])
-def test_a_setting_that_is_none_is_not_believed(kept: object) -> None:
+def test_invalid_sound_setting_is_ignored(kept: object) -> None:
     made = EventSounds(cast("Desk", SimpleNamespace()), Persistence({"sound": kept}), Noted())
     made.load_settings()
     assert 0 <= made.volume_percent <= 100
 
 
-def test_why_nothing_is_heard_is_said_once() -> None:
+def test_failure_to_play_is_reported_once() -> None:
     made, said = desk_sounds()
     made.sound_player.error_text = "no such device"
     day(made, RUNS, REST, RUNS)
     assert said == [wording("desk.no-sound", why="no such device")]
 
 
-def test_a_sound_is_played_by_a_thread_and_a_failure_is_kept() -> None:
+def test_sound_is_played_in_a_thread_and_its_error_is_stored() -> None:
     heard = Heard("no loudspeaker")
     played = SoundPlayer(heard)
     played.play_tones((440,), 0)
@@ -126,7 +126,7 @@ def test_a_sound_is_played_by_a_thread_and_a_failure_is_kept() -> None:
     assert (heard.count, played.error_text) == (1, "no loudspeaker")
 
 
-def test_a_tune_is_a_wave_of_its_pitch_and_loudness() -> None:
+def test_tone_has_its_pitch_and_volume() -> None:
     with wave.open(io.BytesIO(make_tone_wav((441,), 50))) as file:
         assert (file.getframerate(), file.getnchannels(), file.getnframes()) == (22_050, 1, 4410)
         samples = np.frombuffer(file.readframes(4410), "<i2").astype(float)
@@ -137,13 +137,13 @@ def test_a_tune_is_a_wave_of_its_pitch_and_loudness() -> None:
     assert crossings == pytest.approx(2 * 441 * 0.2, abs=2)
 
 
-def test_without_a_player_that_is_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_sound_player_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda _name: None)
     with pytest.raises(ValueError, match="none of pw-play, paplay and aplay"):
         play_wav(b"")
 
 
-def test_a_player_that_fails_gives_way_to_the_next(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_next_sound_player_is_tried_if_one_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, text in (("paplay", "echo connection refused >&2; exit 1"), ("aplay", f"cp $2 {tmp_path}/out")):
         (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n")
         (tmp_path / name).chmod(0o755)

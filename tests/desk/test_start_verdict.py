@@ -97,22 +97,22 @@ def test_a_sample_starts_from_home_and_repeats(name: str, *, described: bool) ->
     assert len(seen.legs) >= 2
 
 
-def test_a_tool_inside_specified_stock_is_refused_without_any_interruption() -> None:
+def test_start_with_the_tool_inside_specified_stock_is_refused() -> None:
     part = known("knob.nc", described=True)
     assert code(question(part, tip_at(part, 10.0, -10.0))) == (TOOL_IN_PART, False)
 
 
-def test_what_rests_on_assumed_stock_is_only_announced() -> None:
+def test_start_with_the_tool_inside_assumed_stock_is_only_announced() -> None:
     part = known("knob.nc")
     assert code(question(part, tip_at(part, 10.0, -10.0))) == ("", True)
 
 
-def test_without_a_tool_in_work_its_place_says_nothing() -> None:
+def test_position_is_not_checked_without_an_active_tool() -> None:
     part = part_of(ProgramSource("NO TOOL", "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"))
     assert code(question(part, HOME)._replace(active_tool=0)) == ("", False)
 
 
-def test_after_an_estop_in_a_groove_the_way_to_line_1_is_refused_and_a_jog_is_named() -> None:
+def test_first_move_out_of_a_groove_is_refused_with_jog_advice() -> None:
     part = broken_in(known("grooves.nc"), 16)
     assert part.interrupted_job is not None
     asked = question(part, part.interrupted_job.where)._replace(active_tool=3)
@@ -121,19 +121,19 @@ def test_after_an_estop_in_a_groove_the_way_to_line_1_is_refused_and_a_jog_is_na
     assert all(key in found.why for key in ("F6", "F4", "X+"))
 
 
-def test_a_part_that_is_not_known_is_announced() -> None:
+def test_unknown_part_is_announced_at_start() -> None:
     part = known("knob.nc")
     asked = question(part, HOME)._replace(previous_part=None, is_part_unknown=True)
     assert code(asked) == ("", True)
     assert code(asked._replace(is_part_unknown=False)) == ("", False)
 
 
-def test_a_line_may_cut_where_a_program_may_not_begin() -> None:
+def test_mdi_line_may_start_inside_the_part() -> None:
     part = known("knob.nc", described=True)
     assert code(question(part, tip_at(part, 10.0, -10.0), StartAction.MDI_LINE))[0] != TOOL_IN_PART
 
 
-def test_a_refused_line_has_an_error_and_a_clear_one_none() -> None:
+def test_refused_mdi_line_has_an_error_and_a_clear_one_does_not() -> None:
     part = known("knob.nc", described=True)
     proved = ProvedJob(Proof(part.job.digest, ()))
     inside = question(part, tip_at(part, 10.0, -10.0))
@@ -145,7 +145,7 @@ def test_a_refused_line_has_an_error_and_a_clear_one_none() -> None:
     assert clear.first_move_clearance is not None
 
 
-def test_a_check_that_nobody_wants_any_more_ends() -> None:
+def test_canceled_first_move_check_ends() -> None:
     def given_up(_reached: float = 0.0) -> None:
         raise AbandonedError
 

@@ -23,7 +23,7 @@ def ends() -> Iterator[tuple[Connection, Connection]]:
         yield ours, theirs
 
 
-def test_what_is_sent_on_a_line_is_obeyed_in_its_order(ends: tuple[Connection, Connection]) -> None:
+def test_stop_records_are_executed_in_the_order_sent(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
     obeyed: queue.Queue[StopPress] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -37,7 +37,7 @@ def test_what_is_sent_on_a_line_is_obeyed_in_its_order(ends: tuple[Connection, C
         assert [obeyed.get(timeout=LIMIT) for _ in stops] == stops
 
 
-def test_a_record_of_another_version_is_skipped(ends: tuple[Connection, Connection]) -> None:
+def test_record_of_another_version_is_skipped(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
     obeyed: queue.Queue[StopPress] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -50,7 +50,7 @@ def test_a_record_of_another_version_is_skipped(ends: tuple[Connection, Connecti
         assert obeyed.get(timeout=LIMIT) == StopPress(StopKind.HOLD, 4)
 
 
-def test_a_message_without_a_line_is_rejected(ends: tuple[Connection, Connection]) -> None:
+def test_message_without_a_file_descriptor_is_rejected(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
     screen.close()
     with pytest.raises(EOFError):

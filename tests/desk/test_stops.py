@@ -29,7 +29,7 @@ def log() -> AlarmLog:
     return AlarmLog(lambda: "09:41:07")
 
 
-def test_the_newest_stands_on_top_with_its_time(log: AlarmLog) -> None:
+def test_newest_stop_is_listed_first_with_its_time(log: AlarmLog) -> None:
     log.hear(event("following", "X is 2.345 off its setpoint", 4))
     log.hear(event("estop"))
     assert [(entry.local_time, entry.alarm.number) for entry in log.entries] == [
@@ -39,19 +39,19 @@ def test_the_newest_stands_on_top_with_its_time(log: AlarmLog) -> None:
     assert log.entries[1].alarm.cause == wording("screen.off-setpoint", axis="X", distance="2.345")
 
 
-def test_an_entry_leads_to_the_record_of_the_seconds_before_it(log: AlarmLog) -> None:
+def test_stop_entry_links_to_the_recording_before_it(log: AlarmLog) -> None:
     log.hear(replace(event("following"), record_name="today-alarm102.scope"))
     log.add_stored([row(event("following"))._replace(record="before-alarm102.scope"), row(event("estop"))])
     records = [entry.recording_name for entry in log.entries]
     assert records == ["today-alarm102.scope", "before-alarm102.scope", ""]
 
 
-def test_what_is_no_stop_is_none_of_it(log: AlarmLog) -> None:
+def test_event_that_is_not_a_stop_is_not_listed(log: AlarmLog) -> None:
     log.hear(LogEvent(1.0, "switch", "single block on"))
     assert log.entries == ()
 
 
-def test_it_keeps_as_many_as_it_says_and_no_more(log: AlarmLog) -> None:
+def test_number_of_stop_entries_is_limited(log: AlarmLog) -> None:
     for line in range(MAX_ENTRIES + 10):
         log.hear(event("feed-hold", line=line))
     assert len(log.entries) == MAX_ENTRIES
@@ -60,7 +60,7 @@ def test_it_keeps_as_many_as_it_says_and_no_more(log: AlarmLog) -> None:
     assert log.entries[0].alarm.code == "estop"
 
 
-def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None:
+def test_stored_stops_are_listed_after_new_ones(log: AlarmLog) -> None:
     log.hear(event("estop"))
     log.add_stored([row(event("following", "Z is 1.2 off its setpoint", 7))])
     today, before = log.entries
@@ -73,7 +73,7 @@ def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None
 
 
 @pytest.mark.parametrize("code", sorted(CATALOG))
-def test_every_alarm_comes_back_out_of_the_store(code: AlarmCode) -> None:
+def test_every_stored_alarm_is_read_back(code: AlarmCode) -> None:
     made = event(code, "what was seen: here", 3)
     back = parse_alarm(row(made))
     assert back is not None
@@ -94,11 +94,11 @@ def test_every_alarm_comes_back_out_of_the_store(code: AlarmCode) -> None:
         ("alarm", ""),
     ],
 )
-def test_what_cannot_be_understood_is_left_out(log: AlarmLog, kind: str, text: str) -> None:
+def test_unreadable_stop_event_is_skipped(log: AlarmLog, kind: str, text: str) -> None:
     log.add_stored([EventRow("rubbish", kind, text, 0)])
     assert log.entries == ()
 
 
-def test_a_time_that_is_none_is_shown_as_it_is(log: AlarmLog) -> None:
+def test_invalid_time_is_shown_unchanged(log: AlarmLog) -> None:
     log.add_stored([row(event("estop"), at="yesterday")])
     assert log.entries[0].local_time == "yesterday"

@@ -22,7 +22,7 @@ from tests.texts import text
 WAITS = replace(Snapshot(), state=MachineState.WAIT, homed=(True, True, True))
 
 
-def test_a_wait_for_an_input_names_the_state_it_waits_for() -> None:
+def test_wait_for_an_input_names_the_expected_state() -> None:
     waits = replace(WAITS, waiting_for="TB2-5")
     assert describe_wait(waits) == text("desk.input-to-come", name="TB2-5", state="ON")
     assert describe_wait(replace(waits, inputs=frozenset({"TB2-5"}))) == text(
@@ -44,18 +44,18 @@ def test_a_wait_for_an_input_names_the_state_it_waits_for() -> None:
         ("DWELL", text("desk.dwell")),
     ],
 )
-def test_every_other_wait_says_how_it_ends(what: str, key: str) -> None:
+def test_every_other_wait_shows_how_it_ends(what: str, key: str) -> None:
     waits = replace(WAITS, waiting_for=what)
     assert describe_wait(waits) == what
     assert key in make_wait_prompt(waits)
 
 
-def test_a_wait_that_nobody_knows_is_not_made_up() -> None:
+def test_unknown_wait_condition_gives_no_prompt() -> None:
     assert make_wait_prompt(replace(WAITS, waiting_for="SOMETHING ELSE")) == ""
     assert make_wait_prompt(WAITS) == ""
 
 
-def test_not_homed_is_a_state_of_its_own() -> None:
+def test_not_homed_is_shown_as_its_own_state() -> None:
     lost = replace(Snapshot(), state=MachineState.IDLE, homed=(True, False, True))
     view = make_status(lost, ReadoutKind.POSITION, has_c_axis=True)
     assert (view.state_text, view.tone) == (NOT_HOMED_TITLE, Tone.OFF)
@@ -65,7 +65,7 @@ def test_not_homed_is_a_state_of_its_own() -> None:
     assert off.state_text == MachineState.DISABLED.value  # the drives come first
 
 
-def test_success_question_and_refusal_are_told_apart() -> None:
+def test_success_question_and_refusal_have_different_kinds() -> None:
     answers = PromptLine(Snapshot, str, lambda: 0.0)
     answers.say("T1 SAVED", is_success=True)
     assert answers.notice_kind is MessageKind.SUCCESS
@@ -75,7 +75,7 @@ def test_success_question_and_refusal_are_told_apart() -> None:
     assert answers.notice_kind is MessageKind.REFUSAL
 
 
-def test_an_answer_outlives_every_state_and_ends_after_four_seconds() -> None:
+def test_message_survives_state_changes_and_expires_after_four_seconds() -> None:
     now, clock = [replace(Snapshot(), state=MachineState.RUN)], [0.0]
     answers = PromptLine(lambda: now[0], str, lambda: clock[0])
     answers.say("TOUCH OFF WITH THE MACHINE AT REST AND READY")
@@ -91,7 +91,7 @@ def test_an_answer_outlives_every_state_and_ends_after_four_seconds() -> None:
     assert answers.message == ""
 
 
-def test_a_question_belongs_to_its_state_and_an_answer_does_not_replace_it() -> None:
+def test_question_ends_with_its_state_and_a_message_does_not_replace_it() -> None:
     done: list[str] = []
     now = [replace(Snapshot(), state=MachineState.HOLD)]
     answers = PromptLine(lambda: now[0], str, lambda: 0.0)
@@ -105,7 +105,7 @@ def test_a_question_belongs_to_its_state_and_an_answer_does_not_replace_it() -> 
     assert not done
 
 
-def test_a_lasting_answer_remains_for_its_four_seconds_whatever_is_pressed() -> None:
+def test_lasting_message_remains_four_seconds_despite_key_presses() -> None:
     clock = [0.0]
     answers = PromptLine(Snapshot, str, lambda: clock[0])
     answers.say("DROPPED", is_lasting=True)

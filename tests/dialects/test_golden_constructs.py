@@ -30,7 +30,7 @@ def cases(chosen: Sequence[tuple[Dialect, CodeBookEntry, Golden]]) -> pytest.Mar
 
 
 @cases(CONSTRUCTS)
-def test_a_construct_makes_what_its_golden_says(
+def test_construct_produces_its_golden_blocks_and_messages(
     dialect: Dialect, entry: CodeBookEntry, golden: Golden
 ) -> None:
     came = ran(dialect, entry, golden.program, golden.machine)
@@ -48,7 +48,9 @@ def test_a_construct_makes_what_its_golden_says(
 
 
 @cases([each for each in CONSTRUCTS if each[1].refused])
-def test_its_refusal_is_told_where_it_stands(dialect: Dialect, entry: CodeBookEntry, golden: Golden) -> None:
+def test_invalid_construct_is_rejected_at_its_location(
+    dialect: Dialect, entry: CodeBookEntry, golden: Golden
+) -> None:
     came = ran(dialect, entry, entry.refused, golden.refusing)
     assert came.first_error == golden.refused
 
@@ -59,7 +61,7 @@ def test_a_golden_belongs_to_an_entry(dialect: Dialect) -> None:
 
 
 @pytest.mark.parametrize("dialect", GROUNDS)
-def test_every_entry_has_its_golden_and_its_refusal(dialect: Dialect) -> None:
+def test_every_code_entry_has_its_golden_and_rejected_example(dialect: Dialect) -> None:
     """What nothing can be written wrongly of has no refusal; what is refused by its name has no example."""
     entries = [each for each in get_code_book(dialect).entries if each.example]
     assert [each.head for each in entries if each.head not in goldens(dialect)] == []

@@ -32,7 +32,7 @@ GOOD = """\
 """
 
 
-def test_the_changelog_has_its_form() -> None:
+def test_changelog_has_the_required_form() -> None:
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     assert list(mistakes(text, VERSION)) == []
     assert sum(releases(text)[0].entries.values()) + len(releases(text)) > 1
@@ -57,7 +57,7 @@ def test_entries_are_counted_by_section() -> None:
         ("[0.2.0]", "[0.1.0]", "version-twice"),
     ],
 )
-def test_a_wrong_changelog_is_found(good: str, bad: str, kind: str) -> None:
+def test_wrong_changelog_is_detected(good: str, bad: str, kind: str) -> None:
     assert good in GOOD
     assert kind in list(mistakes(GOOD.replace(good, bad, 1), "0.3.0"))
 

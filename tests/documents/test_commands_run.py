@@ -90,7 +90,7 @@ def _with_files(words: list[str], turndesk: Turndesk, folder: Path) -> list[str]
     return words
 
 
-def test_what_is_not_run_is_still_in_a_page() -> None:
+def test_commands_excluded_from_the_run_are_still_in_a_page() -> None:
     texts = [" ".join(words) for page in PAGES for _, words in commands_of(page)]
     gone = [each for each in (*NOT_RUN, *STATUS) if not any(text.startswith(each) for text in texts)]
     assert gone == []

@@ -14,5 +14,5 @@ Other("e {x}", x=1)
 """
 
 
-def test_a_driver_error_with_values_has_a_template_and_one_with_a_reason_alone_has_none() -> None:
+def test_driver_error_texts_with_values_are_found_as_templates() -> None:
     assert list(find_marked_texts(ast.parse(CODE))) == ["a {x}}}", "b {x}}}", "c {x}"]

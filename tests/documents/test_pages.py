@@ -121,7 +121,7 @@ def test_a_long_page_has_a_table_of_contents(page: Page) -> None:
 
 
 @named
-def test_paragraphs_are_short(page: Page) -> None:
+def test_paragraphs_have_few_sentences(page: Page) -> None:
     if is_record(page):
         return
     too_long = [
@@ -131,7 +131,7 @@ def test_paragraphs_are_short(page: Page) -> None:
 
 
 @every
-def test_no_page_has_a_word_to_avoid(page: Page) -> None:
+def test_no_page_has_an_avoided_word(page: Page) -> None:
     if page.name == TRANSLATED:
         return
     text = re.sub(r"`[^`]*`", "x", page.prose.partition(AVOIDED)[0])
@@ -149,7 +149,7 @@ def test_no_page_has_a_word_to_avoid(page: Page) -> None:
 
 
 @pytest.mark.parametrize("word", ACCEPTED_WORDS)
-def test_accepted_words_are_words_to_avoid(word: str) -> None:
+def test_accepted_words_are_avoided_words_and_still_in_use(word: str) -> None:
     assert word in avoided()
     uses = ACCEPTED_WORDS[word]
     assert [use for use in uses if not any(use in page.prose for page in ALL)] == []
@@ -210,7 +210,7 @@ def _is_right(command: Command, arguments: list[str]) -> bool:
 
 
 @every
-def test_every_command_is_one_of_the_command_line(
+def test_every_documented_command_is_valid(
     page: Page, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
@@ -238,14 +238,14 @@ def test_every_python_module_of_a_command_exists(page: Page) -> None:
     assert sorted(name for name in names if find_spec(name) is None) == []
 
 
-def test_the_commands_of_the_index_are_found() -> None:
+def test_links_and_commands_of_pages_are_found() -> None:
     """A page reader that finds nothing would let every test pass."""
     found = {arguments[0] for _, arguments in commands_of(Page(DOCS / "index.md"))}
     assert {"prove", "run", "offsets", "store", "machine", "setup", "scope"} <= found
     assert len([link for page in ALL for link in page.links]) > 300
 
 
-def test_a_page_is_read_as_it_is_written(tmp_path: Path) -> None:
+def test_markdown_page_is_parsed(tmp_path: Path) -> None:
     path = tmp_path / "page.md"
     path.write_text(
         "# One `two` page\n\n- [A\n  link](other.md#x). Second.\n- Item\n\n```sh\nturndesk prove A\n```\n\n"
@@ -270,7 +270,7 @@ def test_contents_link_to_the_headings() -> None:
     "text",
     ["turndesk prve FILE", "turndesk prove FILE --nosuch", "turndesk run", "turndesk store backp FILE"],
 )
-def test_a_wrong_command_is_found(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_command_is_detected(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = arguments_of(text)
     assert arguments is not None
     assert not _is_right(Command(1, text, True), arguments)

@@ -33,7 +33,7 @@ def mistakes_of_workflow(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
-def test_the_document_exists_and_the_readme_or_the_index_names_it(name: str) -> None:
+def test_project_document_exists_and_is_linked(name: str) -> None:
     assert (ROOT / name).read_text(encoding="utf-8").strip()
     named = {
         target for page in (ROOT / "README.md", ROOT / "docs" / "index.md") for _, target in Page(page).links
@@ -51,12 +51,12 @@ def test_the_top_level_has_only_documents_settings_and_dotfiles() -> None:
 
 
 @each_workflow
-def test_a_workflow_reads_only_and_names_existing_files(path: Path) -> None:
+def test_workflow_has_read_only_permissions_and_existing_files(path: Path) -> None:
     assert mistakes_of_workflow(path.read_text(encoding="utf-8")) == []
 
 
 @pytest.mark.parametrize("name", UNTRIED)
-def test_a_system_that_was_not_tested_is_called_untried(name: str) -> None:
+def test_untested_systems_are_marked_as_untried(name: str) -> None:
     text = (ROOT / ".github" / "workflows" / name).read_text(encoding="utf-8")
     assert "UNTRIED" in text
     assert UNTRIED[name] in (ROOT / "docs" / "integrator" / "install.md").read_text(encoding="utf-8")
@@ -73,13 +73,13 @@ def test_a_system_that_was_not_tested_is_called_untried(name: str) -> None:
         ("    steps", "\tsteps", "tab"),
     ],
 )
-def test_a_wrong_workflow_is_found(good: str, bad: str, kind: str) -> None:
+def test_wrong_workflow_is_detected(good: str, bad: str, kind: str) -> None:
     text = (ROOT / ".github" / "workflows" / "linux.yml").read_text(encoding="utf-8")
     assert good in text
     assert kind in mistakes_of_workflow(text.replace(good, bad, 1))
 
 
-def test_each_form_asks_for_something_and_has_unique_ids() -> None:
+def test_each_issue_form_has_required_fields_and_unique_ids() -> None:
     forms = [path for path in FORMS if path.name != "config.yml"]
     assert [path.name for path in forms] == ["fault.yml", "hardware.yml", "wish.yml"]
     for path in forms:
@@ -89,7 +89,7 @@ def test_each_form_asks_for_something_and_has_unique_ids() -> None:
         assert text.count("required: true") >= 2
 
 
-def test_the_citation_states_no_version_of_its_own() -> None:
+def test_citation_does_not_state_a_version() -> None:
     """A version here would be a second place to change."""
     text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert "cff-version: 1.2.0" in text

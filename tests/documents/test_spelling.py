@@ -56,24 +56,24 @@ def _report(*arguments: str) -> list[str]:
 
 
 @pytest.mark.skipif(CODESPELL is None, reason="codespell is not installed: apt install codespell")
-def test_documents_are_spelled_right() -> None:
+def test_documents_have_no_misspelled_words() -> None:
     files = [page.name for page in pages() if page.name != TRANSLATED]
     assert _report("--ignore-regex", f"`[^`]*`|{re.escape(GLOSSARY_ROW)}", *files) == []
 
 
 @pytest.mark.skipif(CODESPELL is None, reason="codespell is not installed: apt install codespell")
-def test_texts_of_the_product_are_spelled_right(tmp_path: Path) -> None:
+def test_product_texts_have_no_misspelled_words(tmp_path: Path) -> None:
     texts = tmp_path / "texts.txt"
     texts.write_text("\n".join(read_list().values()), encoding="utf-8")
     assert _report(str(texts)) == []
 
 
 @pytest.mark.skipif(CODESPELL is None, reason="codespell is not installed: apt install codespell")
-def test_a_misspelled_word_is_found(tmp_path: Path) -> None:
+def test_misspelled_word_is_detected(tmp_path: Path) -> None:
     path = tmp_path / "page.md"
     path.write_text("Recieve the colour.\n", encoding="utf-8")
     assert len(_report(str(path))) == 2
 
 
-def test_the_row_of_the_glossary_exists() -> None:
+def test_glossary_row_excluded_from_spelling_exists() -> None:
     assert GLOSSARY_ROW in (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")

@@ -69,7 +69,7 @@ def test_setpoints_follow_the_true_angle(rpm: float) -> None:
     assert sim.ports.axes.horizon() <= clock.now()
 
 
-def test_then_goes_on_by_time_at_once() -> None:
+def test_motion_by_time_follows_a_gear_without_delay() -> None:
     sim, clock, gear = turning()
     made = cam(sim)
     end = (0.0, 10.5 * LEAD, 0.0)
@@ -82,7 +82,7 @@ def test_then_goes_on_by_time_at_once() -> None:
     assert sim.ports.axes.demand_at(clock.now())[0] == pytest.approx((60.0 * 0.22, 10.5 * LEAD, 0.0))
 
 
-def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
+def test_stopped_spindle_stops_the_geared_axes() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim, turns=60.0))
     play(sim, clock, 0.5)
@@ -99,7 +99,7 @@ def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
     assert z_of(sim, clock) > stood + 4 * LEAD
 
 
-def test_a_gear_slips_at_the_slides_greatest_speed_and_catches_up() -> None:
+def test_gear_slips_at_maximum_axis_speed_and_catches_up() -> None:
     sim, clock, gear = turning(600.0)
     gear.mesh(cam(sim, lead=12.6, turns=8.0))  # 126 mm/s of 127
     sim.machine.spindle_wander(0.03, 0.5)
@@ -117,7 +117,7 @@ def test_a_gear_slips_at_the_slides_greatest_speed_and_catches_up() -> None:
     assert sim.ports.axes.sample().fault == ""
 
 
-def test_a_later_way_replaces_the_end() -> None:
+def test_later_gear_motion_replaces_the_rest_of_the_first() -> None:
     sim, clock, gear = turning()
     made = cam(sim, turns=60.0)
     gear.mesh(made)
@@ -132,7 +132,7 @@ def test_a_later_way_replaces_the_end() -> None:
     assert z_of(sim, clock) == pytest.approx(20.5 * LEAD)
 
 
-def test_the_drives_own_stop_brakes_from_where_they_are() -> None:
+def test_drive_stop_brakes_a_geared_axis_from_its_position() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim, turns=60.0))
     play(sim, clock, 0.6)
@@ -145,7 +145,7 @@ def test_the_drives_own_stop_brakes_from_where_they_are() -> None:
     assert sim.ports.axes.sample().enabled
 
 
-def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
+def test_accelerating_spindle_does_not_overload_a_geared_axis() -> None:
     """The way was planned for 600 rpm; at 1600 its braking would take seven times as much."""
     sim, clock, gear = turning(600.0)
     lead = 4.0
@@ -163,7 +163,7 @@ def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
     assert sim.ports.axes.sample().fault == ""
 
 
-def test_it_is_never_foretold_as_over_while_it_is_played() -> None:
+def test_gear_motion_is_never_reported_as_finished_while_it_is_played() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim))
     sim.ports.spindle.set_speed(150.0)
@@ -173,7 +173,7 @@ def test_it_is_never_foretold_as_over_while_it_is_played() -> None:
     assert is_queue_finished(sim.ports.axes.horizon(), clock.now())
 
 
-def test_what_rounding_leaves_of_a_motion_is_rest() -> None:
+def test_rounding_remainder_of_a_motion_counts_as_rest() -> None:
     """Executor and driver ask by one rule, else a start on a clock of 2.5 ms is refused."""
     sim, clock, gear = turning()
     sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.1))
@@ -187,7 +187,7 @@ def test_what_rounding_leaves_of_a_motion_is_rest() -> None:
     assert gear.geared() is not None
 
 
-def test_a_way_that_is_not_begun_is_replaced_whole() -> None:
+def test_gear_motion_not_yet_started_is_replaced_completely() -> None:
     """A shorter running up leaves nothing of the longer one before it."""
     sim, clock, gear = turning()
     made = cam(sim, start=3.0)
@@ -205,21 +205,21 @@ def test_a_way_that_is_not_begun_is_replaced_whole() -> None:
 # --- refusals -----------------------------------------------------------------------------------------------
 
 
-def test_a_standing_spindle_is_not_followed() -> None:
+def test_gear_to_a_spindle_without_an_encoder_is_rejected() -> None:
     sim, _ = simulation()
     assert sim.ports.gear is not None
     with raises_code(DriverError, "thread-no-encoder"):
         sim.ports.gear.mesh(cam(sim))
 
 
-def test_nor_one_that_turns_the_other_way() -> None:
+def test_gear_to_a_spindle_turning_the_other_way_is_rejected() -> None:
     sim, _, gear = turning(-600.0)
     made = cam(sim)
     with raises_code(DriverError, "thread-no-encoder"):
         gear.mesh(made._replace(sign=1.0))
 
 
-def test_a_way_that_begins_within_the_commit_is_too_early() -> None:
+def test_gear_motion_that_starts_within_the_commit_time_is_rejected() -> None:
     sim, _, gear = turning()  # ten turns a second: .3 turn in 30 ms
     with raises_code(DriverError, "late") as told:
         gear.mesh(cam(sim, start=0.25))
@@ -228,7 +228,7 @@ def test_a_way_that_begins_within_the_commit_is_too_early() -> None:
     gear.mesh(cam(sim, start=0.35))
 
 
-def test_a_way_has_to_begin_where_the_slides_are_and_end_at_rest() -> None:
+def test_gear_motion_must_start_at_the_axes_and_end_at_rest() -> None:
     sim, _, gear = turning()
     made = cam(sim)
     with raises_code(DriverError, "driver", "Z: ") as told:
@@ -244,7 +244,7 @@ def test_a_way_has_to_begin_where_the_slides_are_and_end_at_rest() -> None:
     assert gear.geared() is None
 
 
-def test_another_index_is_refused_once_it_moves() -> None:
+def test_different_index_is_rejected_once_the_gear_moves() -> None:
     sim, clock, gear = turning()
     made = cam(sim, turns=60.0)
     gear.mesh(made._replace(start_revolutions=made.start_revolutions + 1.0))
@@ -255,7 +255,7 @@ def test_another_index_is_refused_once_it_moves() -> None:
     assert told.value.reason == "other-index"
 
 
-def test_too_fast_for_the_slides_and_out_of_their_travel() -> None:
+def test_gear_motion_too_fast_or_out_of_travel_is_rejected() -> None:
     sim, _, gear = turning(1500.0)
     with raises_code(DriverError, "drive-limits", "Z: ") as told:
         gear.mesh(cam(sim, lead=6.0))  # 150 mm/s
@@ -265,7 +265,7 @@ def test_too_fast_for_the_slides_and_out_of_their_travel() -> None:
     assert told.value.reason == "leaves-travel"
 
 
-def test_not_while_the_slides_move_by_time() -> None:
+def test_gear_is_rejected_while_axes_move_by_time() -> None:
     sim, clock, gear = turning()
     sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.5))
     play(sim, clock, 0.1)
@@ -274,7 +274,7 @@ def test_not_while_the_slides_move_by_time() -> None:
     assert told.value.reason == "not-at-rest"
 
 
-def test_setpoints_in_time_release_a_gear_that_waits_and_no_other() -> None:
+def test_setpoints_by_time_release_only_a_waiting_gear() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim, start=5.0))
     with raises_code(DriverError, "broken-path") as told:
@@ -286,7 +286,7 @@ def test_setpoints_in_time_release_a_gear_that_waits_and_no_other() -> None:
     assert z_of(sim, clock) == 0.0
 
 
-def test_drives_that_are_off_follow_nothing() -> None:
+def test_disabled_drives_do_not_follow_a_gear() -> None:
     sim, clock, gear = turning()
     sim.ports.axes.enable(False)
     with raises_code(DriverError, "power-lost"):
@@ -302,7 +302,7 @@ def test_drives_that_are_off_follow_nothing() -> None:
 # --- the angle ----------------------------------------------------------------------------------------------
 
 
-def test_the_angle_of_a_swinging_spindle_from_an_encoder_with_steps() -> None:
+def test_filter_recovers_the_angle_of_a_wandering_spindle() -> None:
     def truth(t: float) -> float:
         return 50.0 * (t - 0.02 * 0.25 / (2 * math.pi) * math.cos(2 * math.pi * t / 0.25))  # 3000 rpm
 
@@ -317,7 +317,7 @@ def test_the_angle_of_a_swinging_spindle_from_an_encoder_with_steps() -> None:
     assert np.abs(off[100:]).max() < jerk / 250.0**3 + 1.0 / 4096
 
 
-def test_an_accelerating_spindle_is_met_without_lag() -> None:
+def test_filter_follows_an_accelerating_spindle_without_lag() -> None:
     phase = SpindlePhaseFilter(0.0, 0.0, 0.0)
     for k in range(1, 1000):
         phase.add_reading(0.001 * k, 12.5 * (0.001 * k) ** 2)
@@ -325,7 +325,7 @@ def test_an_accelerating_spindle_is_met_without_lag() -> None:
     assert phase.predict_revolutions(1.009) == pytest.approx(12.5 * 1.009**2, abs=1e-6)
 
 
-def test_the_same_reading_again_says_nothing() -> None:
+def test_repeated_reading_does_not_change_the_filter() -> None:
     phase = SpindlePhaseFilter(1.0, 5.0, 10.0)
     phase.add_reading(1.0, 7.0)
     phase.add_reading(0.5, 9.0)

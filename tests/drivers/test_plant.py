@@ -15,7 +15,7 @@ from tests.drivers.machines import CONFIG, play, ramp, simulation
 ZERO = (0.0, 0.0, 0.0)
 
 
-def test_slide_follows_with_an_error_and_arrives() -> None:
+def test_axis_follows_with_a_following_error_and_arrives() -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     play(sim, clock, 0.2)
@@ -31,7 +31,7 @@ def test_slide_follows_with_an_error_and_arrives() -> None:
 
 
 @pytest.mark.parametrize("tick", [0.0013, 0.01, 0.37])
-def test_it_does_not_matter_who_looks_when(tick: float) -> None:
+def test_simulation_does_not_depend_on_polling_interval(tick: float) -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     play(sim, clock, 0.185, tick)
@@ -43,7 +43,7 @@ def test_it_does_not_matter_who_looks_when(tick: float) -> None:
     assert other.machine.get_true_position() == looked
 
 
-def test_a_jammed_slide_trips_and_takes_the_others_down() -> None:
+def test_jammed_axis_trips_and_disables_the_others() -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
@@ -63,7 +63,7 @@ def test_a_jammed_slide_trips_and_takes_the_others_down() -> None:
     assert sim.ports.axes.sample().fault == ""
 
 
-def test_a_stuck_encoder_trips() -> None:
+def test_stuck_encoder_trips_its_axis() -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.6))
     play(sim, clock, 0.2)
@@ -75,7 +75,7 @@ def test_a_stuck_encoder_trips() -> None:
 
 
 @pytest.mark.parametrize("how", [StopMode.RAMP_OFF, StopMode.RAMP_HOLD, StopMode.OFF])
-def test_the_drives_own_stop(how: StopMode) -> None:
+def test_each_stop_mode_brakes_as_specified(how: StopMode) -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
@@ -107,7 +107,7 @@ def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
     assert clock.now() == 0.0
 
 
-def test_estop_is_hardware() -> None:
+def test_estop_acts_in_hardware() -> None:
     sim, clock = simulation()
     sim.ports.spindle.set_speed(1000.0)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
@@ -129,7 +129,7 @@ def test_estop_is_hardware() -> None:
     assert sim.machine.get_spindle_rpm() == 0.0
 
 
-def test_homing_finds_the_switch_and_power_loss_forgets_it() -> None:
+def test_homing_finds_the_switch_and_power_loss_loses_home() -> None:
     lost = dataclasses.replace(CONFIG.axes[1], absolute=False, power_up_position=-12.0, home_speed=20.0)
     config = dataclasses.replace(CONFIG, axes=(CONFIG.axes[0], lost, CONFIG.axes[2]))
     sim, clock = simulation(config)
@@ -147,7 +147,7 @@ def test_homing_finds_the_switch_and_power_loss_forgets_it() -> None:
     assert sim.ports.axes.sample().homed == (True, False, True)
 
 
-def test_homing_refuses_while_moving_and_an_unknown_axis() -> None:
+def test_homing_is_rejected_in_motion_and_for_an_unknown_axis() -> None:
     lost = dataclasses.replace(CONFIG.axes[1], absolute=False)
     sim, clock = simulation(dataclasses.replace(CONFIG, axes=(CONFIG.axes[0], lost, CONFIG.axes[2])))
     sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.6))
@@ -181,7 +181,7 @@ def test_spindle_ramps_after_its_latency() -> None:
 
 
 @pytest.mark.parametrize("coast", [False, True])
-def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bool) -> None:
+def test_spindle_stopped_within_its_start_latency_never_turns(coast: bool) -> None:
     sim, clock = simulation()
     spindle = sim.ports.spindle
     spindle.set_speed(1500.0)
@@ -192,7 +192,7 @@ def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bo
         assert spindle.speed() == 0.0
 
 
-def test_a_stop_that_is_repeated_stops_after_the_latency_of_the_first() -> None:
+def test_repeated_stop_uses_the_latency_of_the_first() -> None:
     sim, clock = simulation()
     spindle = sim.ports.spindle
     spindle.set_speed(600.0)
@@ -203,7 +203,7 @@ def test_a_stop_that_is_repeated_stops_after_the_latency_of_the_first() -> None:
     assert spindle.speed() == pytest.approx(600.0 - 2500.0 * (0.2 - 0.08))
 
 
-def test_spindle_faults() -> None:
+def test_simulated_spindle_faults_are_reported() -> None:
     sim, clock = simulation()
     sim.ports.spindle.set_speed(9000.0)
     clock.sleep_until(5.0)
@@ -224,7 +224,7 @@ def test_spindle_faults() -> None:
     assert sim.ports.spindle.speed() == 0.0
 
 
-def test_collet_takes_its_time() -> None:
+def test_collet_needs_time_to_open_and_close() -> None:
     sim, clock = simulation()
     assert sim.ports.io.inputs()["collet_closed"]
     sim.ports.io.write("collet", False)
@@ -241,7 +241,7 @@ def test_collet_takes_its_time() -> None:
     assert sim.ports.io.inputs()["collet_closed"]
 
 
-def test_safe_keeps_the_collet() -> None:
+def test_safe_state_leaves_the_collet_unchanged() -> None:
     sim, _ = simulation()
     sim.ports.io.write("coolant", True)
     sim.ports.io.switch_to_safe_state()
@@ -289,7 +289,7 @@ def test_the_station_is_read_again_only_after_a_change() -> None:
 
 
 @pytest.mark.parametrize("act", ["start", "noise", "silence"])
-def test_a_station_that_changes_by_itself_is_read_each_time(act: str) -> None:
+def test_station_that_changes_with_time_is_read_each_time(act: str) -> None:
     sim, clock = simulation()
     acts: dict[str, Callable[[], None]] = {
         "start": sim.machine.press_start,  # its contact opens again after a pulse

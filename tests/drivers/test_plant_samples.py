@@ -22,7 +22,7 @@ def taken(sim: Simulation) -> FloatArray:
     return sim.ports.samples.take()
 
 
-def test_a_motion_is_sampled_on_the_models_grid_with_the_error_that_the_law_has() -> None:
+def test_motion_is_sampled_on_the_model_grid_with_the_expected_error() -> None:
     sim, clock = simulation()
     taken(sim)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
@@ -40,7 +40,7 @@ def test_a_motion_is_sampled_on_the_models_grid_with_the_error_that_the_law_has(
 
 
 @pytest.mark.parametrize("tick", [0.0013, 0.01, 0.2])
-def test_the_samples_are_the_same_whoever_looks_when(tick: float) -> None:
+def test_samples_do_not_depend_on_polling_interval(tick: float) -> None:
     def sampled(every: float) -> FloatArray:
         sim, clock = simulation()
         taken(sim)
@@ -59,7 +59,7 @@ def test_the_samples_are_the_same_whoever_looks_when(tick: float) -> None:
 
 
 @pytest.mark.parametrize("act", ["nothing", "push", "jam", "new setpoints", "drive fault"])
-def test_a_foreseen_motion_is_the_stepped_one(act: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_predicted_motion_matches_stepped_motion(act: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def sampled() -> FloatArray:
         sim, clock = simulation()
         taken(sim)
@@ -90,7 +90,7 @@ def braking(t: float, p: tuple[float, ...], v: tuple[float, ...]) -> MotionSegme
     return MotionSegments(np.array([t]), np.array([0.1]), np.array([p]), np.array([v]), np.array([a]))
 
 
-def test_a_spindle_is_sampled_also_while_the_slides_rest_and_its_ripple_is_the_known_one() -> None:
+def test_spindle_is_sampled_at_rest_with_its_known_ripple() -> None:
     sim, clock = simulation()
     taken(sim)
     sim.machine.spindle_wander(0.02, 0.25)
@@ -108,7 +108,7 @@ def test_a_spindle_is_sampled_also_while_the_slides_rest_and_its_ripple_is_the_k
     assert rows[:, TURNS] - rows[0, TURNS] == pytest.approx(turned - turned[0], abs=1.1 / 4096)
 
 
-def test_a_machine_at_rest_says_so_ten_times_a_second() -> None:
+def test_machine_at_rest_is_sampled_ten_times_a_second() -> None:
     sim, clock = simulation()
     taken(sim)
     play(sim, clock, 10.0)
@@ -117,7 +117,7 @@ def test_a_machine_at_rest_says_so_ten_times_a_second() -> None:
     assert not rows[:, DEMAND:LOAD].any()
 
 
-def test_without_power_the_demand_is_where_the_slide_is() -> None:
+def test_demand_without_power_follows_the_axis_position() -> None:
     sim, clock = simulation()
     taken(sim)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
@@ -130,7 +130,7 @@ def test_without_power_the_demand_is_where_the_slide_is() -> None:
     assert rows[-1, ACTUAL] > rows[1, ACTUAL]  # it rolls on
 
 
-def test_nobody_who_takes_them_costs_nothing_and_a_late_one_has_the_last_eight_seconds() -> None:
+def test_unread_samples_are_limited_to_the_last_eight_seconds() -> None:
     sim, clock = simulation()
     sim.ports.spindle.set_speed(600.0)
     play(sim, clock, 1.0)
@@ -142,7 +142,7 @@ def test_nobody_who_takes_them_costs_nothing_and_a_late_one_has_the_last_eight_s
     assert np.diff(rows[:, T]) == pytest.approx(0.001, abs=1e-9)
 
 
-def test_a_log_gives_each_row_once_the_oldest_first() -> None:
+def test_sample_log_returns_each_row_once_oldest_first() -> None:
     log = SampleLog(0, capacity=4)
     for n in range(6):
         log.append_row(float(n), 0.0, 0.0, 0.0, 0.0)
@@ -152,7 +152,7 @@ def test_a_log_gives_each_row_once_the_oldest_first() -> None:
     assert log.pop_rows().shape == (0, 5)
 
 
-def test_rows_added_at_once_are_as_those_one_by_one() -> None:
+def test_rows_added_as_a_block_match_rows_added_one_by_one() -> None:
     for count in (1, 3, 4, 5, 9):
         single, block = SampleLog(0, capacity=4), SampleLog(0, capacity=4)
         rows = np.arange(5.0 * count).reshape(count, 5)
@@ -167,7 +167,7 @@ def test_rows_added_at_once_are_as_those_one_by_one() -> None:
         np.testing.assert_array_equal(block.pop_rows(), single.pop_rows())
 
 
-def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:
+def test_spindle_load_consists_of_friction_acceleration_and_cutting() -> None:
     """By the speed up to 10 %, 70 % more while it speeds up, 30 % more while a slide feeds."""
     sim, clock = simulation()
     taken(sim)
@@ -186,7 +186,7 @@ def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:
     assert taken(sim)[-1][SPINDLE_LOAD] == pytest.approx(share)
 
 
-def test_the_rate_is_that_of_the_models_grid() -> None:
+def test_sample_rate_matches_the_model_grid() -> None:
     sim, _ = simulation()
     assert sim.ports.samples is not None
     assert sim.ports.samples.sample_rate_hz == pytest.approx(1000.0)  # every millisecond

@@ -25,7 +25,7 @@ class Touch(FirstTouchInput):
             self._kept = TouchLatch(t, (), 0.001)
 
 
-def test_an_error_keeps_template_and_values_and_a_sentence_without_values_keeps_its_braces() -> None:
+def test_error_retains_template_and_values_and_plain_text_its_braces() -> None:
     error = DriverError("{name} is at {place}", "homing", reason="far", name="X", place=2.5)
     message = error.args[0]
     assert isinstance(message, Message)
@@ -36,7 +36,7 @@ def test_an_error_keeps_template_and_values_and_a_sentence_without_values_keeps_
         DriverError("{name} is at {place}", name="X")
 
 
-def test_a_fault_that_is_handed_on_keeps_its_code_also_to_another_process() -> None:
+def test_forwarded_fault_retains_its_code_in_another_process() -> None:
     fault = Fault("{name}: drive fault", "axis", name="Z")
     assert (fault, fault.code) == ("Z: drive fault", "axis")
     assert DriverError(fault).code == pickle.loads(pickle.dumps(fault)).code == "axis"
@@ -56,13 +56,15 @@ def test_a_fault_that_is_handed_on_keeps_its_code_also_to_another_process() -> N
         (lambda: require_output_allowed("lamp", True, "cable out"), "output", ""),
     ],
 )
-def test_what_is_refused_and_why(order: Callable[[], object], code: str, reason: str) -> None:
+def test_require_functions_raise_the_stated_code_and_reason(
+    order: Callable[[], object], code: str, reason: str
+) -> None:
     with pytest.raises(DriverError) as refused:
         order()
     assert (refused.value.code, refused.value.reason) == (code, reason)
 
 
-def test_what_may_be_done_is_not_refused() -> None:
+def test_permitted_operations_are_not_rejected() -> None:
     require_power("", is_powered=True)
     require_no_homing("")
     require_axis("X", "XZ")
@@ -71,7 +73,7 @@ def test_what_may_be_done_is_not_refused() -> None:
     assert find_output("collet", {"collet": 1}) == 1
 
 
-def test_the_first_touch_after_arming_is_kept_and_one_that_was_there_is_none() -> None:
+def test_first_touch_after_arming_is_latched_and_earlier_contact_ignored() -> None:
     touch = Touch()
     touch.see(1.0, on=True)
     touch.arm_latch()

@@ -23,7 +23,7 @@ def broken(*faults: PlannedFault) -> tuple[Simulation, ManualClock]:
     return simulation(dataclasses.replace(CONFIG, planned_faults=faults))
 
 
-def test_a_jam_comes_in_the_middle_of_a_move() -> None:
+def test_planned_jam_occurs_during_a_move() -> None:
     sim, clock = broken(PlannedFault(0.3, "jam", "X"))
     sim.ports.axes.splice(ramp(0.03, (0.0, 0.0, 0.0), 60.0, 1.0))
     play(sim, clock, 0.29)
@@ -34,7 +34,7 @@ def test_a_jam_comes_in_the_middle_of_a_move() -> None:
     assert fault.startswith("X: ")
 
 
-def test_what_lasts_is_mended() -> None:
+def test_temporary_fault_ends_after_its_duration() -> None:
     sim, clock = broken(PlannedFault(0.1, "station_silent", seconds=0.5))
     play(sim, clock, 0.3)
     assert sim.ports.station.read_state().age > 0.1
@@ -42,7 +42,7 @@ def test_what_lasts_is_mended() -> None:
     assert sim.ports.station.read_state().age == 0.0
 
 
-def test_a_bogged_spindle_gets_its_speed_back() -> None:
+def test_slowed_spindle_recovers_its_speed() -> None:
     sim, clock = broken(PlannedFault(3.0, "spindle_bog", value=0.4, seconds=2.0))
     sim.ports.spindle.set_speed(1000.0)
     play(sim, clock, 4.9)
@@ -52,7 +52,7 @@ def test_a_bogged_spindle_gets_its_speed_back() -> None:
 
 
 @pytest.mark.parametrize("what", FAULT_KINDS)
-def test_whatever_a_machine_file_may_name_the_simulation_can_break(what: str) -> None:
+def test_every_fault_kind_of_the_machine_file_can_be_simulated(what: str) -> None:
     sim, clock = broken(PlannedFault(0.05, what, "Z", 0.1, 0.05))
     play(sim, clock, 0.3)
 
@@ -74,7 +74,7 @@ def table_with(lines: str) -> SimulatedTable:
     return table
 
 
-def test_every_fault_and_tip_of_a_list_is_read_in_its_order() -> None:
+def test_faults_and_tips_are_read_in_order() -> None:
     table = table_with(
         'faults = [{ at = 12, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]\n'
         "tips = [{ x = 1.0, z = 2.0 }, { x = -1.0, z = 0.0 }]"
@@ -104,7 +104,7 @@ def test_every_fault_and_tip_of_a_list_is_read_in_its_order() -> None:
         ('faults = [{ at = 1, axis = "Q" }]', "sim.faults.1.what", ""),  # and of its axis nothing is said
     ],
 )
-def test_a_fault_that_makes_no_sense_is_refused_where_it_stands(lines: str, path: str, value: str) -> None:
+def test_invalid_planned_fault_is_rejected_at_its_location(lines: str, path: str, value: str) -> None:
     with pytest.raises(MachineFileError) as told:
         table_with(lines)
     (finding,) = told.value.findings
@@ -115,14 +115,14 @@ def test_a_fault_that_makes_no_sense_is_refused_where_it_stands(lines: str, path
 
 
 @pytest.mark.parametrize(("speed", "moving"), [(0.5, True), (-0.02, True), (0.005, False)])
-def test_a_slide_moves_from_a_hundredth_of_a_millimetre_a_second_on(speed: float, moving: bool) -> None:
+def test_axis_counts_as_moving_from_a_hundredth_millimeter_per_second(speed: float, moving: bool) -> None:
     plant = SimulatedPlant(CONFIG, ManualClock())
     plant.servos[0].v = speed
     assert SimAxes(plant).sample().moving is moving
 
 
 @pytest.mark.parametrize("measures", [True, False])
-def test_the_load_of_the_spindle_is_told_where_an_input_measures_it(measures: bool) -> None:
+def test_spindle_load_is_reported_only_with_a_load_input(measures: bool) -> None:
     sim, clock = simulation(dataclasses.replace(CONFIG, has_load_input=measures))
     play(sim, clock, 0.1)
     assert (sim.ports.station.read_state().spindle_load is not None) is measures
@@ -134,7 +134,7 @@ ORIENTS = dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle
 
 
 @pytest.mark.parametrize("broken", [False, True])
-def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle(broken: bool) -> None:
+def test_spindle_neither_turns_nor_orients_in_estop_or_with_a_fault(broken: bool) -> None:
     sim, clock = simulation(ORIENTS)
     assert sim.ports.orientation is not None
     sim.ports.orientation.orient_spindle(90.0)
@@ -159,7 +159,7 @@ def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle
     assert (sim.ports.spindle.read_fault() == "over-current") is broken
 
 
-def test_without_an_encoder_there_is_no_angle_and_without_a_setter_no_touch() -> None:
+def test_missing_encoder_gives_no_angle_and_missing_setter_no_touch() -> None:
     sim, _ = simulation(
         dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, pulses_per_rev=0))
     )
@@ -167,7 +167,7 @@ def test_without_an_encoder_there_is_no_angle_and_without_a_setter_no_touch() ->
     assert (sim.ports.touch, sim.ports.orientation) == (None, None)
 
 
-def test_axes_and_outputs_that_are_not_there_are_named() -> None:
+def test_unknown_axes_and_outputs_are_reported_by_name() -> None:
     sim, _ = simulation()
     with raises_code(DriverError, "driver", "'Q'") as told:
         sim.ports.axes.home("Q")
@@ -176,7 +176,7 @@ def test_axes_and_outputs_that_are_not_there_are_named() -> None:
         sim.ports.io.write("no such", True)
 
 
-def test_the_rate_of_the_samples_is_that_of_the_grid() -> None:
+def test_sample_rate_matches_the_step_time() -> None:
     sim, _ = simulation()
     assert sim.ports.samples is not None
     assert sim.ports.samples.sample_rate_hz == pytest.approx(1.0 / CONFIG.step_s)

@@ -18,19 +18,19 @@ MARKED, MEANT = b"A\xff\xffB\xff\x00CD\xff\x00\x00", b"A\xffBCD\x00"
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4, 5, len(MARKED)])
-def test_marks_are_taken_out_and_counted_wherever_the_bytes_are_cut(size: int) -> None:
+def test_parity_marks_are_removed_and_counted_wherever_data_is_split(size: int) -> None:
     marks = ParityMarkDecoder()
     come = b"".join(marks.decode(MARKED[at : at + size]) for at in range(0, len(MARKED), size))
     assert (come, marks.damaged_count) == (MEANT, 2)
 
 
-def test_a_mark_whose_end_has_not_come_waits_for_it() -> None:
+def test_incomplete_parity_mark_waits_for_the_rest() -> None:
     marks = ParityMarkDecoder()
     assert [marks.decode(each) for each in (b"G\xff", b"\x00", b"1")] == [b"G", b"", b"1"]
     assert marks.damaged_count == 1
 
 
-def test_a_port_that_is_not_there_or_is_none_says_which_and_why(tmp_path: Path) -> None:
+def test_missing_or_invalid_port_is_reported_with_its_cause(tmp_path: Path) -> None:
     with raises_code(SerialLineError, "driver", "/dev/ttyNone") as told:
         SerialPort(LineSettings("/dev/ttyNone"))
     assert told.value.reason == "not-opened"
@@ -41,7 +41,7 @@ def test_a_port_that_is_not_there_or_is_none_says_which_and_why(tmp_path: Path) 
     assert told.value.reason == "not-opened"
 
 
-def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
+def test_errors_after_a_disconnection_are_each_one_line() -> None:
     far, near = open_pty()
     name = os.ttyname(near)
     wire = SerialPort(LineSettings(name))
@@ -57,7 +57,7 @@ def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
     wire.close()  # a second time is nothing
 
 
-def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() -> None:
+def test_line_with_a_full_buffer_accepts_nothing_and_can_be_closed() -> None:
     """What the kernel holds is known, can be dropped, and does not keep the port."""
     far, near = open_pty()
     wire = SerialPort(LineSettings(os.ttyname(near)))
@@ -75,7 +75,7 @@ def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() 
     os.close(far)
 
 
-def test_nothing_is_damaged_where_nobody_watches() -> None:
+def test_damage_is_not_counted_without_parity() -> None:
     far, near = open_pty()
     for watch in (False, True):
         wire = SerialPort(LineSettings(os.ttyname(near)), count_damaged=watch)

@@ -30,7 +30,7 @@ def moving(p: float, v: float) -> SimulatedServo:
     accel=st.floats(-600.0, 600.0),
     steps=st.integers(1, 200),
 )
-def test_one_evaluation_is_as_many_steps(
+def test_predicted_response_matches_stepping(
     start: float, speed: float, off: float, accel: float, steps: int
 ) -> None:
     setpoints = SetpointPolynomial(start + off, speed * DT, 0.5 * accel * DT * DT)
@@ -48,7 +48,7 @@ def test_one_evaluation_is_as_many_steps(
     assert glided.over == 0.0
 
 
-def test_an_even_move_is_foreseen() -> None:
+def test_steady_move_is_predicted() -> None:
     assert moving(0.0, 100.0).predict_response(SetpointPolynomial(0.08, 0.1, 0.0), 1000) is not None
 
 
@@ -64,21 +64,21 @@ EVEN = SetpointPolynomial(0.017, 0.02, 0.0)  # 20 mm/s; the following error at t
     ],
     ids=["window", "force", "speed"],
 )
-def test_where_one_limit_may_act_it_is_stepped(limited: SimAxis) -> None:
+def test_motion_near_a_limit_is_stepped(limited: SimAxis) -> None:
     free, bound = SimulatedServo(SLIDE, DT), SimulatedServo(limited, DT)
     free.v = bound.v = 20.0
     assert free.predict_response(EVEN, 50) is not None
     assert bound.predict_response(EVEN, 50) is None
 
 
-def test_a_start_beside_the_setpoint_counts_for_the_window() -> None:
+def test_following_window_includes_the_initial_offset() -> None:
     narrow = SimulatedServo(dataclasses.replace(SLIDE, following_window=0.005), DT)
     assert narrow.predict_response(SetpointPolynomial(0.001, 0.0, 0.0), 50) is not None
     assert narrow.predict_response(SetpointPolynomial(0.006, 0.0, 0.0), 50) is None
 
 
 @pytest.mark.parametrize(("share", "foreseen"), [(0.9, True), (1.1, False)])
-def test_the_force_of_the_first_step_counts(share: float, foreseen: bool) -> None:
+def test_force_of_the_first_step_limits_the_prediction(share: float, foreseen: bool) -> None:
     """In its fast mode alone the servo needs more force in the first step than in all that follow."""
     loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth * DT, SLIDE.feed_forward)
     first = share * SLIDE.amax * SLIDE.accel_reserve * DT * DT
@@ -88,7 +88,7 @@ def test_the_force_of_the_first_step_counts(share: float, foreseen: bool) -> Non
 
 
 @pytest.mark.parametrize(("accel", "foreseen"), [(1500.0, True), (4000.0, False)])
-def test_an_acceleration_beyond_the_drives_is_stepped(accel: float, foreseen: bool) -> None:
+def test_acceleration_beyond_the_drive_limit_is_stepped(accel: float, foreseen: bool) -> None:
     """The drive has 1.3 times 3048 mm/s²; here the first step needs no force."""
     response = moving(0.0, 0.0).predict_response(SetpointPolynomial(0.0, 0.0, 0.5 * accel * DT * DT), 4)
     assert (response is not None) is foreseen
@@ -97,7 +97,7 @@ def test_an_acceleration_beyond_the_drives_is_stepped(accel: float, foreseen: bo
 @pytest.mark.parametrize(
     "fault", [{"jammed": True}, {"runaway": 1.0}, {"stuck": 0.0}], ids=["jammed", "runaway", "stuck"]
 )
-def test_a_faulty_slide_is_stepped(fault: dict[str, float]) -> None:
+def test_faulty_axis_is_stepped(fault: dict[str, float]) -> None:
     servo = moving(0.0, 0.0)
     for name, value in fault.items():
         setattr(servo, name, value)
@@ -105,13 +105,13 @@ def test_a_faulty_slide_is_stepped(fault: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize("worn", ["gib", "ripple", "missed"])
-def test_a_worn_slide_is_stepped(worn: str) -> None:
+def test_worn_axis_is_stepped(worn: str) -> None:
     servo = moving(0.0, 0.0)
     setattr(servo.worn, worn, 0.01)
     assert servo.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 10) is None
 
 
-def test_a_loop_that_would_oscillate_is_refused_and_its_axis_is_stepped() -> None:
+def test_oscillating_loop_is_rejected_and_its_axis_is_stepped() -> None:
     with pytest.raises(ValueError, match=r"0\.5"):
         ServoLoop(0.5, 1.0)
     stiff = SimulatedServo(dataclasses.replace(SLIDE, bandwidth=100.0), DT)

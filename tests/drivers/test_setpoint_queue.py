@@ -19,7 +19,7 @@ def queue() -> SetpointQueue:
     return SetpointQueue(("X", "Z", "C"), REST, 0.03, JunctionTolerance((0.001,) * 3, (3.0, 3.0, 3.6)))
 
 
-def test_plays_what_was_queued_and_rests_after_it() -> None:
+def test_queued_motion_is_played_and_ends_at_rest() -> None:
     q = queue()
     q.splice_segments(ramp(0.05, REST, 60.0, 0.2), now=0.0)
     assert q.get_commanded_state(0.0) == (REST, (0.0, 0.0, 0.0))
@@ -33,7 +33,7 @@ def test_plays_what_was_queued_and_rests_after_it() -> None:
     assert q.get_end_time(7.0) == 7.0
 
 
-def test_a_splice_replaces_what_came_later() -> None:
+def test_splice_replaces_later_motion() -> None:
     q = queue()
     q.splice_segments(ramp(0.03, REST, 60.0, 1.0), now=0.0)
     p, v = q.get_commanded_state(0.5)
@@ -56,7 +56,7 @@ def test_splice_after_the_end_waits_at_rest() -> None:
     assert q.get_commanded_state(3.0)[0] == pytest.approx(REST)
 
 
-def test_refuses_what_starts_before_commit() -> None:
+def test_splice_before_the_commit_time_is_rejected() -> None:
     q = queue()
     with raises_code(DriverError, "late") as told:
         q.splice_segments(ramp(0.029, REST, 60.0, 0.1), now=0.0)
@@ -71,7 +71,7 @@ def in_slices(start: float, count: int) -> MotionSegments:
     return MotionSegments(t, np.full(count, 0.002), np.tile(REST, (count, 1)), zero, zero)
 
 
-def test_a_long_path_gives_way_to_what_has_to_go_on() -> None:
+def test_splicing_a_long_path_yields_the_cpu() -> None:
     q = queue()
     asked: list[float] = []
     q.yield_cpu = lambda: asked.append(q.get_end_time(0.0))
@@ -81,7 +81,7 @@ def test_a_long_path_gives_way_to_what_has_to_go_on() -> None:
     assert q.get_end_time(0.0) == pytest.approx(2.05)
 
 
-def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
+def test_long_path_overtaken_by_its_own_start_time_is_rejected() -> None:
     q = queue()
     fed = [0.0]
 
@@ -98,7 +98,7 @@ def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("off", "axis"), [(0.0011, 0), (-0.0011, 1), (0.0011, 2)])
-def test_refuses_a_jump_in_position(off: float, axis: int) -> None:
+def test_jump_in_position_is_rejected(off: float, axis: int) -> None:
     start = list(REST)
     start[axis] += off
     with raises_code(DriverError, "driver", f"{'XZC'[axis]}: ", "position") as told:
@@ -106,7 +106,7 @@ def test_refuses_a_jump_in_position(off: float, axis: int) -> None:
     assert told.value.reason == "jump"
 
 
-def test_refuses_a_jump_in_velocity() -> None:
+def test_jump_in_velocity_is_rejected() -> None:
     good = ramp(0.05, REST, 60.0, 0.1)
     moving = MotionSegments(
         good.start_times_s[1:],
@@ -120,7 +120,7 @@ def test_refuses_a_jump_in_velocity() -> None:
     assert told.value.reason == "jump"
 
 
-def test_refuses_a_queue_that_does_not_end_at_rest() -> None:
+def test_queue_that_does_not_end_at_rest_is_rejected() -> None:
     good = ramp(0.05, REST, 60.0, 0.1)
     endless = MotionSegments(*(part[:2] for part in good))
     with raises_code(DriverError, "broken-path", "X") as told:
@@ -129,7 +129,7 @@ def test_refuses_a_queue_that_does_not_end_at_rest() -> None:
 
 
 @pytest.mark.parametrize("part", [2, 3])
-def test_refuses_a_jump_between_its_own_pieces(part: int) -> None:
+def test_jump_between_segments_is_rejected(part: int) -> None:
     bad = ramp(0.05, REST, 60.0, 0.1)
     bad[part][1, 1] += 5.0
     with raises_code(DriverError, "broken-path", "Z: ", "0.0700") as told:
@@ -137,7 +137,7 @@ def test_refuses_a_jump_between_its_own_pieces(part: int) -> None:
     assert told.value.reason == "jump"
 
 
-def test_refuses_a_gap_and_time_running_backwards() -> None:
+def test_time_gap_and_backward_time_are_rejected() -> None:
     bad = ramp(0.05, REST, 60.0, 0.1)
     bad.start_times_s[2] += 0.01
     with raises_code(DriverError, "broken-path") as told:
@@ -149,7 +149,7 @@ def test_refuses_a_gap_and_time_running_backwards() -> None:
     assert told.value.reason == "backwards"
 
 
-def test_refuses_no_numbers_and_wrong_shapes() -> None:
+def test_non_finite_values_and_wrong_shapes_are_rejected() -> None:
     bad = ramp(0.05, REST, 60.0, 0.1)
     bad.positions[0, 0] = np.nan
     with raises_code(DriverError, "broken-path") as told:
@@ -169,7 +169,7 @@ def test_refuses_no_numbers_and_wrong_shapes() -> None:
     assert told.value.reason == "shape"
 
 
-def test_brake_needs_nobody() -> None:
+def test_braking_to_rest_needs_no_further_setpoints() -> None:
     q = queue()
     q.splice_segments(ramp(0.03, REST, 60.0, 1.0), now=0.0)
     before = q.get_commanded_state(0.5)[0][0]
@@ -178,7 +178,7 @@ def test_brake_needs_nobody() -> None:
     assert q.get_commanded_state(9.0)[0][0] == pytest.approx(before + 0.6)  # v²/2a
 
 
-def test_trimming_forgets_only_the_past() -> None:
+def test_trimming_removes_only_past_motion() -> None:
     q, rest = queue(), REST
     for k in range(100):
         q.splice_segments(ramp(0.1 + k, rest, 60.0 if k % 2 else -60.0, 0.1), now=float(k))
@@ -198,7 +198,7 @@ def test_trimming_forgets_only_the_past() -> None:
         max_size=12,
     )
 )
-def test_any_splices_leave_a_continuous_queue_that_ends_at_rest(
+def test_any_sequence_of_splices_is_continuous_and_ends_at_rest(
     calls: list[tuple[float, float, float]],
 ) -> None:
     q, now = queue(), 0.0

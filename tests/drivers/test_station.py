@@ -7,7 +7,7 @@ import pytest
 from tests.drivers.machines import simulation
 
 
-def test_both_palms_together_start() -> None:
+def test_both_palm_buttons_together_give_a_start() -> None:
     sim, clock = simulation()
     sim.machine.press_left()
     clock.advance(0.49)
@@ -20,7 +20,7 @@ def test_both_palms_together_start() -> None:
     assert not sim.ports.station.read_state().start
 
 
-def test_a_short_press_lasts_one_pulse() -> None:
+def test_short_press_lasts_one_pulse() -> None:
     sim, clock = simulation()
     sim.machine.press_start()
     clock.advance(0.09)
@@ -30,7 +30,7 @@ def test_a_short_press_lasts_one_pulse() -> None:
 
 
 @pytest.mark.parametrize("apart", [0.51, 5.0])
-def test_palms_too_far_apart_do_not_start(apart: float) -> None:
+def test_palm_presses_too_far_apart_do_not_start(apart: float) -> None:
     sim, clock = simulation()
     sim.machine.press_left()
     clock.advance(apart)
@@ -38,7 +38,7 @@ def test_palms_too_far_apart_do_not_start(apart: float) -> None:
     assert not sim.ports.station.read_state().start
 
 
-def test_a_palm_tied_down_never_starts_again() -> None:
+def test_tied_down_palm_button_allows_no_second_start() -> None:
     sim, clock = simulation()
     sim.machine.press_left()
     sim.machine.press_right()
@@ -57,7 +57,7 @@ def test_a_palm_tied_down_never_starts_again() -> None:
     assert sim.ports.station.read_state().start
 
 
-def test_hold_and_estop() -> None:
+def test_hold_and_estop_are_read_from_the_station() -> None:
     sim, clock = simulation()
     sim.machine.press_hold()
     sim.machine.release_hold()
@@ -72,7 +72,7 @@ def test_hold_and_estop() -> None:
     assert not sim.ports.station.read_state().estop
 
 
-def test_a_silent_station_ages_but_its_estop_does_not() -> None:
+def test_silent_station_state_ages_but_estop_is_still_read() -> None:
     sim, clock = simulation()
     sim.machine.set_feed_pot(0.8)
     sim.machine.station_silent()
@@ -89,7 +89,7 @@ def test_a_silent_station_ages_but_its_estop_does_not() -> None:
     assert sim.ports.station.read_state().age == 0.0
 
 
-def test_pots_are_clamped_and_noise_is_seeded() -> None:
+def test_pots_are_limited_and_their_noise_is_seeded() -> None:
     first, _ = simulation()
     second, _ = simulation()
     first.machine.set_feed_pot(7.0)

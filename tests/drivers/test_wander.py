@@ -9,7 +9,7 @@ from drivers.wakeups import ManualClock
 from tests.drivers.machines import CONFIG
 
 
-def test_turns_follow_the_swinging_speed() -> None:
+def test_revolutions_follow_the_wandering_speed() -> None:
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     sim.machine.spindle_wander(0.02, 2.0)
@@ -28,7 +28,7 @@ def test_turns_follow_the_swinging_speed() -> None:
     assert (min(speeds), max(speeds)) == pytest.approx((588.0, 612.0), abs=1e-3)
 
 
-def test_it_does_not_matter_how_often_one_looks() -> None:
+def test_revolutions_do_not_depend_on_polling_interval() -> None:
     turns = []
     for step in (0.001, 0.25):
         clock = ManualClock()
@@ -43,7 +43,7 @@ def test_it_does_not_matter_how_often_one_looks() -> None:
     assert turns[0] == pytest.approx(turns[1], abs=0.01)
 
 
-def test_no_wander_is_an_even_spindle() -> None:
+def test_spindle_without_wander_turns_uniformly() -> None:
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     sim.ports.spindle.set_speed(600.0)

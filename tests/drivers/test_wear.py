@@ -41,7 +41,7 @@ def trail(speed: float) -> float:
     return 0.2 * speed / WN
 
 
-def test_a_loose_gib_loses_its_play_at_a_reversal() -> None:
+def test_loose_gib_causes_backlash_at_a_reversal() -> None:
     sim, clock = simulation()
     sim.machine.loose_gib("X", 0.04)
     there = error(moved(sim, clock, 20.0, 0.5))
@@ -51,7 +51,7 @@ def test_a_loose_gib_loses_its_play_at_a_reversal() -> None:
     assert there.mean() - back.mean() - 2 * trail(20.0) == pytest.approx(0.04, abs=COUNT)
 
 
-def test_a_loose_gib_sticks_and_slips_when_it_creeps() -> None:
+def test_loose_gib_causes_stick_slip_at_creep_speed() -> None:
     sim, clock = simulation()
     sim.machine.loose_gib("X", 0.04)
     creeping = error(moved(sim, clock, 0.5, 2.0))
@@ -60,7 +60,7 @@ def test_a_loose_gib_sticks_and_slips_when_it_creeps() -> None:
     assert np.diff(leaps) == pytest.approx(20, abs=3)  # ms: .01 mm at .5 mm/s
 
 
-def test_a_gib_that_is_set_again_is_healthy() -> None:
+def test_adjusted_gib_is_normal_again() -> None:
     sim, clock = simulation()
     sim.machine.loose_gib("X", 0.04)
     moved(sim, clock, 20.0, 0.5)
@@ -68,7 +68,7 @@ def test_a_gib_that_is_set_again_is_healthy() -> None:
     assert error(moved(sim, clock, 20.0, 0.5)) == pytest.approx(trail(20.0), abs=COUNT)
 
 
-def test_an_encoder_off_its_centre_shows_the_known_sine() -> None:
+def test_eccentric_encoder_causes_the_expected_sine_error() -> None:
     """Through the loop of the drive: |s(s + 2wn)|/|s + wn|² of the encoder's own error, s = 2πi v/turn."""
     sim, clock = simulation()
     sim.machine.encoder_ripple("X", 0.05, 5.0)
@@ -82,7 +82,7 @@ def test_an_encoder_off_its_centre_shows_the_known_sine() -> None:
     assert heard == pytest.approx(60.0 / 5.0, abs=2.0)
 
 
-def test_counts_that_are_missed_once_a_turn_are_a_step_of_that_size() -> None:
+def test_counts_missed_once_a_revolution_cause_a_step_of_that_size() -> None:
     sim, clock = simulation()
     sim.machine.encoder_missed("X", 0.03, 5.0)
     rows = moved(sim, clock, 50.0, 1.0)
@@ -95,7 +95,7 @@ def test_counts_that_are_missed_once_a_turn_are_a_step_of_that_size() -> None:
     assert lost == pytest.approx(0.03 * math.floor(sim.machine.get_true_position()[0] / 5.0), abs=COUNT)
 
 
-def test_a_belt_slips_in_the_cut_alone_and_the_turns_are_the_area_under_the_speed() -> None:
+def test_belt_slips_only_in_a_cut_and_revolutions_match_the_speed() -> None:
     sim, clock = simulation()
     sim.machine.belt_slip(0.2)
     sim.ports.spindle.set_speed(1200.0)
@@ -112,7 +112,7 @@ def test_a_belt_slips_in_the_cut_alone_and_the_turns_are_the_area_under_the_spee
     assert rapid[:, SPEED] == pytest.approx(1200.0)
 
 
-def test_a_machine_file_may_plan_it_and_it_ends_in_time() -> None:
+def test_planned_encoder_fault_ends_after_its_duration() -> None:
     fault = PlannedFault(0.0, "encoder_missed", "X", 0.03, 1.0, turn=2.0)
     sim, clock = simulation(dataclasses.replace(CONFIG, planned_faults=(fault,)))
     rows = moved(sim, clock, 50.0, 0.5)

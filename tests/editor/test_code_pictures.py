@@ -21,7 +21,7 @@ def test_every_picture_belongs_to_a_code(dialect: Dialect) -> None:
     assert make_code_sketch("G90", dialect) is None
 
 
-def test_the_fixed_point_of_sinumerik_is_no_roughing_cycle() -> None:
+def test_sinumerik_g75_has_no_roughing_cycle_sketch() -> None:
     assert make_code_sketch("G75", OURS) is not None
     assert make_code_sketch("G75", THEIRS) is None
     assert make_code_sketch("CYCLE95", THEIRS) is not None
@@ -31,7 +31,7 @@ def test_the_fixed_point_of_sinumerik_is_no_roughing_cycle() -> None:
     ("head", "dialect", "side"),
     [("G02", OURS, 1.0), ("G03", OURS, -1.0), ("G3", THEIRS, 1.0), ("G2", THEIRS, -1.0)],
 )
-def test_one_arc_rounds_a_shoulder_and_one_fills_its_corner(head: str, dialect: Dialect, side: float) -> None:
+def test_arc_sketch_is_convex_or_concave_by_code(head: str, dialect: Dialect, side: float) -> None:
     """All from (0, 4) to (-4, 8): the middle of the convex arc lies outside of their chord."""
     drawn = make_code_sketch(head, dialect)
     assert drawn is not None
@@ -46,7 +46,9 @@ def test_one_arc_rounds_a_shoulder_and_one_fills_its_corner(head: str, dialect: 
     ("head", "dialect", "above"),
     [("G41", OURS, True), ("G42", OURS, False), ("G42", THEIRS, True), ("G41", THEIRS, False)],
 )
-def test_the_nose_goes_on_the_side_of_the_code(head: str, dialect: Dialect, above: bool) -> None:
+def test_nose_compensation_sketch_is_on_the_side_of_the_code(
+    head: str, dialect: Dialect, above: bool
+) -> None:
     """Towards the chuck along a shaft: G41 there where X is seen downwards, G42 where it is seen upwards."""
     drawn = make_code_sketch(head, dialect)
     assert drawn is not None
@@ -54,7 +56,7 @@ def test_the_nose_goes_on_the_side_of_the_code(head: str, dialect: Dialect, abov
     assert (path[0][1] > 5.0) is above
 
 
-def test_the_quadrants_lie_where_their_tips_are() -> None:
+def test_tip_quadrants_are_drawn_in_their_directions() -> None:
     drawn = make_code_sketch("T")
     assert drawn is not None
     for dim in drawn.dimensions:

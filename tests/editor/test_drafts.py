@@ -63,7 +63,7 @@ def drafts(editor: EditorModel) -> list[str]:
     return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
 
 
-def test_what_was_typed_before_the_end_is_in_the_history(start: Start, memory: Memory) -> None:
+def test_text_typed_before_a_crash_is_in_the_history(start: Start, memory: Memory) -> None:
     dead = start()
     path = program(dead)
     type_in(dead, path, "G90\n", TYPED)
@@ -76,7 +76,7 @@ def test_what_was_typed_before_the_end_is_in_the_history(start: Start, memory: M
     assert drafts(after) == []
 
 
-def test_a_new_file_that_was_never_saved_too(start: Start, memory: Memory) -> None:
+def test_text_of_an_unsaved_new_file_is_recovered(start: Start, memory: Memory) -> None:
     dead = start()
     dead.offer_new("new.nc")
     dead.create_document()
@@ -91,7 +91,7 @@ def test_a_new_file_that_was_never_saved_too(start: Start, memory: Memory) -> No
     assert memory.kept["new.nc"][0][0] == TYPED.encode()
 
 
-def test_saving_and_leaving_leave_nothing(start: Start) -> None:
+def test_saving_removes_the_draft(start: Start) -> None:
     editor = start()
     type_in(editor, program(editor), TYPED)
     assert drafts(editor) == ["part.nc.draft"]
@@ -100,7 +100,7 @@ def test_saving_and_leaving_leave_nothing(start: Start) -> None:
     assert drafts(editor) == []
 
 
-def test_giving_up_what_was_typed_leaves_nothing(start: Start) -> None:
+def test_discarding_changes_removes_the_draft(start: Start) -> None:
     editor = start()
     type_in(editor, program(editor), TYPED)
     editor.discard_and_leave(TYPED)
@@ -110,13 +110,13 @@ def test_giving_up_what_was_typed_leaves_nothing(start: Start) -> None:
     assert drafts(editor) == []
 
 
-def test_taking_back_what_was_typed_leaves_nothing(start: Start) -> None:
+def test_undoing_all_changes_removes_the_draft(start: Start) -> None:
     editor = start()
     type_in(editor, program(editor), TYPED, GOOD)
     assert drafts(editor) == []
 
 
-def test_closing_the_control_over_a_text_keeps_it(start: Start) -> None:
+def test_closing_turndesk_with_unsaved_text_retains_the_draft(start: Start) -> None:
     editor = start()
     path = program(editor)
     editor.open_program(path)
@@ -126,7 +126,7 @@ def test_closing_the_control_over_a_text_keeps_it(start: Start) -> None:
     assert (editor.draft_store.folder / "part.nc.draft").read_text() == TYPED
 
 
-def test_without_a_history_it_stays_where_it_is_told(start: Start, memory: Memory) -> None:
+def test_draft_that_cannot_be_saved_in_history_stays_in_a_reported_file(start: Start, memory: Memory) -> None:
     dead = start()
     path = program(dead)
     type_in(dead, path, TYPED)
@@ -140,7 +140,7 @@ def test_without_a_history_it_stays_where_it_is_told(start: Start, memory: Memor
     assert (after.draft_store.folder / "part.nc.left").read_text() == TYPED
 
 
-def test_a_damaged_draft_is_set_aside_and_told(start: Start) -> None:
+def test_damaged_draft_is_set_aside_and_reported(start: Start) -> None:
     editor = start()
     path = program(editor)
     editor.draft_store.folder.mkdir()
@@ -150,7 +150,7 @@ def test_a_damaged_draft_is_set_aside_and_told(start: Start) -> None:
     assert (editor.draft_store.folder / "part.nc.left").read_bytes() == b"G90\xff\n"
 
 
-def test_a_folder_that_cannot_be_written_is_told_and_typing_goes_on(start: Start) -> None:
+def test_unwritable_draft_folder_is_reported_and_editing_continues(start: Start) -> None:
     editor = start()
     path = program(editor)
     editor.draft_store.folder.write_text("a file where the folder should be")

@@ -45,7 +45,7 @@ def own(editor: EditorModel, name: str, text: str = GOOD) -> Path:
     return path
 
 
-def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
+def test_unchanged_program_is_not_written_and_gets_no_version(
     editor: EditorModel, left: list[ClosedProgram], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
@@ -57,7 +57,7 @@ def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
     )
 
 
-def test_leaving_saves_and_keeps_the_old_and_the_new(
+def test_leaving_saves_the_program_and_both_versions(
     editor: EditorModel, left: list[ClosedProgram], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
@@ -68,7 +68,7 @@ def test_leaving_saves_and_keeps_the_old_and_the_new(
     assert len(memory.kept["part.nc"]) == 2
 
 
-def test_a_saving_that_fails_keeps_the_text_and_the_page(
+def test_failed_save_leaves_the_text_and_the_editor_open(
     editor: EditorModel, left: list[ClosedProgram]
 ) -> None:
     path = own(editor, "part.nc")
@@ -80,14 +80,14 @@ def test_a_saving_that_fails_keeps_the_text_and_the_page(
     assert path.read_text() == GOOD
 
 
-def test_a_file_that_is_gone_is_told(editor: EditorModel, tmp_path: Path) -> None:
+def test_missing_file_is_reported(editor: EditorModel, tmp_path: Path) -> None:
     editor.open_program(tmp_path / "gone.nc")
     settle(editor)
     assert editor.stage is EditorStage.CLOSED
     assert "cannot be read" in editor.message
 
 
-def test_a_change_from_outside_is_replaced_only_by_the_answer(editor: EditorModel) -> None:
+def test_file_changed_on_disk_is_replaced_only_after_confirmation(editor: EditorModel) -> None:
     path = own(editor, "part.nc")
     path.write_text("M02\n")
     for _ in range(3):
@@ -99,7 +99,7 @@ def test_a_change_from_outside_is_replaced_only_by_the_answer(editor: EditorMode
     assert path.read_text() == "M30\n"
 
 
-def test_the_first_asking_says_what_happened(editor: EditorModel) -> None:
+def test_first_save_of_a_file_changed_on_disk_reports_the_change(editor: EditorModel) -> None:
     path = own(editor, "part.nc")
     path.write_text("M02\n")
     editor.save_and_leave("M30\n")
@@ -108,7 +108,7 @@ def test_the_first_asking_says_what_happened(editor: EditorModel) -> None:
     assert (editor.stage, path.read_text()) == (EditorStage.OPEN, "M02\n")
 
 
-def test_a_new_file_does_not_take_a_name_that_is_there(editor: EditorModel) -> None:
+def test_new_file_is_not_saved_under_an_existing_name(editor: EditorModel) -> None:
     own(editor, "part.nc")
     editor.discard_and_leave(editor.text)
     editor.offer_new("part")
@@ -134,7 +134,7 @@ def test_a_sample_is_saved_under_a_free_name_only(editor: EditorModel, left: lis
     assert sample.read_text() == GOOD
 
 
-def test_a_sample_of_another_language_keeps_its_ending(editor: EditorModel) -> None:
+def test_sample_of_another_language_retains_its_extension(editor: EditorModel) -> None:
     sample = editor.samples_folder / "plate.h"
     sample.write_text("BEGIN PGM PLATE MM\nEND PGM PLATE MM\n")
     editor.open_program(sample)
@@ -145,7 +145,7 @@ def test_a_sample_of_another_language_keeps_its_ending(editor: EditorModel) -> N
     assert (editor.programs_folder / "mine.h").exists()
 
 
-def test_a_new_program_has_the_ending_of_the_language_of_the_machine(editor: EditorModel) -> None:
+def test_new_program_has_the_extension_of_the_machine_language(editor: EditorModel) -> None:
     editor.default_extension = ".h"
     editor.offer_new("roof")
     editor.create_document()
@@ -153,7 +153,7 @@ def test_a_new_program_has_the_ending_of_the_language_of_the_machine(editor: Edi
     assert editor.document.name == "roof.h"
 
 
-def test_a_version_that_cannot_be_kept_is_told_after_leaving(editor: EditorModel, memory: Memory) -> None:
+def test_version_that_cannot_be_saved_is_reported_after_leaving(editor: EditorModel, memory: Memory) -> None:
     own(editor, "part.nc")
     memory.full = True
     editor.save_and_leave("M30\n")
@@ -174,7 +174,7 @@ def test_history_compares_with_the_text_in_the_editor(editor: EditorModel, memor
     assert [row.sign for row in history.changes] == ["-", "+", " "]
 
 
-def test_no_history_is_said(editor: EditorModel, memory: Memory) -> None:
+def test_program_without_history_is_reported(editor: EditorModel, memory: Memory) -> None:
     history = VersionHistory(memory, editor.worker)
     history.open_history("part.nc", "")
     settle(editor)

@@ -38,7 +38,7 @@ def test_a_good_program_is_proved_and_drawn(checker: LiveProof) -> None:
     assert found.cycle_time_s > 0
 
 
-def test_an_error_stands_at_its_line(checker: LiveProof) -> None:
+def test_error_is_reported_at_its_line(checker: LiveProof) -> None:
     checker.submit_text("a.nc", GOOD.replace("Z-.5", "Z-.5.5"))
     found = settled(checker)
     assert set(found.line_findings) == {5}
@@ -46,13 +46,13 @@ def test_an_error_stands_at_its_line(checker: LiveProof) -> None:
     assert found.error_count >= 1
 
 
-def test_an_empty_text_is_no_trouble(checker: LiveProof) -> None:
+def test_empty_text_reports_no_error(checker: LiveProof) -> None:
     number = checker.submit_text("a.nc", "")
     found = settled(checker)
     assert (found.number, found.error_text) == (number, "")
 
 
-def test_only_the_latest_of_a_burst_is_proved() -> None:
+def test_only_latest_text_of_a_burst_is_proved() -> None:
     proved: list[str] = []
     real = workshop()
 
@@ -69,7 +69,7 @@ def test_only_the_latest_of_a_burst_is_proved() -> None:
     checker.close()
 
 
-def test_a_long_proof_gives_way_to_a_newer_text() -> None:
+def test_running_proof_is_canceled_when_newer_text_arrives() -> None:
     running, tries = threading.Event(), []
 
     def prove(job: Job, watch: ProgressCallback) -> ProvedJob:
@@ -89,7 +89,7 @@ def test_a_long_proof_gives_way_to_a_newer_text() -> None:
     checker.close()
 
 
-def test_closing_ends_a_proof_under_way() -> None:
+def test_close_stops_a_running_proof() -> None:
     running = threading.Event()
 
     def prove(_job: Job, watch: ProgressCallback) -> ProvedJob:
@@ -104,7 +104,7 @@ def test_closing_ends_a_proof_under_way() -> None:
     assert not [t for t in threading.enumerate() if t.name.startswith("editing-proof")]
 
 
-def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
+def test_prover_failure_is_reported_and_next_text_is_proved() -> None:
     def make_job(source: object, block_delete: bool) -> Job:
         raise ValueError("the store is damaged")
 
@@ -117,7 +117,7 @@ def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
     checker.close()
 
 
-def test_the_weightiest_of_a_line_is_shown() -> None:
+def test_most_severe_finding_of_a_line_is_shown() -> None:
     note = Diagnostic(3, 1, Severity.NOTE, "n", "note")
     error = Diagnostic(3, 5, Severity.ERROR, "e", "error")
     assert map_by_line((note, error, replace(error, code="second"))) == {3: error}

@@ -29,7 +29,7 @@ def part(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_file_is_replaced_and_nothing_is_left_beside_it(part: Path) -> None:
+def test_replacing_a_file_preserves_mode_and_leaves_no_temporary_file(part: Path) -> None:
     part.chmod(0o640)
     write_program_file(part, b"M30\n")
     assert part.read_bytes() == b"M30\n"
@@ -46,19 +46,19 @@ def test_a_link_stays_a_link(part: Path) -> None:
 
 
 @pytest.mark.parametrize("data", [b"X1\0\n", b"  \n", b"X" * 9000 + b"\n", b"X\xff\n"])
-def test_what_would_not_read_back_is_refused_and_the_file_stays(part: Path, data: bytes) -> None:
+def test_text_that_cannot_be_read_back_is_rejected_and_file_is_unchanged(part: Path, data: bytes) -> None:
     with pytest.raises(FileOperationError):
         write_program_file(part, data)
     assert part.read_text() == GOOD
     assert list(part.parent.iterdir()) == [part]
 
 
-def test_a_folder_that_cannot_be_is_told_in_a_sentence(part: Path) -> None:
+def test_unusable_folder_raises_cannot_write(part: Path) -> None:
     with raises_code(FileOperationError, "cannot-write"):
         write_program_file(part / "below.nc", b"M30\n")
 
 
-def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_write_leaves_old_file_unchanged(part: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(_file: int) -> None:
         raise OSError(28, "No space left on device")
 
@@ -69,7 +69,7 @@ def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: py
     assert list(part.parent.iterdir()) == [part]
 
 
-def test_line_ends_of_dos_stay(tmp_path: Path) -> None:
+def test_dos_line_endings_are_preserved(tmp_path: Path) -> None:
     path = tmp_path / "dos.nc"
     path.write_bytes(b"X1\r\nM30\r\n")
     document = open_document(path, tmp_path / "samples")
@@ -81,7 +81,7 @@ def test_line_ends_of_dos_stay(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "data", [b"(\x94LFL\x8aCHE)\nM30\n\x1a", b"\xef\xbb\xbfX1\n", b"(\xd6L)\nX1", b"X1\rM30\r"]
 )
-def test_files_of_other_days_are_known_again(tmp_path: Path, data: bytes) -> None:
+def test_legacy_file_is_archived_before_saving_and_read_again(tmp_path: Path, data: bytes) -> None:
     path, memory = tmp_path / "old.nc", Memory()
     path.write_bytes(data)
     document = open_document(path, tmp_path / "samples")
@@ -90,7 +90,7 @@ def test_files_of_other_days_are_known_again(tmp_path: Path, data: bytes) -> Non
     assert open_document(path, tmp_path / "samples").text.startswith(document.text + "(NEW)")
 
 
-def test_what_another_program_wrote_is_shown_first_and_kept(part: Path) -> None:
+def test_external_change_is_shown_first_and_archived(part: Path) -> None:
     document, memory = open_document(part, part.parent / "samples"), Memory()
     part.write_text("M02\n")
     assert save_document(document, "M30\n", memory, may_overwrite=False) == CHANGED_EXTERNALLY
@@ -99,32 +99,32 @@ def test_what_another_program_wrote_is_shown_first_and_kept(part: Path) -> None:
     assert [text for text, _why in memory.kept["part.nc"]] == [b"M02\n", b"M30\n"]
 
 
-def test_what_another_program_wrote_is_not_replaced_when_it_cannot_be_kept(part: Path) -> None:
+def test_external_change_is_not_overwritten_when_archive_is_full(part: Path) -> None:
     document = open_document(part, part.parent / "samples")
     part.write_text("M02\n")
     assert save_document(document, "M30\n", Memory(full=True), may_overwrite=True) == CHANGED_EXTERNALLY
     assert part.read_text() == "M02\n"
 
 
-def test_a_full_archive_does_not_keep_the_file_from_being_saved(part: Path) -> None:
+def test_full_archive_does_not_prevent_saving(part: Path) -> None:
     document = open_document(part, part.parent / "samples")
     assert save_document(document, "M30\n", Memory(full=True), may_overwrite=False) == "the disk is full"
     assert part.read_text() == "M30\n"
 
 
-def test_a_file_that_has_come_meanwhile_is_not_overwritten_by_a_new_one(tmp_path: Path) -> None:
+def test_new_document_does_not_overwrite_a_file_created_meanwhile(tmp_path: Path) -> None:
     document = create_document(tmp_path, "part", ".nc")
     (tmp_path / "part.nc").write_text("M02\n")
     assert save_document(document, "M30\n", Memory(), may_overwrite=False) == CHANGED_EXTERNALLY
 
 
-def test_samples_are_protected_and_an_empty_file_can_be_written(tmp_path: Path) -> None:
+def test_sample_file_is_read_only_and_empty_file_can_be_opened(tmp_path: Path) -> None:
     (tmp_path / "empty.nc").write_text("")
     assert open_document(tmp_path / "empty.nc", tmp_path).is_read_only
     assert open_document(tmp_path / "empty.nc", tmp_path / "samples").text == ""
 
 
-def test_what_is_no_program_is_not_opened(tmp_path: Path) -> None:
+def test_binary_file_is_not_opened(tmp_path: Path) -> None:
     (tmp_path / "picture.nc").write_bytes(b"\x89PNG\0\0")
     with raises_code(SourceError, "file-binary"):
         open_document(tmp_path / "picture.nc", tmp_path)

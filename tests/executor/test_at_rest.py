@@ -39,7 +39,7 @@ def shown(rig: Rig, ticks: int) -> int:
 
 
 @pytest.mark.parametrize("powered", [True, False])
-def test_it_is_shown_twenty_times_a_second_once_it_has_rested_for_one(powered: bool) -> None:
+def test_snapshot_is_published_20_times_per_second_after_1_s_at_rest(powered: bool) -> None:
     rig = Rig(every=FINE)
     if powered:
         rig.post(EnableDrives())
@@ -66,7 +66,7 @@ HAPPENS = pytest.mark.parametrize(
 
 @HAPPENS
 @pytest.mark.parametrize("phase", range(5))
-def test_whatever_happens_is_shown_by_the_tick_that_sees_it(
+def test_event_is_published_by_the_tick_that_detects_it(
     phase: int, happens: Callable[[Rig], None], seen: Callable[[Rig], bool]
 ) -> None:
     rig = rested()
@@ -78,13 +78,13 @@ def test_whatever_happens_is_shown_by_the_tick_that_sees_it(
     assert rig.shot.t == rig.clock.now()
 
 
-def test_what_goes_on_is_shown_every_time() -> None:
+def test_moving_machine_is_published_every_tick() -> None:
     rig = rested()
     rig.post(Jog("X", 5.0, 0.5))
     assert shown(rig, 30) == 30
 
 
-def test_a_late_tick_at_rest_is_still_told() -> None:
+def test_late_tick_at_rest_is_reported() -> None:
     rig = rested()
     late: list[float] = []
     rig.executor._tell = lambda tick: late.append(tick.delay_s)
@@ -94,7 +94,7 @@ def test_a_late_tick_at_rest_is_still_told() -> None:
 
 
 @HAPPENS
-def test_whoever_shows_it_is_called_when_it_changes(
+def test_listener_is_called_when_the_snapshot_changes(
     happens: Callable[[Rig], object], seen: Callable[[Rig], bool]
 ) -> None:
     rig = rested()
@@ -107,7 +107,7 @@ def test_whoever_shows_it_is_called_when_it_changes(
     assert any(called), "and what has changed is in the snapshot by then"
 
 
-def test_what_moves_is_shown_anyway_and_calls_nobody() -> None:
+def test_listener_is_not_called_while_the_machine_moves() -> None:
     rig = rested()
     rig.executor.post(Jog("X", 5.0, 2.0))
     rig.run(0.2)
@@ -141,7 +141,7 @@ class Ringing:
 
 
 @pytest.mark.parametrize("powered", [True, False])
-def test_a_machine_that_rests_is_looked_at_ten_times_a_second(powered: bool) -> None:
+def test_machine_at_rest_is_polled_10_times_per_second(powered: bool) -> None:
     rig = rested(powered=powered)
     ringing = Ringing(rig)
     late: list[float] = []
@@ -157,7 +157,7 @@ def test_a_machine_that_rests_is_looked_at_ten_times_a_second(powered: bool) -> 
 
 
 @HAPPENS
-def test_whatever_happens_ends_its_rest_at_once(
+def test_event_ends_the_rest_wait_immediately(
     happens: Callable[[Rig], None], seen: Callable[[Rig], bool]
 ) -> None:
     rig = rested()
@@ -172,7 +172,7 @@ def test_whatever_happens_ends_its_rest_at_once(
         rig.tick()
 
 
-def test_what_was_posted_before_it_would_rest_is_not_kept_waiting() -> None:
+def test_command_posted_before_the_wait_is_not_delayed() -> None:
     rig = rested()
     rig.executor.post(SetSwitch("single_block", True))
     assert not rig.executor.wait_at_rest()
@@ -187,7 +187,7 @@ def test_what_was_posted_before_it_would_rest_is_not_kept_waiting() -> None:
         lambda rig: rig.sim.machine.jam("X"),
     ],
 )
-def test_what_may_change_by_itself_is_looked_at_in_every_tick(goes_on: Callable[[Rig], None]) -> None:
+def test_changing_state_is_polled_every_tick(goes_on: Callable[[Rig], None]) -> None:
     rig = rested()
     Ringing(rig)
     goes_on(rig)
@@ -207,9 +207,7 @@ def test_what_may_change_by_itself_is_looked_at_in_every_tick(goes_on: Callable[
         (lambda rig: rig.sim.ports.axes.stop(StopMode.RAMP_OFF), 0.05),
     ],
 )
-def test_a_driver_does_not_say_that_it_rests_before_it_does(
-    act: Callable[[Rig], None], seconds: float
-) -> None:
+def test_driver_reports_settled_only_once_it_is_settled(act: Callable[[Rig], None], seconds: float) -> None:
     rig = rested()
     wakeup = rig.sim.ports.wakeup
     assert wakeup is not None
@@ -220,7 +218,7 @@ def test_a_driver_does_not_say_that_it_rests_before_it_does(
     assert wakeup.is_settled()
 
 
-def test_a_machine_on_which_something_is_planned_to_break_never_rests() -> None:
+def test_machine_with_a_planned_fault_never_settles() -> None:
     faults = (PlannedFault(at=1000.0, what="estop"),)
     config = replace(create_sim_config(load_machine()), planned_faults=faults)
     ports, _hands = build_simulation(config, ManualClock())
@@ -228,7 +226,7 @@ def test_a_machine_on_which_something_is_planned_to_break_never_rests() -> None:
     assert not ports.wakeup.is_settled()
 
 
-def test_drivers_that_do_not_ring_are_looked_at_in_every_tick() -> None:
+def test_drivers_without_wakeup_are_polled_every_tick() -> None:
     rig = rested()
     ports = replace(rig.sim.ports, wakeup=None)
     executor = Executor(rig.machine, ports, rig.events.append)
@@ -238,7 +236,7 @@ def test_drivers_that_do_not_ring_are_looked_at_in_every_tick() -> None:
         rig.clock.advance(0.01)
 
 
-def test_a_driver_that_breaks_when_it_is_asked_whether_it_rests_is_an_alarm(
+def test_driver_failure_in_settled_query_raises_an_alarm(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     rig = rested()
@@ -252,7 +250,7 @@ def test_a_driver_that_breaks_when_it_is_asked_whether_it_rests_is_an_alarm(
     assert rig.state is MachineState.FAULT
 
 
-def test_the_recorder_is_told_that_the_machine_rests() -> None:
+def test_recorder_is_notified_when_the_machine_rests() -> None:
     rig = rested()
     told: list[bool] = []
     rig.executor._tell = lambda tick: told.append(tick.is_at_rest)

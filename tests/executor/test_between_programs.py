@@ -25,7 +25,7 @@ from tests.texts import text
 TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(6.35, -25.4)}
 
 
-def test_the_state_of_power_up() -> None:
+def test_power_up_state() -> None:
     rig = Rig()
     modal = rig.shot.modal
     assert (modal.metric, modal.diameter, modal.per_rev, modal.tool, modal.spindle) == (False,) * 3 + (0, 0)
@@ -34,7 +34,7 @@ def test_the_state_of_power_up() -> None:
     assert modal.collet_closed  # its output is on from the start
 
 
-def test_m30_leaves_units_and_the_frame_of_the_tool_and_m02_the_m_functions_too() -> None:
+def test_m30_retains_units_and_tool_offset_and_m02_also_m_functions() -> None:
     rig = Rig()
     rig.start("G90G94F300G71G72\nT1\nX10Z10M08\nM03S900\nG95F.1\nM02\n", TOOLS)
     rig.until(MachineState.IDLE)
@@ -50,7 +50,7 @@ def test_m30_leaves_units_and_the_frame_of_the_tool_and_m02_the_m_functions_too(
     assert rig.shot.rpm_command == 0.0
 
 
-def test_a_reset_leaves_what_m30_would_have_left() -> None:
+def test_reset_leaves_the_same_state_as_m30() -> None:
     rig = Rig()
     rig.start("G90G94F300G72\nT2\nG10X.2\nT1\nX1Z.5M08\nM03S500\nG01G94F10Z-2\nM30\n", TOOLS)
     rig.until_true(lambda shot: shot.line == 7)
@@ -65,7 +65,7 @@ def test_a_reset_leaves_what_m30_would_have_left() -> None:
     assert rig.shot.offset == (-12.7, -50.8)
 
 
-def test_an_estop_takes_spindle_and_coolant_from_what_stands() -> None:
+def test_estop_clears_spindle_and_coolant_from_the_modal_state() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM08\nM03S900\nM02\n")
     rig.until(MachineState.IDLE)
@@ -96,7 +96,7 @@ def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
     assert rig.said("refused")[-1].startswith(text("executor.program-keeps-offsets"))
 
 
-def test_the_speed_asked_for_is_told_before_pot_and_limit() -> None:
+def test_requested_rpm_is_reported_before_override_and_limit() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM04S2000\nM02\n")
     rig.until(MachineState.IDLE)
@@ -123,7 +123,7 @@ def test_the_spindle_is_stopped_by_hand_between_programs_only() -> None:
     assert (rig.shot.requested_rpm, rig.shot.rpm_command, rig.shot.modal.spindle) == (0.0, 0.0, 0)
 
 
-def test_an_output_is_forced_at_rest_and_told_in_the_log() -> None:
+def test_output_is_forced_at_rest_and_logged() -> None:
     rig = Rig()
     rig.post(ForceOutput("catcher", True))  # the drives are off
     rig.ready()
@@ -145,9 +145,7 @@ def test_an_output_is_forced_at_rest_and_told_in_the_log() -> None:
         ("coolant", True, text("executor.output-not-now", output="coolant", state="RUNNING")),
     ],
 )
-def test_no_output_is_forced_while_a_program_runs_nor_one_that_is_not_there(
-    name: str, on: bool, why: str
-) -> None:
+def test_forcing_an_output_is_rejected_during_a_program_or_if_unknown(name: str, on: bool, why: str) -> None:
     rig = Rig()
     rig.start("G90G94F1\nX1\nM30\n")
     rig.post(ForceOutput(name, on))
@@ -155,7 +153,7 @@ def test_no_output_is_forced_while_a_program_runs_nor_one_that_is_not_there(
     assert name not in rig.shot.outputs
 
 
-def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
+def test_collet_does_not_open_manually_while_spindle_turns() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S900\nM02\n")
     rig.until(MachineState.IDLE)
@@ -170,7 +168,7 @@ def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
 
 
 @pytest.mark.parametrize(("machine", "diameter"), [("sinumerik-modulo", True), ("gt75", False)])
-def test_sinumerik_counts_x_in_diameters_at_power_up_and_behind_a_reset(machine: str, diameter: bool) -> None:
+def test_sinumerik_uses_diameters_at_power_up_and_after_reset(machine: str, diameter: bool) -> None:
     rig = Rig(machine=load_shipped_machine(machine))
     assert rig.shot.modal.diameter is diameter
     left = make_modal_state_after_cancel(ModalState(diameter=not diameter), rig.machine.mdi_language)
@@ -184,7 +182,7 @@ def test_sinumerik_counts_x_in_diameters_at_power_up_and_behind_a_reset(machine:
         ("gt75", "part.nc", "G90G94F300\nX.1\nM30\n", False),
     ],
 )
-def test_a_program_begins_with_x_as_its_language_counts_it(
+def test_program_starts_in_the_diameter_mode_of_its_dialect(
     machine: str, name: str, text: str, diameter: bool
 ) -> None:
     """Before its first block has said anything: what the page shows of X must not jump for a tick."""
@@ -221,7 +219,7 @@ def test_the_readout_remains_a_diameter_after_end_reset_and_estop() -> None:
     assert rig.shot.shows_diameter
 
 
-def test_another_program_and_mdi_bring_the_mode_of_the_control() -> None:
+def test_another_program_or_mdi_restores_the_default_diameter_mode() -> None:
     rig = Rig()
     rig.start(G72)
     rig.until(MachineState.IDLE)
@@ -235,7 +233,7 @@ def test_another_program_and_mdi_bring_the_mode_of_the_control() -> None:
     assert not rig.shot.shows_diameter
 
 
-def test_a_comment_goes_with_its_program() -> None:
+def test_comment_is_cleared_with_its_program() -> None:
     rig = Rig()
     rig.start("(FIRST PART)\nG90G94F300\nX.5\nM30\n")
     rig.until(MachineState.IDLE)

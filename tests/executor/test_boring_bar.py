@@ -44,7 +44,7 @@ def boring(direction: int) -> Rig:
 
 
 @pytest.mark.parametrize("direction", [0, 1, 4])
-def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int) -> None:
+def test_bar_moves_in_the_bore_only_while_the_spindle_is_stopped(direction: int) -> None:
     rig = boring(direction)
     assert abs(rig.shot.rpm_actual) > 2900.0
     waited, bore = set(), rig.shot.actual[X]
@@ -72,13 +72,13 @@ def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int)
         (3, ("TURN THE CUTTING EDGE TOWARD X-")),
     ],
 )
-def test_the_operator_is_told_where_the_edge_has_to_be(direction: int, message: str) -> None:
+def test_operator_message_states_the_required_edge_position(direction: int, message: str) -> None:
     rig = boring(direction)
     rig.until(MachineState.PROGRAM_STOP)
     assert rig.shot.message == message
 
 
-def test_the_proof_counts_the_time_in_which_the_spindle_runs_down() -> None:
+def test_proof_includes_the_spindle_deceleration_time() -> None:
     """From 3000 rpm, at the deceleration of the machine file, down to the speed that counts as rest."""
     setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     whole = prove(ProgramSource("T.H", PROGRAM.format(0)), setup, MILL)

@@ -50,14 +50,14 @@ def run(rig: Rig, name: str, text: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_runs_as_it_was_proved(name: str) -> None:
+def test_program_runs_as_proved(name: str) -> None:
     path = FOLDER / f"{name}.nc"
     if not path.exists():
         pytest.skip("the worked examples are not here")
     run(Rig(), name, path.read_text(encoding="utf-8"))
 
 
-def test_c_does_not_turn_before_the_spindle_stands() -> None:
+def test_c_axis_does_not_turn_until_the_spindle_is_stopped() -> None:
     rig = Rig()
     moving: list[Snapshot] = []
     rig.watch.append(lambda shot: moving.append(shot) if shot.demand[2] else None)
@@ -66,7 +66,7 @@ def test_c_does_not_turn_before_the_spindle_stands() -> None:
     assert all(abs(shot.rpm_actual) < rig.machine.spindle.stop_below for shot in moving)
 
 
-def test_the_spindle_pot_leaves_a_slide_alone_that_c_feeds() -> None:
+def test_spindle_override_does_not_affect_feed_by_c_axis() -> None:
     """Neither the pot nor the switch of the spindle: the slide follows C, which the feed override scales."""
     rig = Rig()
     rig.sim.machine.set_spindle_pot(0.5)
@@ -99,7 +99,7 @@ def on_the_flat(shot: Snapshot) -> bool:
     return shot.line == 6
 
 
-def test_a_hold_in_a_plane_stays_on_the_flat_and_goes_on() -> None:
+def test_hold_in_face_milling_plane_stays_on_the_flat_and_resumes() -> None:
     rig = Rig()
     worst: list[float] = []
     rig.watch.append(lambda shot: worst.append(off_the_flat(shot)) if on_the_flat(shot) else None)
@@ -118,7 +118,7 @@ def test_a_hold_in_a_plane_stays_on_the_flat_and_goes_on() -> None:
     assert rig.shot.demand == pytest.approx((-0.6 * INCH, 0.0, -135.0), abs=1e-6)
 
 
-def test_single_block_stops_at_every_corner_of_the_mill() -> None:
+def test_single_block_stops_at_every_milled_corner() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", on=True))
     rig.start(FLAT)
@@ -133,7 +133,7 @@ def test_single_block_stops_at_every_corner_of_the_mill() -> None:
     assert stops == [(2, 0.0), (3, 0.0), (5, 45.0), (6, -45.0), (7, -135.0), (9, -135.0)]
 
 
-def test_reset_in_a_plane_and_a_new_start() -> None:
+def test_program_restarts_after_reset_in_face_milling_plane() -> None:
     rig = Rig()
     rig.start(FLAT)
     rig.until_true(on_the_flat)
@@ -150,7 +150,7 @@ def test_reset_in_a_plane_and_a_new_start() -> None:
     assert rig.shot.demand[2] == pytest.approx(-135.0)
 
 
-def test_no_flat_beyond_the_travel_of_x() -> None:
+def test_flat_with_a_corner_outside_x_travel_raises_travel_alarm() -> None:
     """X at the entry lies inside, a corner of the figure does not."""
     rig = Rig()
     source = ProgramSource("FAR", "G90G94F300M27\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
@@ -161,7 +161,7 @@ def test_no_flat_beyond_the_travel_of_x() -> None:
     assert rig.shot.alarms[0].code == "travel"
 
 
-def test_a_spindle_that_does_not_stop_never_lets_c_turn() -> None:
+def test_c_axis_never_turns_if_the_spindle_does_not_stop() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S1000\nG04F2\nM19\nC90\nG04F1\nM30\n")
     rig.run(1.0)

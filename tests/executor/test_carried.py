@@ -29,11 +29,11 @@ NAMES_NONE = "G90G94F300\nX.1\nM30\n"
         ("G90G71", {RAPID}),
     ],
 )
-def test_what_the_first_line_does_not_say_is_carried_over(first: str, carries: set[str]) -> None:
+def test_settings_missing_from_the_first_line_are_inherited(first: str, carries: set[str]) -> None:
     assert find_inherited_settings(ProgramSource("PART", f"{first}\nX1\nM30\n")) == carries
 
 
-def test_other_dialects_say_all_themselves() -> None:
+def test_other_dialects_inherit_no_settings() -> None:
     assert find_inherited_settings(ProgramSource("PART", "G90 X1\n", Dialect.SINUMERIK)) == frozenset()
 
 
@@ -50,7 +50,7 @@ def load(rig: Rig, job: Job) -> None:
     rig.post(CycleStart())
 
 
-def test_a_program_proved_in_inches_does_not_start_in_millimetres() -> None:
+def test_program_proved_in_inches_does_not_start_in_millimeters() -> None:
     rig = after_a_metric_job()
     job = rig.load(NAMES_NONE)
     load(rig, job)
@@ -65,7 +65,7 @@ def test_a_program_proved_in_inches_does_not_start_in_millimetres() -> None:
     assert rig.shot.actual[0] == pytest.approx(0.1, abs=0.006)
 
 
-def test_a_program_that_names_its_unit_starts_whatever_was_before() -> None:
+def test_program_that_specifies_its_unit_starts_after_any_unit() -> None:
     rig = Rig()
     rig.start("G90G71G94F300\nX1\nM30\n")
     rig.until(MachineState.IDLE)
@@ -75,7 +75,7 @@ def test_a_program_that_names_its_unit_starts_whatever_was_before() -> None:
     assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
 
 
-def test_no_repeat_in_another_unit_than_the_first_time() -> None:
+def test_repeat_is_rejected_if_the_unit_has_changed() -> None:
     rig = Rig()
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start("G90G94F300\nX.1\nG71\nX2\nM30\n")
@@ -85,13 +85,13 @@ def test_no_repeat_in_another_unit_than_the_first_time() -> None:
 
 
 @pytest.mark.parametrize(("inch", "metric"), [(True, False), (False, True)])
-def test_the_control_is_switched_on_in_what_its_builder_counts_in(inch: bool, metric: bool) -> None:
+def test_power_up_unit_is_the_one_in_the_machine_file(inch: bool, metric: bool) -> None:
     rig = Rig(replace(load_machine(), is_inch=inch))
     assert rig.shot.modal.metric is metric
 
 
 @pytest.mark.parametrize("unit", ["G70", "G71"])
-def test_a_program_of_another_dialect_leaves_the_unit_as_it_was(unit: str) -> None:
+def test_program_of_another_dialect_leaves_the_unit_unchanged(unit: str) -> None:
     rig = Rig()
     mdi(rig, unit)
     before = rig.shot.modal.metric

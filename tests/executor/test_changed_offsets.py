@@ -45,7 +45,7 @@ def depth(rig: Rig) -> float:
     return rig.shot.demand[0]
 
 
-def test_the_next_part_is_cut_with_the_new_offset_and_this_one_is_not() -> None:
+def test_new_offset_applies_to_the_next_part_not_the_current_one() -> None:
     rig = Rig()
     job = running(rig)
     assert rig.shot.demand[0] == pytest.approx(DEPTH, abs=1e-6)
@@ -60,7 +60,7 @@ def test_the_next_part_is_cut_with_the_new_offset_and_this_one_is_not() -> None:
     assert MachineState.WAIT.value not in rig.said("state")
 
 
-def test_the_part_waits_for_its_proof() -> None:
+def test_next_part_waits_for_its_proof() -> None:
     """M30 has come before the proof: everything stands until it is there."""
     rig = Rig()
     job = running(rig)
@@ -96,7 +96,7 @@ def test_a_program_that_fails_its_proof_is_not_repeated() -> None:
     assert rig.shot.start_refusal.startswith(text("executor.program-errors", errors="line 4"))
 
 
-def test_a_proof_of_other_offsets_does_not_count() -> None:
+def test_proof_with_other_offsets_is_rejected() -> None:
     rig = Rig()
     job = running(rig)
     rig.post(ChangeOffsets(corrected(job, -0.1), good(job)))
@@ -104,7 +104,7 @@ def test_a_proof_of_other_offsets_does_not_count() -> None:
     assert text("executor.other-proof") in rig.said("refused")[0]
 
 
-def test_what_could_not_be_proved_stops_with_its_reason() -> None:
+def test_unprovable_program_stops_with_the_reason() -> None:
     rig = Rig()
     running(rig)
     rig.post(ChangeOffsets(), ChangeOffsets(failure_reason="the offsets cannot be read"))
@@ -115,7 +115,7 @@ def test_what_could_not_be_proved_stops_with_its_reason() -> None:
     assert rig.shot.start_refusal == text("executor.not-proved")
 
 
-def test_the_second_correction_takes_the_place_of_the_first() -> None:
+def test_second_offset_change_replaces_the_first() -> None:
     """The first one has failed its proof; the operator takes it back before the part ends."""
     rig = Rig()
     job = running(rig)
@@ -129,7 +129,7 @@ def test_the_second_correction_takes_the_place_of_the_first() -> None:
     assert rig.said("refused") == []
 
 
-def test_another_program_is_not_slipped_in() -> None:
+def test_offset_change_cannot_replace_the_running_program() -> None:
     rig = Rig()
     job = running(rig)
     other = make_job(ProgramSource("PART", PART.replace("X.5", "X.1")), job.setup)
@@ -139,7 +139,7 @@ def test_another_program_is_not_slipped_in() -> None:
 
 
 @pytest.mark.parametrize("end", ["M30", "M02"])
-def test_without_repeat_the_next_start_takes_it(end: str) -> None:
+def test_next_start_uses_the_new_offset_without_cycle_repeat(end: str) -> None:
     rig = Rig()
     job = running(rig, repeat=False, text=PART.replace("M30", end))
     new = corrected(job, -0.0254)
@@ -154,7 +154,7 @@ def test_without_repeat_the_next_start_takes_it(end: str) -> None:
 
 
 @pytest.mark.parametrize("how", ["reset", "estop"])
-def test_given_up_the_old_offsets_start_nothing(how: str) -> None:
+def test_nothing_starts_while_announced_offsets_are_unproved(how: str) -> None:
     """Announced and not yet proved: neither the old job nor an unproved one may begin."""
     rig = Rig()
     job = running(rig)
@@ -182,7 +182,7 @@ def test_given_up_the_old_offsets_start_nothing(how: str) -> None:
     assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
 
 
-def test_between_two_parts_hold_reset_and_the_switch_work() -> None:
+def test_hold_reset_and_repeat_switch_work_between_parts() -> None:
     rig = Rig()
     job = running(rig)
     rig.post(ChangeOffsets())
@@ -204,7 +204,7 @@ def test_between_two_parts_hold_reset_and_the_switch_work() -> None:
     assert rig.shot.interrupted_line == 0
 
 
-def test_reset_between_two_parts_has_broken_nothing_off() -> None:
+def test_reset_between_parts_records_no_interrupted_line() -> None:
     rig = Rig()
     running(rig)
     rig.post(ChangeOffsets())
@@ -214,7 +214,7 @@ def test_reset_between_two_parts_has_broken_nothing_off() -> None:
     assert (rig.shot.parts, rig.shot.interrupted_line) == (1, 0)
 
 
-def test_m31_ends_the_repeating_all_the_same() -> None:
+def test_m31_ends_the_repeat_with_pending_offsets() -> None:
     rig = Rig()
     job = running(rig, text=PART.replace("M30", "M31\nM30"))
     new = corrected(job, -0.0254)
@@ -223,7 +223,7 @@ def test_m31_ends_the_repeating_all_the_same() -> None:
     assert rig.shot.parts == 1
 
 
-def test_at_rest_it_counts_at_once_and_mdi_knows_it() -> None:
+def test_offset_change_at_rest_applies_immediately_and_in_mdi() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(PART, TOOLS)
@@ -234,7 +234,7 @@ def test_at_rest_it_counts_at_once_and_mdi_knows_it() -> None:
     assert rig.said("refused") == []
 
 
-def test_another_program_that_is_loaded_forgets_it() -> None:
+def test_loading_another_program_discards_pending_offsets() -> None:
     rig = Rig()
     job = running(rig, repeat=False)
     rig.until(MachineState.IDLE)

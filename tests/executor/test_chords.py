@@ -26,7 +26,7 @@ def half_circle(places: int) -> str:
 
 @pytest.mark.parametrize("places", [4, 5])
 @pytest.mark.parametrize("seed", [1, 2])
-def test_rounded_chords_run_through_holds_and_overrides(places: int, seed: int) -> None:
+def test_rounded_chords_run_through_holds_and_overrides_without_underrun(places: int, seed: int) -> None:
     chance = random.Random(seed)
     rig = Rig()
     rig.start(half_circle(places))

@@ -37,7 +37,7 @@ NAMES = (
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_runs_as_it_was_proved(name: str) -> None:
+def test_program_runs_as_proved(name: str) -> None:
     path = FOLDER / f"{name}.nc"
     if not path.exists():
         pytest.skip("the worked examples are not here")

@@ -22,7 +22,7 @@ def jogger_on(controller: PlayedController) -> tuple[BlockJogger, MachineContext
     return jogger, context
 
 
-def test_who_jogs_follows_from_what_the_driver_has() -> None:
+def test_jogger_type_depends_on_the_driver() -> None:
     assert type(create_jogger(context_of(None))) is Jogger
 
 
@@ -40,14 +40,14 @@ def test_a_controller_that_is_not_ready_does_not_jog(controller: PlayedControlle
     assert jogger.find_step_refusal("X", 0.1, 5.0) == why
 
 
-def test_it_jogs_along_its_own_axes_only() -> None:
+def test_controller_rejects_jog_along_a_tilted_direction() -> None:
     jogger, _ = jogger_on(PlayedController())
     why = text("executor.controller-axes-only", axis="X")
     assert jogger.find_jog_refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
     assert jogger.find_step_refusal("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
 
 
-def test_it_is_told_the_travel_less_a_margin_and_a_lease_of_a_second_at_most() -> None:
+def test_jog_command_carries_reduced_travel_and_lease_of_at_most_1_s() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     low, high = context.machine.find_axis("X").travel or (0.0, 0.0)
@@ -56,7 +56,7 @@ def test_it_is_told_the_travel_less_a_margin_and_a_lease_of_a_second_at_most() -
     assert jogger.axis_name == "X"
 
 
-def test_an_axis_that_is_not_homed_has_no_travel_and_goes_at_a_tenth() -> None:
+def test_unhomed_axis_jogs_without_limits_at_a_tenth_of_the_speed() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     context.axis_sample = context.axis_sample._replace(homed=(False, False, False))
@@ -65,7 +65,7 @@ def test_an_axis_that_is_not_homed_has_no_travel_and_goes_at_a_tenth() -> None:
     assert controller.jogged == [("X", pytest.approx(tenth), LEASE, None)]
 
 
-def test_at_the_end_of_the_travel_nothing_is_jogged() -> None:
+def test_jog_that_the_controller_does_not_accept_is_not_started() -> None:
     jogger, _ = jogger_on(PlayedController(jogs=False))
     assert not jogger.start_or_renew_jog("X", 5.0, LEASE)
     assert not jogger.jog_to_target("X", 1.0, 5.0, LEASE)
@@ -75,7 +75,7 @@ def test_at_the_end_of_the_travel_nothing_is_jogged() -> None:
 @pytest.mark.parametrize(
     ("target", "velocity", "limits"), [(2.0, 5.0, (0.0, 2.0)), (-3.0, -5.0, (-3.0, 0.0))]
 )
-def test_towards_a_place_it_goes_no_further(
+def test_jog_to_target_stops_at_the_target(
     target: float, velocity: float, limits: tuple[float, float]
 ) -> None:
     controller = PlayedController()
@@ -84,7 +84,7 @@ def test_towards_a_place_it_goes_no_further(
     assert controller.jogged == [("Z", velocity, LEASE, limits)]
 
 
-def test_a_step_goes_from_where_the_axis_is_sent_to() -> None:
+def test_step_starts_from_the_commanded_position() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     context.axis_sample = context.axis_sample._replace(demand=(1.0, 2.0, 0.0))
@@ -93,14 +93,14 @@ def test_a_step_goes_from_where_the_axis_is_sent_to() -> None:
     assert jogger.find_step_refusal("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
 
 
-def test_what_does_not_jog_is_not_stopped() -> None:
+def test_stop_without_a_jog_sends_no_command() -> None:
     controller = PlayedController()
     jogger, _ = jogger_on(controller)
     jogger.stop()
     assert controller.asked == []
 
 
-def test_a_step_that_is_stopped_is_said_to_be_short() -> None:
+def test_stopped_step_is_reported_as_cut_short() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     said: list[str] = []
@@ -126,7 +126,7 @@ def let_go(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
     return jogger, context
 
 
-def test_a_key_pressed_again_waits_for_the_end_and_has_what_is_left_of_its_lease() -> None:
+def test_repeated_key_press_waits_for_stop_and_uses_remaining_lease() -> None:
     controller = PlayedController()
     jogger, context = let_go(controller)
     context.now += 0.3
@@ -137,7 +137,7 @@ def test_a_key_pressed_again_waits_for_the_end_and_has_what_is_left_of_its_lease
 
 
 @pytest.mark.parametrize("spoilt", ["lease", "hindrance", "let go"])
-def test_a_key_pressed_again_begins_nothing_once_it_does_not_hold(spoilt: str) -> None:
+def test_repeated_key_press_starts_no_jog_after_lease_fault_or_release(spoilt: str) -> None:
     controller = PlayedController()
     jogger, context = let_go(controller)
     controller.resting = True
@@ -154,7 +154,7 @@ def test_a_key_pressed_again_begins_nothing_once_it_does_not_hold(spoilt: str) -
 # --- along an axis of a tilted plane, by setpoints ----------------------------------------------------------
 
 
-def test_a_lathe_has_no_tilted_plane() -> None:
+def test_lathe_rejects_jog_in_a_tilted_plane() -> None:
     jogger = Jogger(context_of(None))
     assert jogger.find_jog_refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith(text("executor.tilted-needs"))
 
@@ -168,12 +168,12 @@ def three_axes() -> MachineContext:
 
 
 @pytest.mark.parametrize("direction", [(0.6, 0.8, 0.1), (0.0, 0.0, 0.0), (float("nan"), 0.0, 1.0)])
-def test_a_direction_that_is_none_is_refused(direction: tuple[float, float, float]) -> None:
+def test_invalid_jog_direction_is_rejected(direction: tuple[float, float, float]) -> None:
     why = Jogger(three_axes()).find_jog_refusal("X", 5.0, LEASE, direction)
     assert why == text("executor.tilted-needs")
 
 
-def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
+def test_tilted_jog_requires_all_axes_to_be_homed() -> None:
     context = three_axes()
     assert Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
     context.axis_sample = context.axis_sample._replace(homed=(True, False, True))
@@ -181,7 +181,7 @@ def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
     assert why == text("executor.tilted-homed")
 
 
-def test_a_line_of_three_goes_as_far_as_its_first_end_and_as_hard_as_its_weakest_axis() -> None:
+def test_three_axis_jog_is_limited_by_first_end_and_weakest_axis() -> None:
     """X Y Z in .6, 0 and .8: 8 mm of Z are 10 mm of the line; 800 mm/s² of Z are 1000 along it."""
     x, z, y = three_axes().machine.axes
     axes = (

@@ -36,7 +36,7 @@ def block(kind: BlockKind, **words: object) -> Block:
     return Block(**{**values, **words})  # type: ignore[arg-type]
 
 
-def test_a_line_goes_out_in_pieces_of_a_fifth_of_a_second() -> None:
+def test_line_is_split_into_pieces_of_200_ms() -> None:
     pieces = list(split_block(block(BlockKind.FEED, x=3.0, z=-4.0), FULL))  # 5 mm at 10 mm/s
     assert [piece.min_duration_s for piece in pieces] == pytest.approx([0.5 / 3] * 3)
     ops = [piece.operation for piece in pieces]
@@ -62,7 +62,7 @@ def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
     assert before == (11.0, -8.0)
 
 
-def test_a_slow_controller_makes_the_pieces_shorter() -> None:
+def test_slow_controller_gets_shorter_pieces() -> None:
     rapid = block(BlockKind.RAPID, z=-100.0, feed=127.0)
     assert len(list(split_block(rapid, FULL))) == 4
     slow = list(split_block(rapid, FULL, lambda _: 10.0))
@@ -71,12 +71,12 @@ def test_a_slow_controller_makes_the_pieces_shorter() -> None:
     assert isinstance(slow[0].operation, RapidOperation)
 
 
-def test_a_thread_is_one_piece() -> None:
+def test_thread_is_sent_as_one_piece() -> None:
     (piece,) = split_block(block(BlockKind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
     assert piece.operation == ThreadOperation(1.0, 2.0, 1.0, -98.0, 1.5)
 
 
-def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
+def test_arc_is_split_into_pieces_below_half_a_revolution() -> None:
     """Three quarters of a turn about Z 0.1, 5 ms long: from behind the centre to X+ of it, by X-."""
     quick = block(BlockKind.ARC, x=0.1, z=0.1, cx=0.0, cz=0.1, clockwise=True, feed=100.0)
     ops = [piece.operation for piece in split_block(quick, FULL)]
@@ -90,7 +90,7 @@ def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
         assert cmath.phase(end / start) == pytest.approx(3 * math.pi / 4)
 
 
-def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> None:
+def test_feed_per_rev_follows_commanded_speed_override_and_limit() -> None:
     cut = block(BlockKind.FEED, z=-0.1, feed=0.1, per_rev=True, rpm=-1200.0)
     (piece,) = split_block(cut, SpindleSpeed(0.5, 3500.0))
     assert isinstance(piece.operation, LineOperation)
@@ -100,7 +100,7 @@ def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> 
     assert piece.operation.feed == pytest.approx(0.1 * 600 / 60)
 
 
-def test_a_surface_speed_on_an_arc_is_that_of_the_part_not_of_the_machine() -> None:
+def test_css_on_an_arc_uses_the_part_radius_not_the_machine_x() -> None:
     """400π mm/s at a radius of 20 mm are 10 turns a second; at the machine's X of 21 they would be 9.5."""
     at = {"x0": 10.0, "x": 20.0, "z": -10.0, "cx": 20.0, "feed": 0.1, "per_rev": True, "rpm": 600.0}
     arc = block(BlockKind.ARC, cz=0.0, css=400 * math.pi, modal=ModalState(min_css_rpm=0.0), **at)
@@ -116,12 +116,12 @@ def test_a_surface_speed_on_an_arc_is_that_of_the_part_not_of_the_machine() -> N
         ({"x": 1.0, "feed": 0.0}, text("executor.line-no-feed", line=7)),
     ],
 )
-def test_what_cannot_be_moved_is_refused(words: dict[str, object], expected: str) -> None:
+def test_unsupported_block_is_rejected(words: dict[str, object], expected: str) -> None:
     with raises_code(AlarmError, "program", expected):
         list(split_block(block(BlockKind.FEED, **words), FULL))
 
 
-def test_needs_are_told_once_with_their_first_line() -> None:
+def test_requirements_are_listed_once_with_their_first_line() -> None:
     blocks = [
         block(BlockKind.ARC, x=1.0, z=-1.0, cx=1.0, line=3),
         block(BlockKind.ARC, x=1.0, z=-1.0, cx=1.0, line=4),
@@ -167,7 +167,7 @@ def ends(ops: list[BlockOperation]) -> list[float]:
     return [op.z for op in ops]
 
 
-def test_without_a_path_section_there_is_nothing_to_do() -> None:
+def test_clear_without_a_path_section_sends_no_command() -> None:
     controller = PlayedController()
     motion = ControllerMotion(context_of(controller), controller)
     assert motion.update_progress(nothing_read()) is SectionProgress.DONE
@@ -176,7 +176,7 @@ def test_without_a_path_section_there_is_nothing_to_do() -> None:
     assert controller.asked == []
 
 
-def test_a_controller_that_takes_no_more_gets_the_rest_later() -> None:
+def test_full_controller_gets_the_remaining_pieces_later() -> None:
     controller = PlayedController(room=1)
     motion = motion_of(controller, CUT)
     assert ends(controller.ops) == [pytest.approx(2 - 4 / 3)]
@@ -188,14 +188,14 @@ def test_a_controller_that_takes_no_more_gets_the_rest_later() -> None:
 
 
 @pytest.mark.parametrize(("ahead", "feed", "pieces"), [(0.1, 1.0, 2), (0.3, 1.0, 3), (0.3, 0.5, 2)])
-def test_it_gets_no_more_than_it_may_run_on_alone(ahead: float, feed: float, pieces: int) -> None:
+def test_controller_gets_no_more_pieces_than_its_maximum_lead(ahead: float, feed: float, pieces: int) -> None:
     """Behind the piece that it moves: none, a sixth, two sixths of a second; twice that at half the feed."""
     controller = PlayedController(max_lead_s=ahead)
     motion_of(controller, CUT, feed=feed)
     assert len(controller.ops) == pieces
 
 
-def test_at_override_0_nothing_is_handed_over_until_it_is_turned_up() -> None:
+def test_no_piece_is_sent_at_zero_override_until_it_is_raised() -> None:
     controller = PlayedController()
     context = context_of(controller)
     turn_feed_pot(context, 0.0)
@@ -211,14 +211,14 @@ def test_at_override_0_nothing_is_handed_over_until_it_is_turned_up() -> None:
     assert len(controller.ops) == 3
 
 
-def test_a_thread_knows_no_override_of_0() -> None:
+def test_thread_ignores_zero_override() -> None:
     controller = PlayedController()
     motion_of(controller, THREAD, PULL_OUT, feed=0.0)
     assert controller.asked == []
     assert isinstance(controller.ops[0], ThreadOperation)
 
 
-def test_a_hold_that_the_controller_makes_by_itself_is_told() -> None:
+def test_hold_started_by_the_controller_is_reported() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
     controller.held = True
@@ -228,7 +228,7 @@ def test_a_hold_that_the_controller_makes_by_itself_is_told() -> None:
     assert controller.asked == ["resume"]
 
 
-def test_a_hold_reaches_a_line_and_leaves_a_thread_to_end() -> None:
+def test_hold_stops_a_line_but_lets_a_thread_finish() -> None:
     controller = PlayedController(room=1)
     line = motion_of(controller, CUT)
     controller.room = 9
@@ -245,7 +245,7 @@ def test_a_hold_reaches_a_line_and_leaves_a_thread_to_end() -> None:
 
 
 @pytest.mark.parametrize("hindrance", ["", "the controller is being reset"])
-def test_a_thread_without_its_spindle_draws_x_back_or_says_why_not(hindrance: str) -> None:
+def test_thread_without_spindle_retracts_x_or_reports_why_not(hindrance: str) -> None:
     """From where the slides stand, home, to the X at which the pull-out would have ended."""
     controller = PlayedController(hindrance=hindrance)
     motion = motion_of(controller, THREAD, PULL_OUT)
@@ -260,7 +260,7 @@ def test_a_thread_without_its_spindle_draws_x_back_or_says_why_not(hindrance: st
     assert controller.ops == [RapidOperation(6.0, 0.0, THREAD.modal.rapid_rate)]
 
 
-def test_what_is_forgotten_is_forgotten_by_the_controller_too() -> None:
+def test_clearing_the_section_aborts_the_controller_motion() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
     motion.clear_section()
@@ -269,7 +269,7 @@ def test_what_is_forgotten_is_forgotten_by_the_controller_too() -> None:
     assert motion.is_complete
 
 
-def test_single_block_hands_over_one_block_and_the_next_when_it_goes_on() -> None:
+def test_single_block_sends_one_block_and_the_next_on_resume() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT, NEXT, single=True)
     assert len(controller.ops) == 3
@@ -280,7 +280,7 @@ def test_single_block_hands_over_one_block_and_the_next_when_it_goes_on() -> Non
     assert ends(controller.ops)[3:] == [-3.0]
 
 
-def test_single_block_turned_on_under_way_ends_behind_what_the_controller_has() -> None:
+def test_single_block_set_in_motion_stops_after_the_sent_blocks() -> None:
     controller = PlayedController(room=3)
     context = context_of(controller)
     motion = ControllerMotion(context, controller)
@@ -290,7 +290,7 @@ def test_single_block_turned_on_under_way_ends_behind_what_the_controller_has() 
     assert len(controller.ops) == 3
 
 
-def test_what_was_read_meanwhile_goes_out_behind_the_rest() -> None:
+def test_blocks_read_meanwhile_are_sent_after_the_pending_ones() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
     feed = BlockReadAhead(ProgramPass(iter([NEXT]), list), context_of(None).machine)
@@ -300,7 +300,7 @@ def test_what_was_read_meanwhile_goes_out_behind_the_rest() -> None:
     assert ends(controller.ops)[3:] == [-3.0]
 
 
-def test_a_control_that_was_away_does_not_go_on_by_itself() -> None:
+def test_motion_does_not_resume_automatically_after_the_host_was_away() -> None:
     controller = PlayedController(room=1)
     context = context_of(controller)
     motion = ControllerMotion(context, controller)
@@ -313,7 +313,7 @@ def test_a_control_that_was_away_does_not_go_on_by_itself() -> None:
     assert len(controller.ops) == 1
 
 
-def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
+def test_arc_feed_is_limited_by_acceleration() -> None:
     """Radius .1 mm: the square root of .8 of 3048 mm/s² times .1 mm is 15.6154 mm/s."""
     controller = PlayedController()
     motion_of(controller, block(BlockKind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
@@ -333,7 +333,7 @@ def surface(n: int = 1, rpm: float = 600.0) -> Block:
 
 
 @pytest.mark.parametrize(("reach", "feed"), [(2000.0, 1.0), (300.0, 0.5)])
-def test_nothing_moves_until_the_spindle_is_laid_out_for_its_surface_speed(reach: float, feed: float) -> None:
+def test_motion_waits_until_the_spindle_is_set_up_for_css(reach: float, feed: float) -> None:
     """Seen in four looks, of which the start is the first; then by the speed that the spindle comes to."""
     controller = PlayedController(css_max_rpm=0.0)
     motion = motion_of(controller, surface())
@@ -349,7 +349,7 @@ def test_nothing_moves_until_the_spindle_is_laid_out_for_its_surface_speed(reach
     assert op.feed == pytest.approx(feed)
 
 
-def test_a_surface_speed_is_not_laid_out_before_what_went_before_rests() -> None:
+def test_css_is_not_set_up_until_previous_motion_is_at_rest() -> None:
     controller = PlayedController(css_max_rpm=2000.0)
     motion = motion_of(controller, CUT, surface(2))
     for _ in range(6):

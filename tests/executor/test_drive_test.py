@@ -63,7 +63,7 @@ def hold(rig: Rig, path: DriveTestMotion, most: float = 30.0) -> tuple[list[floa
 
 
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
-def test_it_goes_its_size_and_comes_back_to_where_it_began(path: DriveTestMotion) -> None:
+def test_drive_test_travels_its_size_and_returns_to_its_start(path: DriveTestMotion) -> None:
     rig = ready()
     _, seen = hold(rig, path)
     assert rig.state is MachineState.IDLE
@@ -80,7 +80,7 @@ def test_it_goes_its_size_and_comes_back_to_where_it_began(path: DriveTestMotion
     assert (seen[:, index] * math.copysign(1.0, path.travel_mm)).min() >= -1e-9
 
 
-def test_a_step_takes_the_time_that_its_acceleration_asks_for() -> None:
+def test_step_duration_follows_from_the_acceleration() -> None:
     """Speeding up over half of the way: s = 2·½·a·(t/2)², so t = 2·√(s/a), and no faster than the hand."""
     ramps = STEP.make_ramps(LIMITS)
     peak = math.sqrt(0.5 * AMAX)
@@ -90,7 +90,7 @@ def test_a_step_takes_the_time_that_its_acceleration_asks_for() -> None:
     )
 
 
-def test_the_pieces_of_a_sine_lie_on_it() -> None:
+def test_sine_pieces_follow_the_sine_curve() -> None:
     """s/2·(1 − cos ωt) and its velocity, at the ends of pieces; the place is short by (ω dt)²/12."""
     frequency, size = 2.0, 1.0
     ramps = DriveTestMotion("X", Shape.SINE, size, frequencies_hz=(frequency,)).make_ramps(LIMITS)
@@ -104,7 +104,7 @@ def test_the_pieces_of_a_sine_lie_on_it() -> None:
     assert t * frequency == pytest.approx(5.0)
 
 
-def test_a_sine_that_the_axis_cannot_do_whole_is_smaller() -> None:
+def test_sine_beyond_the_axis_limits_is_reduced() -> None:
     """An acceleration of s/2·ω² leaves s = 2a/ω² at 40 Hz."""
     path = DriveTestMotion("X", Shape.SINE, -2.0, frequencies_hz=(2.0, 40.0))
     assert path.compute_sine_travel_mm(40.0, LIMITS) == pytest.approx(-2.0 * AMAX / (80.0 * math.pi) ** 2)
@@ -113,7 +113,7 @@ def test_a_sine_that_the_axis_cannot_do_whole_is_smaller() -> None:
     assert max(abs(v) for _, v, _ in ramps) <= LIMITS.max_speed_mm_s
 
 
-def test_wherever_it_is_cut_it_comes_to_rest_within_its_reach() -> None:
+def test_interrupted_drive_test_stops_within_its_travel() -> None:
     ramps = DriveTestMotion("X", Shape.SINE, 2.0, frequencies_hz=(2.0, 10.0)).make_ramps(LIMITS)
     low, high = compute_position_range(ramps)
     ends = []
@@ -132,7 +132,7 @@ def test_wherever_it_is_cut_it_comes_to_rest_within_its_reach() -> None:
 
 
 @pytest.mark.parametrize("stopper", [StopJog(), FeedHold(), Reset()])
-def test_let_go_it_brakes_where_it_is_and_says_so(stopper: Command) -> None:
+def test_released_drive_test_brakes_in_place_and_is_reported(stopper: Command) -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
     assert rig.state is MachineState.JOG
@@ -143,7 +143,7 @@ def test_let_go_it_brakes_where_it_is_and_says_so(stopper: Command) -> None:
     assert rig.shot.drive_test.completed_test_count == 0
 
 
-def test_a_host_that_dies_leaves_it_at_rest_within_its_lease() -> None:
+def test_drive_test_stops_within_its_lease_when_the_host_dies() -> None:
     rig = ready()
     rig.post(RunDriveTest(RAMP, LEASE))
     began = rig.sim.ports.axes.sample().demand[1]
@@ -156,7 +156,7 @@ def test_a_host_that_dies_leaves_it_at_rest_within_its_lease() -> None:
 
 
 @pytest.mark.parametrize("late", [0.07, 0.08, 0.09, 0.14])
-def test_a_lease_that_ran_out_is_not_taken_up_again(late: float) -> None:
+def test_expired_lease_cannot_be_renewed(late: float) -> None:
     """What is committed is as good as over: a tick before its end nothing can be added any more."""
     rig = ready()
     rig.post(RunDriveTest(RAMP, 0.1))
@@ -167,7 +167,7 @@ def test_a_lease_that_ran_out_is_not_taken_up_again(late: float) -> None:
     assert rig.shot.demand[1] > -4.0
 
 
-def test_a_renewal_behind_the_release_counts_for_nothing() -> None:
+def test_renewal_after_release_is_ignored() -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
     rig.post(StopJog(), RenewDriveTest(LEASE), RenewDriveTest(LEASE))
@@ -176,7 +176,7 @@ def test_a_renewal_behind_the_release_counts_for_nothing() -> None:
     assert rig.shot.demand[1] > -4.0
 
 
-def test_renewing_never_begins_one() -> None:
+def test_renewal_never_starts_a_drive_test() -> None:
     rig = ready()
     rig.post(RenewDriveTest(LEASE))
     rig.run(0.5)
@@ -188,7 +188,7 @@ def test_renewing_never_begins_one() -> None:
     assert rig.state is MachineState.IDLE
 
 
-def test_a_slide_that_does_not_follow_trips_as_always() -> None:
+def test_following_error_trips_during_a_drive_test() -> None:
     rig = ready()
     rig.post(RunDriveTest(RAMP, LEASE))
     rig.sim.machine.jam("Z")
@@ -199,7 +199,7 @@ def test_a_slide_that_does_not_follow_trips_as_always() -> None:
     assert rig.shot.drive_test.tested_axis == "" or rig.state is MachineState.FAULT
 
 
-def test_estop_in_the_middle_and_another_test_afterwards() -> None:
+def test_estop_stops_a_drive_test_and_rejects_another() -> None:
     rig = ready()
     hold(rig, SINE, most=0.3)
     rig.sim.machine.press_estop()
@@ -213,7 +213,7 @@ def test_estop_in_the_middle_and_another_test_afterwards() -> None:
 @pytest.mark.parametrize(
     "other", [Jog("Z", 5.0, LEASE), JogByStep("X", 0.1, 5.0), RunDriveTest(STEP, LEASE), Jog("X", 5.0, LEASE)]
 )
-def test_whatever_else_is_asked_meanwhile_ends_it(other: Command) -> None:
+def test_any_other_motion_command_ends_the_drive_test(other: Command) -> None:
     rig = ready()
     hold(rig, SINE, most=0.3)
     rig.post(other)
@@ -250,7 +250,7 @@ def test_whatever_else_is_asked_meanwhile_ends_it(other: Command) -> None:
         ),
     ],
 )
-def test_tests_without_sense_are_refused(path: DriveTestMotion, why: str) -> None:
+def test_invalid_drive_tests_are_rejected(path: DriveTestMotion, why: str) -> None:
     rig = ready()
     rig.post(RunDriveTest(path, LEASE))
     rig.run(0.3)
@@ -260,13 +260,13 @@ def test_tests_without_sense_are_refused(path: DriveTestMotion, why: str) -> Non
 
 
 @pytest.mark.parametrize("lease", [0.0, -1.0, math.nan, math.inf])
-def test_a_lease_without_sense_is_refused(lease: float) -> None:
+def test_invalid_lease_is_rejected(lease: float) -> None:
     rig = ready()
     rig.post(RunDriveTest(STEP, lease))
     assert rig.said("refused") == [text("executor.drive-test", why=text("executor.test-lease"))]
 
 
-def test_the_whole_of_it_has_to_fit_with_its_braking() -> None:
+def test_drive_test_including_braking_must_fit_in_the_travel() -> None:
     """Half a millimetre before the end of the travel; a hundredth is kept from it."""
     rig = ready()
     x = rig.machine.find_axis("X")
@@ -296,7 +296,7 @@ def test_an_axis_that_is_not_homed_is_not_tested() -> None:
     assert text("executor.test-not-homed", axis="X") in rig.said("refused")[0]
 
 
-def test_not_while_the_spindle_turns() -> None:
+def test_drive_test_is_rejected_while_the_spindle_turns() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM02\n")
     rig.until(MachineState.IDLE)
@@ -304,7 +304,7 @@ def test_not_while_the_spindle_turns() -> None:
     assert rig.said("refused") == [text("executor.drive-test", why=text("executor.spindle-turns-stop"))]
 
 
-def test_not_with_the_guard_open_and_it_ends_where_one_is_opened() -> None:
+def test_opening_the_guard_ends_a_drive_test() -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
     rig.executor._context.spindle.is_guard_open = True
@@ -315,7 +315,7 @@ def test_not_with_the_guard_open_and_it_ends_where_one_is_opened() -> None:
 
 
 @pytest.mark.parametrize("command", [RunDriveTest(STEP, LEASE), RenewDriveTest(LEASE)])
-def test_nothing_is_tested_while_a_program_is_under_way(command: Command) -> None:
+def test_drive_test_is_rejected_while_a_program_runs(command: Command) -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
     rig.run(0.2)
@@ -329,7 +329,7 @@ def test_nothing_is_tested_while_a_program_is_under_way(command: Command) -> Non
     assert rig.shot.demand[0] == 0.0
 
 
-def test_a_late_one_is_refused() -> None:
+def test_late_drive_test_command_is_rejected() -> None:
     rig = ready()
     rig.executor.post(RunDriveTest(STEP, LEASE))
     rig.clock.advance(0.6)
@@ -339,7 +339,7 @@ def test_a_late_one_is_refused() -> None:
     assert text("executor.came-too-late", command="RunDriveTest") in rig.said("refused")[0]
 
 
-def test_the_handwheel_does_not_move_under_it() -> None:
+def test_handwheel_does_not_move_the_axis_during_a_drive_test() -> None:
     rig = ready()
     hold(rig, SINE, most=0.2)
     rig.post(SelectHandwheel("X", 0.01, LEASE))

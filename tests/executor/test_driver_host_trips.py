@@ -58,7 +58,7 @@ def tripped(by: str, names: str) -> str:
     return text(f"executor.{by}-trip", seconds=1.5, names=names)
 
 
-def test_at_rest_it_is_told_and_nothing_is_held() -> None:
+def test_driver_host_trip_at_rest_is_reported_without_a_hold() -> None:
     rig = FedRig()
     rig.ready()
     rig.post(ForceOutput("coolant", True))
@@ -68,7 +68,7 @@ def test_at_rest_it_is_told_and_nothing_is_held() -> None:
     assert rig.shot.alarms == ()
 
 
-def test_lamps_alone_are_not_worth_a_word() -> None:
+def test_trip_of_lamps_alone_is_not_reported() -> None:
     rig = FedRig(with_lamps())
     rig.ready()
     rig.trips("lamp_green")
@@ -82,7 +82,7 @@ def test_lamps_alone_are_not_worth_a_word() -> None:
         (True, tripped("machine", "SPINDLE, COOLANT")),
     ],
 )
-def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> None:
+def test_trip_in_a_cut_holds_and_the_part_is_not_counted(found: bool, words: str) -> None:
     rig = FedRig()
     rig.start(PART)
     rig.until_true(lambda shot: shot.actual[1] < -1.0)
@@ -105,7 +105,7 @@ def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> N
 
 
 @pytest.mark.parametrize("on", [True, False])
-def test_at_rest_an_output_that_somebody_else_moves_is_told_once_and_then_counts(on: bool) -> None:
+def test_externally_changed_output_at_rest_is_reported_once_and_accepted(on: bool) -> None:
     rig = Rig()
     rig.ready()
     if not on:

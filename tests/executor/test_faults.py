@@ -41,7 +41,7 @@ def alarm(rig: Rig, code: str, limit: float = 20.0) -> float:
     return took
 
 
-def test_an_estop_pressed_behind_the_look_at_the_station_is_one_and_no_loss_of_power(
+def test_estop_after_station_poll_is_not_reported_as_power_loss(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     rig = Rig()
@@ -68,7 +68,7 @@ def test_an_estop_pressed_behind_the_look_at_the_station_is_one_and_no_loss_of_p
 
 
 @pytest.mark.parametrize("stall", [0.5, 5.0])
-def test_a_stalled_host_leaves_the_slides_on_their_path_without_a_fault(stall: float) -> None:
+def test_stalled_host_leaves_the_axes_on_the_path_without_a_fault(stall: float) -> None:
     rig = Rig()
     text = "G90G94F300\nG01F300\n" + "X3Z-4\nX0Z0\n" * 10 + "M30\n"
     rig.start(text)
@@ -96,7 +96,7 @@ def test_a_stalled_host_leaves_the_slides_on_their_path_without_a_fault(stall: f
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
-def test_a_stalled_host_in_one_long_move_stops_too() -> None:
+def test_stalled_host_in_one_long_move_also_stops() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F5Z-5\nM30\n")
     rig.run(1.0)
@@ -115,7 +115,7 @@ def test_a_stalled_host_in_one_long_move_stops_too() -> None:
 STEPS = "G90G94F300\nG01F60\nZ-.2\nX.2\nZ-3\nM30\n"  # an inch a second: .2 s, .2 s, 2.8 s
 
 
-def test_a_late_host_shows_the_block_in_which_the_slides_stand() -> None:
+def test_late_host_shows_the_block_in_which_the_axes_stopped() -> None:
     """Not the one that was played when it was last there: line, way to go and path would be of another."""
     rig = Rig()
     rig.start(STEPS)
@@ -139,7 +139,9 @@ def test_a_late_host_shows_the_block_in_which_the_slides_stand() -> None:
 @pytest.mark.parametrize(
     ("pressed", "state"), [(FeedHold(), MachineState.HOLD), (Reset(), MachineState.IDLE)]
 )
-def test_so_does_what_was_pressed_while_the_host_was_away(pressed: Command, state: MachineState) -> None:
+def test_stop_pressed_while_the_host_was_away_shows_the_stopped_block(
+    pressed: Command, state: MachineState
+) -> None:
     rig = Rig()
     rig.start(STEPS)
     rig.until_true(lambda shot: shot.line == 3)
@@ -152,7 +154,7 @@ def test_so_does_what_was_pressed_while_the_host_was_away(pressed: Command, stat
     assert left.line == 5
 
 
-def test_a_hold_behind_which_the_host_is_late_shows_it_too() -> None:
+def test_late_host_after_a_hold_shows_the_stopped_block() -> None:
     rig = Rig(every=FINE)
     rig.start("G90G94F300\nG01F200\nZ-1.2\nX1.2Z-2.4\nM30\n")
     rig.until_true(lambda shot: shot.line == 3 and shot.actual[1] < -1.17 * INCH)
@@ -185,7 +187,7 @@ def test_an_exception_in_the_worker_stops_the_machine(monkeypatch: pytest.Monkey
     assert not rig.sim.ports.axes.sample().enabled
 
 
-def test_a_dead_driver_is_an_alarm_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dead_driver_raises_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     rig.start(LONG)
     rig.run(0.5)
@@ -199,7 +201,7 @@ def test_a_dead_driver_is_an_alarm_too(monkeypatch: pytest.MonkeyPatch) -> None:
     assert rig.shot.alarms[0].code == "internal"
 
 
-def test_the_thread_ticks_and_leaves_nothing_on() -> None:
+def test_executor_thread_ticks_and_turns_everything_off_at_exit() -> None:
     rig = Rig()
     clock = RealClock()
     thread = ExecutorThread(rig.executor, clock, tick=0.001)
@@ -216,7 +218,7 @@ def test_the_thread_ticks_and_leaves_nothing_on() -> None:
 # --- axes ---------------------------------------------------------------------------------------------------
 
 
-def test_a_jammed_slide_stops_all() -> None:
+def test_jammed_axis_stops_the_machine() -> None:
     rig = Rig()
     rig.start(LONG)
     rig.run(0.4)
@@ -235,7 +237,7 @@ def test_a_jammed_slide_stops_all() -> None:
     assert rig.shot.block == 0
 
 
-def test_a_stuck_encoder_and_a_drive_fault_stop_all() -> None:
+def test_frozen_encoder_and_drive_fault_stop_the_machine() -> None:
     breaks: tuple[tuple[Callable[[Rig], None], str], ...] = (
         (lambda rig: rig.sim.machine.encoder_stuck("Z"), "following"),
         (lambda rig: rig.sim.machine.drive_fault("Z", "overcurrent"), "axis"),
@@ -267,7 +269,7 @@ def test_reset_does_not_clear_a_fault_that_stays() -> None:
 # --- spindle and collet -------------------------------------------------------------------------------------
 
 
-def test_a_spindle_that_does_not_reach_its_speed() -> None:
+def test_spindle_that_does_not_reach_speed_raises_an_alarm() -> None:
     rig = Rig()
     rig.sim.machine.spindle_bog(0.6)
     rig.start("G90G94F300\nM03S1000\nX1\nG01F10Z-1\nM30\n")
@@ -276,7 +278,7 @@ def test_a_spindle_that_does_not_reach_its_speed() -> None:
 
 
 @pytest.mark.parametrize("code", ["G95F.005", "G94F5"])
-def test_a_bogged_spindle_holds_the_feed_and_going_on_waits_for_its_speed(code: str) -> None:
+def test_bogged_spindle_holds_the_feed_and_resume_waits_for_speed(code: str) -> None:
     rig = Rig()
     rig.start(f"G90G94F300\nM03S1000\nG01{code}Z-1\nM30\n")
     rig.run(3.0)
@@ -295,7 +297,7 @@ def test_a_bogged_spindle_holds_the_feed_and_going_on_waits_for_its_speed(code: 
     assert rig.state is MachineState.RUN
 
 
-def test_a_pot_turned_up_in_a_cut_by_the_minute_holds_nothing() -> None:
+def test_raising_spindle_override_in_feed_per_minute_cut_causes_no_hold() -> None:
     """A drive that runs up as fast as it can obeys: only one that does not is a fault."""
     rig = Rig()
     rig.sim.machine.set_spindle_pot(0.1)
@@ -306,7 +308,7 @@ def test_a_pot_turned_up_in_a_cut_by_the_minute_holds_nothing() -> None:
     assert rig.state is MachineState.RUN
 
 
-def test_a_spindle_drive_fault() -> None:
+def test_spindle_drive_fault_raises_an_alarm() -> None:
     rig = Rig()
     rig.start(BUSY)
     rig.run(3.0)
@@ -315,7 +317,7 @@ def test_a_spindle_drive_fault() -> None:
     assert rig.shot.alarms[0].cause == "overvoltage"
 
 
-def test_a_spindle_that_ignores_its_stop() -> None:
+def test_spindle_that_ignores_stop_raises_an_alarm() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S2000\nG04F3\nM05\nG04F9\nM30\n")
     rig.run(3.0)
@@ -325,7 +327,7 @@ def test_a_spindle_that_ignores_its_stop() -> None:
     assert "E-STOP" in rig.shot.alarms[0].remedy
 
 
-def test_the_spindle_switch_stops_and_keeps_the_command() -> None:
+def test_spindle_switch_stops_the_spindle_and_retains_the_command() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S1000\nG04F20\nM30\n")
     rig.run(2.0)
@@ -342,7 +344,7 @@ def test_the_spindle_switch_stops_and_keeps_the_command() -> None:
     assert rig.shot.rpm_actual == 1000.0
 
 
-def test_a_start_of_the_spindle_with_its_switch_off_is_a_hold_and_no_alarm() -> None:
+def test_spindle_start_with_switch_off_causes_a_hold_and_no_alarm() -> None:
     rig = Rig()
     rig.sim.machine.set_spindle_auto(False)
     rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
@@ -366,7 +368,7 @@ def test_spindle_start_with_the_collet_open_is_refused() -> None:
     assert rig.sim.machine.get_spindle_rpm() == 0.0
 
 
-def test_unclamping_at_speed_is_refused_where_the_machine_file_says_so() -> None:
+def test_unclamping_at_speed_is_rejected_if_the_machine_file_forbids_it() -> None:
     rig = Rig(strict_machine())
     rig.start("G90G94F300\nM03S1000\nG04F3\nM05\nM13\nM12\nM30\n")
     rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
@@ -377,7 +379,7 @@ def test_unclamping_at_speed_is_refused_where_the_machine_file_says_so() -> None
     rig.until(MachineState.IDLE)
 
 
-def test_unclamping_a_running_spindle_is_an_alarm_where_the_machine_file_says_so() -> None:
+def test_unclamping_at_speed_raises_alarm_if_the_machine_file_says_so() -> None:
     rig = Rig(strict_machine())
     maker = Maker()
     maker.rpm = 300.0
@@ -393,7 +395,7 @@ def strict_machine() -> Machine:
     return dataclasses.replace(machine, interlocks=locks)
 
 
-def test_a_collet_that_does_not_answer() -> None:
+def test_collet_that_does_not_respond_raises_an_alarm() -> None:
     rig = Rig()
     rig.sim.machine.collet_sensor_stuck()
     rig.start("G90G94F300\nM13\nX1\nM30\n")
@@ -401,7 +403,7 @@ def test_a_collet_that_does_not_answer() -> None:
     assert rig.shot.actual[0] == 0.0
 
 
-def test_a_collet_that_opens_by_itself() -> None:
+def test_collet_that_opens_unexpectedly_raises_an_alarm() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S1000\nG04F9\nM30\n")
     rig.run(2.0)
@@ -431,7 +433,7 @@ def in_thread(rig: Rig) -> None:
     rig.until_true(lambda shot: shot.block_text == "thread" and shot.actual[1] < -5.0, limit=30)
 
 
-def test_passes_enter_at_one_angle_of_the_spindle() -> None:
+def test_thread_passes_start_at_the_same_spindle_angle() -> None:
     rig = Rig()
     threading(rig)
     seen: list[float] = []
@@ -451,7 +453,7 @@ def test_passes_enter_at_one_angle_of_the_spindle() -> None:
     assert max(seen) - min(seen) < 0.01  # of a turn: 13 µm of lead
 
 
-def test_a_pass_keeps_its_lead_under_feed_override() -> None:
+def test_thread_pass_maintains_its_lead_under_feed_override() -> None:
     rig = Rig()
     rig.sim.machine.set_feed_pot(0.5)
     rig.run(1.0)
@@ -461,7 +463,7 @@ def test_a_pass_keeps_its_lead_under_feed_override() -> None:
 
 
 @pytest.mark.parametrize("how", ["button", "override"])
-def test_hold_in_a_thread_waits_for_the_pull_out(how: str) -> None:
+def test_hold_in_a_thread_acts_after_the_pull_out(how: str) -> None:
     rig = Rig()
     threading(rig)
     in_thread(rig)
@@ -497,7 +499,7 @@ def test_single_block_does_not_stop_in_the_groove() -> None:
 
 
 @pytest.mark.parametrize("kill", ["bog", "trip"])
-def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(kill: str) -> None:
+def test_spindle_loss_in_a_thread_retracts_and_skips_remaining_passes(kill: str) -> None:
     rig = Rig()
     threading(rig)
     in_thread(rig)
@@ -518,7 +520,7 @@ def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(kill: str) ->
     assert rig.shot.demand == stood
 
 
-def test_a_thread_without_an_encoder_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_thread_without_an_encoder_raises_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     monkeypatch.setattr(rig.sim.ports.spindle, "read_angle", lambda: None)
     threading(rig)
@@ -529,7 +531,7 @@ def test_a_thread_without_an_encoder_is_an_alarm(monkeypatch: pytest.MonkeyPatch
 # --- station ------------------------------------------------------------------------------------------------
 
 
-def test_a_silent_station_keeps_its_pots_and_holds() -> None:
+def test_silent_station_retains_overrides_and_holds() -> None:
     rig = Rig(every=FINE)
     rig.start("G90G94F300\nG01F30Z-5\nM30\n")
     rig.run(1.0)
@@ -543,7 +545,7 @@ def test_a_silent_station_keeps_its_pots_and_holds() -> None:
     assert rig.shot.waiting_for == text("executor.station-silent")
 
 
-def test_a_jumping_pot_never_speeds_up_and_holds() -> None:
+def test_jumping_override_never_speeds_up_and_holds() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F30Z-5\nM30\n")
     rig.run(1.0)
@@ -555,7 +557,7 @@ def test_a_jumping_pot_never_speeds_up_and_holds() -> None:
     assert max(fastest) <= 30 * INCH / 60 * 1.2 + 0.2
 
 
-def test_a_pot_that_leaps_up_is_believed_only_when_it_stands() -> None:
+def test_override_that_jumps_up_is_accepted_only_once_stable() -> None:
     rig = Rig()
     rig.sim.machine.set_feed_pot(0.2)
     rig.run(0.5)
@@ -573,7 +575,7 @@ def test_a_pot_that_leaps_up_is_believed_only_when_it_stands() -> None:
 
 
 @pytest.mark.parametrize("after", [0.02, 0.05, 0.31, 0.7, 1.3, 2.0, 3.3, 4.9, 6.2, 7.7, 8.5, 9.05, 9.4])
-def test_estop_at_any_moment(after: float) -> None:
+def test_estop_works_at_any_moment(after: float) -> None:
     rig = Rig()
     rig.start(BUSY)
     rig.run(after)
@@ -601,7 +603,7 @@ def test_estop_at_any_moment(after: float) -> None:
     assert rig.shot.line in {0, 1, 2}
 
 
-def test_estop_loses_the_home_of_axes_that_only_count() -> None:
+def test_estop_clears_the_home_of_incremental_axes() -> None:
     rig = Rig(unhomed_machine())
     rig.ready()
     rig.post(HomeAxes())
@@ -612,7 +614,7 @@ def test_estop_loses_the_home_of_axes_that_only_count() -> None:
     assert rig.shot.homed == (True, False, True)
 
 
-def test_the_drives_stay_off_while_nothing_is_heard_of_the_machine() -> None:
+def test_drives_stay_off_while_the_machine_is_silent() -> None:
     it = Rig()
     heard = it.executor._ports
     it.executor._ports = dataclasses.replace(heard, unknown=lambda: ALL_UNKNOWN_PARTS)

@@ -30,7 +30,7 @@ def moving_rig(program: str = RAPID, seconds: float = 0.4) -> Rig:
     return rig
 
 
-def test_hold_from_full_speed_is_at_rest_in_time_and_on_the_path() -> None:
+def test_hold_at_full_speed_stops_in_time_and_on_the_path() -> None:
     rig = moving_rig()
     speed = 300 * INCH / 60
     assert rig.shot.velocity == pytest.approx(speed, rel=0.01)
@@ -47,7 +47,7 @@ def test_hold_from_full_speed_is_at_rest_in_time_and_on_the_path() -> None:
     assert rig.numbers("stop") == [702]
 
 
-def test_the_stations_button_holds_too() -> None:
+def test_hold_button_of_the_station_holds() -> None:
     rig = moving_rig()
     rig.sim.machine.press_hold()
     rig.until(MachineState.HOLD)
@@ -77,7 +77,7 @@ def test_resume_ends_at_the_same_place(after: float) -> None:
     assert rig.shot.parts == 1
 
 
-def test_hold_twice_and_start_twice_change_nothing() -> None:
+def test_repeated_hold_and_repeated_start_have_no_effect() -> None:
     rig = moving_rig()
     rig.post(FeedHold(), FeedHold())
     rig.post(CycleStart())
@@ -99,7 +99,7 @@ def test_hold_does_not_start_anything() -> None:
     assert rig.shot.actual == (0.0, 0.0, 0.0)
 
 
-def test_a_held_dwell_waits_the_rest() -> None:
+def test_dwell_resumes_with_its_remaining_time_after_a_hold() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG04F2\nM30\n")
     rig.run(0.5)
@@ -110,7 +110,7 @@ def test_a_held_dwell_waits_the_rest() -> None:
     assert rig.until(MachineState.IDLE) == pytest.approx(1.5, abs=0.05)
 
 
-def test_the_spindle_turns_on_in_hold_and_starts_nowhere() -> None:
+def test_spindle_keeps_turning_in_hold_and_stops_after_reset() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
     rig.run(3.0)
@@ -162,7 +162,7 @@ def test_half_override_takes_twice_as_long() -> None:
 
 
 @pytest.mark.parametrize("program", ["G90G94F300\nG01F30Z-1\nM30\n", RAPID])
-def test_override_0_holds_and_more_goes_on(program: str) -> None:
+def test_zero_override_holds_and_higher_override_resumes(program: str) -> None:
     rig = moving_rig(program)
     rig.sim.machine.set_feed_pot(0.0)
     rig.run(1.0)
@@ -176,7 +176,7 @@ def test_override_0_holds_and_more_goes_on(program: str) -> None:
     assert rig.shot.parts == 1
 
 
-def test_override_changes_the_speed_on_the_way() -> None:
+def test_override_changes_the_speed_in_motion() -> None:
     rig = moving_rig("G90G94F300\nG01F30Z-5\nM30\n", 1.0)
     for fraction in (0.5, 1.5, 1.0, 0.3):
         rig.post(SetFeedOverride(fraction))
@@ -200,7 +200,7 @@ def test_an_override_out_of_range_is_refused(fraction: float) -> None:
     assert rig.said("refused")
 
 
-def test_single_block_stops_behind_every_block() -> None:
+def test_single_block_stops_after_every_block() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX1\nG01F100Z-1\nM08\nX1.5\nM30\n")
@@ -229,7 +229,7 @@ def test_single_block_switched_on_in_motion_stops_at_the_end_of_the_block() -> N
     assert rig.shot.demand[:2] == pytest.approx((INCH, -2 * INCH))
 
 
-def test_single_block_too_late_for_this_block_takes_the_next() -> None:
+def test_single_block_set_too_late_stops_after_the_next_block() -> None:
     rig = Rig()
     short = "".join(f"Z-{0.01 * k:.2f}\n" for k in range(1, 200))
     rig.start("G90G94F300\nG01F200\n" + short + "M30\n")
@@ -247,7 +247,7 @@ def test_single_block_too_late_for_this_block_takes_the_next() -> None:
     assert rig.shot.block == before + 1
 
 
-def test_hold_then_single_block_then_on() -> None:
+def test_hold_followed_by_single_block_stops_at_the_block_end() -> None:
     rig = moving_rig()
     rig.post(FeedHold())
     rig.until(MachineState.HOLD)
@@ -263,7 +263,7 @@ def test_an_unknown_switch_is_refused() -> None:
     assert "turbo" in rig.said("refused")[0]
 
 
-def test_reset_in_motion_stops_on_the_path_and_forgets_the_program() -> None:
+def test_reset_in_motion_stops_on_the_path_and_ends_the_program() -> None:
     rig = moving_rig()
     seen = []
     rig.watch.append(lambda shot: seen.append(off_line(shot, (0.0, 0.0), END)))
@@ -281,7 +281,7 @@ def test_reset_in_motion_stops_on_the_path_and_forgets_the_program() -> None:
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
-def test_the_log_tells_of_overrides_once() -> None:
+def test_override_change_is_logged_once() -> None:
     rig = Rig()
     rig.post(SetFeedOverride(0.5))
     rig.run(1.0)
@@ -293,7 +293,7 @@ def test_the_log_tells_of_overrides_once() -> None:
     ]
 
 
-def test_a_million_blocks_do_not_keep_a_hold_waiting() -> None:
+def test_million_block_program_does_not_delay_a_hold() -> None:
     rig = Rig()
     pulled = 0
 

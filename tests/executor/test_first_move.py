@@ -53,7 +53,7 @@ def loaded() -> tuple[Checked, Job]:
     return rig, rig.load(PART, TOOLS)
 
 
-def test_without_a_verdict_nothing_starts_and_with_a_good_one_it_does() -> None:
+def test_start_requires_a_clearance_verdict() -> None:
     rig, job = loaded()
     assert not rig.starts()
     assert rig.shot.start_code == START_UNCHECKED
@@ -63,14 +63,14 @@ def test_without_a_verdict_nothing_starts_and_with_a_good_one_it_does() -> None:
 
 
 @pytest.mark.parametrize("code", [TOOL_IN_PART, FIRST_MOVE_CROSSES])
-def test_a_refusal_has_its_code_and_its_sentence(code: str) -> None:
+def test_start_refusal_has_a_code_and_a_message(code: str) -> None:
     rig, job = loaded()
     rig.clear(job, code)
     assert not rig.starts()
     assert (rig.shot.start_code, rig.shot.start_refusal) == (code, WHY)
 
 
-def test_a_verdict_for_another_position_is_none() -> None:
+def test_verdict_for_another_position_is_ignored() -> None:
     rig, job = loaded()
     rig.clear(job)
     rig.post(JogByStep("X", -0.5, 5.0))
@@ -82,7 +82,7 @@ def test_a_verdict_for_another_position_is_none() -> None:
     assert rig.starts()
 
 
-def test_a_verdict_for_another_job_or_before_another_run_is_none() -> None:
+def test_verdict_for_another_job_or_another_run_is_ignored() -> None:
     rig, job = loaded()
     rig.clear(job, job="another")
     assert not rig.starts()
@@ -91,7 +91,7 @@ def test_a_verdict_for_another_job_or_before_another_run_is_none() -> None:
     assert rig.shot.start_code == START_UNCHECKED
 
 
-def test_what_was_computed_before_a_run_does_not_count_after_it() -> None:
+def test_verdict_computed_before_a_run_is_ignored_after_it() -> None:
     rig = Checked()
     rig.ready()
     job = rig.load(END, TOOLS)
@@ -104,7 +104,7 @@ def test_what_was_computed_before_a_run_does_not_count_after_it() -> None:
     assert rig.shot.start_code == START_UNCHECKED
 
 
-def test_what_is_assumed_is_announced_before_the_start() -> None:
+def test_assumptions_are_announced_before_the_start() -> None:
     rig, job = loaded()
     rig.clear(job, warned="LOOK")
     assert any("LOOK" in each for each in rig.shot.announced)
@@ -116,7 +116,7 @@ def prepares(rig: Checked, job: Job, clearance: Clearance | None) -> None:
     rig.post(PrepareStart(StartAction.MDI_LINE, job, proof, clearance))
 
 
-def test_the_verdict_on_the_program_is_none_on_a_line() -> None:
+def test_program_verdict_does_not_apply_to_an_mdi_line() -> None:
     rig, job = loaded()
     prepares(rig, job, None)
     rig.clear(job)
@@ -124,13 +124,13 @@ def test_the_verdict_on_the_program_is_none_on_a_line() -> None:
     assert rig.shot.start_code == START_UNCHECKED
 
 
-def test_a_line_is_prepared_with_its_verdict_and_starts() -> None:
+def test_mdi_line_starts_when_prepared_with_its_verdict() -> None:
     rig, job = loaded()
     prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun))
     assert rig.starts()
 
 
-def test_a_line_whose_first_move_crosses_is_refused_until_another_is_prepared() -> None:
+def test_mdi_line_with_crossing_first_move_is_rejected_until_replaced() -> None:
     rig, job = loaded()
     rig.clear(job)
     prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun, FIRST_MOVE_CROSSES, WHY))

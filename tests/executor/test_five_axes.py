@@ -88,14 +88,14 @@ def test_a_slow_rotary_axis_slows_the_block_down() -> None:
     assert 1.5 < took < 1.5 + 60.0 / 720.0 + 0.3
 
 
-def test_rotary_axes_alone_take_the_feed_in_degrees() -> None:
+def test_rotary_only_move_uses_the_feed_in_degrees() -> None:
     """A 30 and C 40 together are 50 degrees of way; at 25 degrees/s that is 2 s."""
     rig = rig_with(line(1, HOME, (0.0, 0.0, 0.0, 30.0, 40.0), 25.0))
     took = rig.until(MachineState.IDLE)
     assert 2.0 < took < 2.0 + 0.4
 
 
-def test_a_hold_stays_on_the_line() -> None:
+def test_hold_stays_on_the_programmed_line() -> None:
     there = (100.0, 50.0, 0.0, 30.0, 0.0)
     rig = rig_with(line(1, HOME, there, 40.0))
     rig.run(0.8)
@@ -114,7 +114,7 @@ SLIDES = (
 )
 
 
-def test_a_way_out_of_proportion_is_followed_all_along() -> None:
+def test_pivot_move_leaves_the_tool_tip_on_the_same_spot() -> None:
     """The tip stays on its spot of the workpiece while A swings it: a quarter circle of Y and Z."""
     spot = (0.0, 0.0, 0.0)
     table = Kinematics(
@@ -131,7 +131,7 @@ def test_a_way_out_of_proportion_is_followed_all_along() -> None:
     assert off.max() < 2e-4
 
 
-def test_a_move_beyond_the_swivel_range_is_refused_before_it_begins() -> None:
+def test_move_beyond_the_swivel_range_is_rejected_before_it_starts() -> None:
     rig = rig_with(line(1, HOME, (0.0, 0.0, 0.0, 121.0, 0.0), 25.0))
     rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].cause == text(

@@ -95,7 +95,7 @@ def way_until_off(rig: Rig, limit: float = 2.0) -> tuple[float, float]:
 
 @pytest.mark.parametrize("state", AT_REST)
 @pytest.mark.parametrize(("speed", "most"), [(1.0, 0.6), (5.0, 1.4), (20.0, 3.0), (130.0, 12.0)])
-def test_a_drive_that_runs_away_at_rest(state: str, speed: float, most: float) -> None:
+def test_drive_runaway_at_rest_raises_a_fault(state: str, speed: float, most: float) -> None:
     rig = Rig()
     AT_REST[state](rig)
     rig.sim.machine.runaway("Z", speed)
@@ -108,9 +108,7 @@ def test_a_drive_that_runs_away_at_rest(state: str, speed: float, most: float) -
 
 @pytest.mark.parametrize("state", AT_REST)
 @pytest.mark.parametrize("off", [0.03, 0.15, 0.5, 1.9])
-def test_a_slide_that_is_jammed_beside_its_place_does_not_stand_there_in_peace(
-    state: str, off: float
-) -> None:
+def test_axis_jammed_off_position_raises_a_standstill_alarm(state: str, off: float) -> None:
     rig = Rig()
     AT_REST[state](rig)
     rig.sim.machine.jam("Z")
@@ -130,7 +128,7 @@ def test_a_slide_that_is_jammed_beside_its_place_does_not_stand_there_in_peace(
     assert rig.sim.machine.get_true_position()[1] == pytest.approx(stood, abs=0.002)  # and does not jump back
 
 
-def test_a_jam_at_the_end_of_a_move_does_not_end_in_ready_with_a_demand_elsewhere() -> None:
+def test_jam_at_the_end_of_a_move_does_not_end_in_idle_off_position() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F100Z-1\nM30\n")
     rig.until_true(lambda shot: shot.demand[1] < -25.4 + 1.0)
@@ -146,7 +144,7 @@ def test_a_jam_at_the_end_of_a_move_does_not_end_in_ready_with_a_demand_elsewher
 @pytest.mark.parametrize(
     ("text", "most"), [(SLOW, 0.6), (FEED, 5.0), (RAPID, 20.0)], ids=["slow", "feed", "rapid"]
 )
-def test_an_encoder_that_stops_counting_in_motion(text: str, most: float) -> None:
+def test_encoder_freeze_in_motion_raises_a_fault(text: str, most: float) -> None:
     rig = Rig()
     rig.start(text)
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
@@ -159,7 +157,7 @@ def test_an_encoder_that_stops_counting_in_motion(text: str, most: float) -> Non
 
 @pytest.mark.parametrize("after", [0.0, 0.01, 0.02, 0.03, 0.04, 0.05])
 @pytest.mark.parametrize("text", [FEED, "G90G94F300\nG01F60Z-4\nM30\n", RAPID])
-def test_an_encoder_that_stops_counting_as_a_hold_begins(text: str, after: float) -> None:
+def test_encoder_freeze_at_hold_start_raises_a_fault(text: str, after: float) -> None:
     rig = Rig(every=FINE)
     rig.start(text)
     rig.until_true(lambda shot: shot.actual[1] < -12.0)
@@ -175,7 +173,7 @@ def test_an_encoder_that_stops_counting_as_a_hold_begins(text: str, after: float
         assert rig.state is MachineState.FAULT
 
 
-def test_a_slow_jog_into_a_jam() -> None:
+def test_slow_jog_into_a_jam_raises_encoder_still() -> None:
     rig = Rig()
     ready(rig)
     rig.sim.machine.jam("Z")
@@ -190,7 +188,7 @@ def codes(rig: Rig) -> list[str]:
     return [alarm.code for alarm in rig.shot.alarms]
 
 
-def test_a_slide_pushed_by_hand_with_the_drives_off_is_told_and_one_in_estop_is_not() -> None:
+def test_axis_pushed_with_drives_off_is_reported_but_not_in_estop() -> None:
     rig = Rig()
     ready(rig)
     rig.sim.machine.press_estop()
@@ -236,7 +234,7 @@ def test_a_healthy_machine_is_left_alone() -> None:
     assert rig.shot.parts == 1
 
 
-def test_limits_grow_with_the_commanded_speed_and_not_beyond_the_window() -> None:
+def test_following_error_limit_grows_with_speed_up_to_the_window() -> None:
     z = load_machine().axes[1]
     assert z.compute_max_following_error(0.0) == pytest.approx(0.2032)
     assert z.compute_max_following_error(-0.5 * z.max_speed) == pytest.approx(0.5 * (0.2032 + 2.032))
@@ -256,7 +254,7 @@ def sample(t: float, demand: float, actual: float, *, enabled: bool = True) -> A
     )
 
 
-def test_a_sample_that_is_no_new_one_counts_for_no_time() -> None:
+def test_repeated_sample_adds_no_fault_time() -> None:
     """A wire that repeats its last answer, and a control that was away, make nothing last longer."""
     watch = FollowingErrorWatch(load_machine().axes)
     watch.check_sample(sample(0.0, 0.0, 0.0), is_unpowered=False)

@@ -95,7 +95,7 @@ def ready(*inputs: str, per: int = 1) -> WheelRig:
 @pytest.mark.parametrize(("axis", "index"), [("X", 0), ("Z", 1)])
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("step", [0.0001 * INCH, THOU, 0.01 * INCH])
-def test_a_click_is_exactly_one_step(axis: str, index: int, sign: int, step: float) -> None:
+def test_handwheel_click_moves_exactly_one_step(axis: str, index: int, sign: int, step: float) -> None:
     rig = ready()
     rig.select(axis, step)
     rig.spin(sign)
@@ -105,7 +105,7 @@ def test_a_click_is_exactly_one_step(axis: str, index: int, sign: int, step: flo
     assert rig.shot.demand[1 - index] == 0.0
 
 
-def test_fifty_clicks_forward_and_twenty_back_are_thirty() -> None:
+def test_fifty_clicks_forward_and_twenty_back_move_thirty_steps() -> None:
     rig = ready()
     rig.select("Z")
     rig.spin(-50, ticks=2)
@@ -115,7 +115,7 @@ def test_fifty_clicks_forward_and_twenty_back_are_thirty() -> None:
     assert rig.said("refused") == []
 
 
-def test_a_reversal_in_full_swing_never_leaves_the_way_of_the_wheel() -> None:
+def test_fast_reversal_stays_within_the_handwheel_travel() -> None:
     rig = ready()
     rig.select("X", 0.01 * INCH)
     places = []
@@ -128,7 +128,7 @@ def test_a_reversal_in_full_swing_never_leaves_the_way_of_the_wheel() -> None:
     assert min(places) >= -1e-6
 
 
-def test_it_follows_a_tenth_of_a_second_behind_and_stops_with_the_wheel() -> None:
+def test_axis_lags_the_handwheel_by_100_ms_and_stops_with_it() -> None:
     rig = ready()
     rig.select("Z")
     rig.spin(200)  # 100 clicks a second: .1 in/s
@@ -139,7 +139,7 @@ def test_it_follows_a_tenth_of_a_second_behind_and_stops_with_the_wheel() -> Non
     assert rig.shot.demand[1] == pytest.approx(200 * THOU, abs=1e-9)
 
 
-def test_a_detent_of_four_counts_is_one_click_and_its_trembling_none() -> None:
+def test_four_count_detent_is_one_click_and_jitter_is_ignored() -> None:
     rig = ready(per=4)
     rig.select()
     for counts in (3, -3, 2, -2, 3, -3):
@@ -151,7 +151,7 @@ def test_a_detent_of_four_counts_is_one_click_and_its_trembling_none() -> None:
     assert rig.shot.demand[0] == pytest.approx(THOU, abs=1e-9)
 
 
-def test_a_wheel_that_is_mounted_the_other_way_round() -> None:
+def test_reversed_handwheel_moves_the_axis_in_the_opposite_direction() -> None:
     rig = ready(per=-4)
     rig.select()
     rig.spin(4, each=4)
@@ -175,7 +175,7 @@ def test_clicks_faster_than_the_axis_are_dropped_and_not_played_later() -> None:
     assert rig.said("refused") == [text("executor.handwheel", why=text("executor.wheel-too-fast", axis="Z"))]
 
 
-def test_an_axis_that_is_not_homed_goes_at_a_tenth() -> None:
+def test_unhomed_axis_follows_at_a_tenth_of_the_speed() -> None:
     machine = wheeled()
     x, z, *rest = machine.axes
     lost = dataclasses.replace(z, is_position_absolute=False, home_speed=20.0, home_order=1)
@@ -187,7 +187,7 @@ def test_an_axis_that_is_not_homed_goes_at_a_tenth() -> None:
     assert rig.shot.demand[1] < 0.13 * RAPID
 
 
-def test_the_soft_limit_keeps_no_click() -> None:
+def test_clicks_beyond_the_soft_limit_are_dropped() -> None:
     rig = ready()
     rig.select("X", 0.01 * INCH)
     rig.spin(900, each=2)  # nine inches; the travel is four
@@ -205,7 +205,7 @@ def test_the_soft_limit_keeps_no_click() -> None:
 # --- nothing old ------------------------------------------------------------------------------------------
 
 
-def test_what_was_turned_before_it_was_selected_moves_nothing() -> None:
+def test_clicks_before_selection_move_nothing() -> None:
     rig = ready()
     rig.spin(100, each=5)
     rig.select()
@@ -213,7 +213,7 @@ def test_what_was_turned_before_it_was_selected_moves_nothing() -> None:
     assert rig.shot.demand == (0.0, 0.0, 0.0)
 
 
-def test_a_wheel_that_turns_while_it_is_selected_has_to_stand_first() -> None:
+def test_turning_handwheel_must_stop_before_it_is_accepted() -> None:
     rig = ready()
     rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.spin(50)
@@ -224,7 +224,7 @@ def test_a_wheel_that_turns_while_it_is_selected_has_to_stand_first() -> None:
     assert rig.shot.demand[0] == pytest.approx(THOU, abs=1e-9)
 
 
-def test_what_was_turned_while_the_control_was_away_moves_nothing() -> None:
+def test_clicks_while_the_host_was_away_move_nothing() -> None:
     rig = ready()
     rig.select()
     rig.sim.machine.turn_handwheel(30)
@@ -234,7 +234,7 @@ def test_what_was_turned_while_the_control_was_away_moves_nothing() -> None:
     assert rig.shot.demand[0] == 0.0
 
 
-def test_another_step_or_axis_drops_what_is_on_its_way() -> None:
+def test_changing_step_or_axis_drops_pending_clicks() -> None:
     rig = ready()
     rig.select("Z", 0.01 * INCH)
     rig.spin(30)
@@ -261,7 +261,7 @@ def ended(rig: WheelRig, why: str) -> None:
     assert rig.shot.wheel == ""
 
 
-def test_a_page_that_is_silent_loses_it_within_its_lease() -> None:
+def test_silent_page_releases_the_handwheel_within_its_lease() -> None:
     rig = ready()
     rig.select()
     rig.page = None
@@ -269,7 +269,7 @@ def test_a_page_that_is_silent_loses_it_within_its_lease() -> None:
     ended(rig, text("executor.page-silent"))
 
 
-def test_leaving_the_page_stops_it_at_once() -> None:
+def test_leaving_the_page_stops_the_axis_immediately() -> None:
     rig = ready()
     rig.select("Z", 0.01 * INCH)
     rig.spin(30)
@@ -279,7 +279,7 @@ def test_leaving_the_page_stops_it_at_once() -> None:
     assert rig.shot.demand[1] < 30 * 0.01 * INCH
 
 
-def test_hold_button_takes_it_away() -> None:
+def test_hold_button_deselects_the_handwheel() -> None:
     rig = ready()
     rig.select()
     rig.spin(20)
@@ -290,7 +290,7 @@ def test_hold_button_takes_it_away() -> None:
 
 
 @pytest.mark.parametrize("command", [FeedHold(), Reset()])
-def test_hold_and_reset_from_the_screen_take_it_away(command: FeedHold | Reset) -> None:
+def test_screen_hold_and_reset_deselect_the_handwheel(command: FeedHold | Reset) -> None:
     rig = ready()
     rig.select()
     rig.spin(20)
@@ -298,7 +298,7 @@ def test_hold_and_reset_from_the_screen_take_it_away(command: FeedHold | Reset) 
     ended(rig, "feed hold" if isinstance(command, FeedHold) else "reset")
 
 
-def test_estop_takes_it_away_and_its_release_gives_nothing_back() -> None:
+def test_estop_deselects_the_handwheel_and_release_does_not_restore_it() -> None:
     rig = ready()
     rig.select()
     rig.spin(20)
@@ -311,7 +311,7 @@ def test_estop_takes_it_away_and_its_release_gives_nothing_back() -> None:
     ended(rig, text("executor.moves-nothing", state="E-STOP"))
 
 
-def test_a_silent_station_stops_the_slide() -> None:
+def test_silent_station_stops_the_axis() -> None:
     rig = ready()
     rig.select()
     rig.spin(20)
@@ -320,7 +320,7 @@ def test_a_silent_station_stops_the_slide() -> None:
     ended(rig, text("executor.station-silent-refused"))
 
 
-def test_a_counter_that_leaps_is_no_hand() -> None:
+def test_counter_jump_deselects_the_handwheel() -> None:
     rig = ready()
     rig.select()
     rig.sim.machine.turn_handwheel(4000)
@@ -328,7 +328,7 @@ def test_a_counter_that_leaps_is_no_hand() -> None:
     ended(rig, text("executor.counts-leap"))
 
 
-def test_a_key_while_it_turns_stops_both() -> None:
+def test_jog_key_while_the_handwheel_turns_stops_both() -> None:
     rig = ready()
     rig.select("Z", 0.01 * INCH)
     rig.spin(20)
@@ -345,7 +345,7 @@ def test_a_key_while_it_turns_stops_both() -> None:
     assert rig.state is MachineState.JOG
 
 
-def test_the_wheel_while_a_key_is_held_stops_both() -> None:
+def test_handwheel_while_a_jog_key_is_held_down_stops_both() -> None:
     rig = ready()
     rig.select("Z")
     for turn in range(60):
@@ -358,7 +358,7 @@ def test_the_wheel_while_a_key_is_held_stops_both() -> None:
     assert text("executor.jog", why=text("executor.key-and-wheel")) in rig.said("refused")
 
 
-def test_a_step_while_it_turns_stops_it_and_is_not_done() -> None:
+def test_jog_step_while_the_handwheel_turns_is_rejected_and_stops_it() -> None:
     rig = ready()
     rig.select("Z", 0.01 * INCH)
     rig.spin(20)
@@ -368,7 +368,7 @@ def test_a_step_while_it_turns_stops_it_and_is_not_done() -> None:
     assert rig.shot.demand[1] - at < 1.0
 
 
-def test_clicks_behind_a_key_that_was_let_go_are_dropped_until_it_rests() -> None:
+def test_clicks_after_a_jog_key_release_are_dropped_until_rest() -> None:
     rig = ready()
     rig.select("Z")
     rig.post(Jog("Z", RAPID, 0.2))
@@ -379,7 +379,7 @@ def test_clicks_behind_a_key_that_was_let_go_are_dropped_until_it_rests() -> Non
     assert rig.shot.wheel == "Z"
 
 
-def test_a_cycle_takes_it_away() -> None:
+def test_cycle_start_deselects_the_handwheel() -> None:
     rig = ready()
     rig.select()
     rig.load("G90G94F50\nG01X.1F50\nM30")
@@ -403,7 +403,7 @@ def test_a_cycle_takes_it_away() -> None:
         (SelectHandwheel("X", THOU, math.nan), pattern("executor.wheel-lease")),
     ],
 )
-def test_what_makes_no_sense_is_refused(wheel: SelectHandwheel, why: str) -> None:
+def test_invalid_handwheel_selection_is_rejected(wheel: SelectHandwheel, why: str) -> None:
     rig = ready()
     rig.page = wheel
     rig.run(0.2)
@@ -412,21 +412,21 @@ def test_what_makes_no_sense_is_refused(wheel: SelectHandwheel, why: str) -> Non
     assert rig.shot.demand == (0.0, 0.0, 0.0)
 
 
-def test_with_the_drives_off_it_is_refused() -> None:
+def test_handwheel_selection_with_drives_off_is_rejected() -> None:
     rig = WheelRig(wheeled())
     rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.run(0.2)
     assert rig.shot.wheel_ended == text("executor.moves-nothing", state="DRIVES OFF")
 
 
-def test_a_machine_without_one_says_so() -> None:
+def test_machine_without_a_handwheel_rejects_selection() -> None:
     rig = WheelRig()
     rig.ready()
     rig.post(SelectHandwheel("X", THOU, LEASE))
     assert rig.shot.wheel_ended == text("executor.no-wheel")
 
 
-def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
+def test_handwheel_does_not_turn_c_while_the_spindle_turns() -> None:
     rig = ready()
     rig.select("C", 0.02)
     rig.spin(10)
@@ -443,7 +443,7 @@ def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
 # --- switches of the station ------------------------------------------------------------------------------
 
 
-def test_the_enabling_switch_must_be_held() -> None:
+def test_handwheel_requires_the_enabling_switch() -> None:
     rig = ready("wheel_enable")
     rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.run(0.2)
@@ -457,7 +457,7 @@ def test_the_enabling_switch_must_be_held() -> None:
     ended(rig, text("executor.wheel-switch"))
 
 
-def test_the_axis_is_the_one_that_the_switch_selects() -> None:
+def test_handwheel_axis_must_match_the_selector_switch() -> None:
     rig = ready("wheel_x", "wheel_z")
     rig.sim.machine.set_input("wheel_z", True)
     rig.page = SelectHandwheel("X", THOU, LEASE)
@@ -474,7 +474,7 @@ def test_the_axis_is_the_one_that_the_switch_selects() -> None:
 # --- counts -----------------------------------------------------------------------------------------------
 
 
-def test_where_a_counter_stands_at_first_is_nothing() -> None:
+def test_initial_counter_reading_gives_zero_clicks() -> None:
     clicks = ClickCounter(4)
     assert clicks.read_clicks(123456, 1.0) == 0
     assert clicks.read_clicks(123464, 1.01) == 2
@@ -482,7 +482,7 @@ def test_where_a_counter_stands_at_first_is_nothing() -> None:
     assert clicks.read_clicks(123460, 1.03) == -1
 
 
-def test_a_leap_and_what_is_old_are_no_clicks() -> None:
+def test_counter_jump_and_stale_reading_give_zero_clicks() -> None:
     clicks = ClickCounter(1)
     clicks.read_clicks(0, 1.0)
     assert clicks.read_clicks(21, 1.01) == 0  # 20 in 10 ms is what a hand may

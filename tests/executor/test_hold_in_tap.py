@@ -84,7 +84,7 @@ def test_single_block_stops_nowhere_in_the_hole(cycle: str) -> None:
     assert len(stops) >= 3
 
 
-def test_a_second_press_changes_nothing() -> None:
+def test_second_hold_press_has_no_effect() -> None:
     rig = tapping(RIGID)
     deep(rig, -3.0)
     rig.post(FeedHold())
@@ -95,7 +95,7 @@ def test_a_second_press_changes_nothing() -> None:
     assert rig.numbers("stop") == [702]
 
 
-def test_a_hold_before_the_tap_is_at_once() -> None:
+def test_hold_before_the_tap_acts_immediately() -> None:
     rig = tapping(RIGID)
     rig.run(0.05)
     rig.post(FeedHold())
@@ -103,7 +103,7 @@ def test_a_hold_before_the_tap_is_at_once() -> None:
     assert height(rig) > CLEAR
 
 
-def test_reset_and_e_stop_do_not_wait() -> None:
+def test_reset_and_estop_do_not_wait_for_the_tap() -> None:
     presses: tuple[Callable[[Rig], None], ...] = (
         lambda rig: rig.post(Reset()),
         lambda rig: rig.sim.machine.press_estop(),
@@ -132,7 +132,7 @@ COMPENSATING = "S600 M3 G95 F.1 G17\nG0 X0 Z5\nCYCLE840(5,0,2,-10,,0,0,5,0,,1.5)
 
 
 @pytest.mark.parametrize("feeds", ["G95 F.1", "G94 F100"])
-def test_a_compensating_chuck_comes_out_first_too(feeds: str) -> None:
+def test_hold_with_a_compensating_chuck_waits_until_the_tap_is_out(feeds: str) -> None:
     setup = replace(create_setup(LATHE, tool_offsets={}, secondary_offsets={}), start=(0.0, 0.0, 0.0))
     made = interpret_program(ProgramSource("T.MPF", COMPENSATING.replace("G95 F.1", feeds)), setup)
     blocks = list(made.generate_blocks())

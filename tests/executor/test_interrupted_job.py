@@ -55,7 +55,7 @@ def begins(rig: Rig) -> bool:
 # --- what interrupts ----------------------------------------------------------------------------------------
 
 
-def test_an_estop_in_the_cut_leaves_the_job_with_line_tool_part_and_place() -> None:
+def test_estop_in_the_cut_records_line_tool_part_and_position() -> None:
     rig = Rig()
     rig.post(SetPartCount(11))
     broken_off(rig)
@@ -71,7 +71,7 @@ def test_an_estop_in_the_cut_leaves_the_job_with_line_tool_part_and_place() -> N
     ]
 
 
-def test_where_the_tool_stands_is_where_it_came_to_rest_and_not_where_the_stop_was_seen() -> None:
+def test_recorded_position_is_where_the_tool_came_to_rest() -> None:
     rig = Rig()
     rig.start("G90G94F300\nT1\nX1Z.2\nM30\n", TOOLS)
     rig.until_true(lambda shot: shot.velocity > 100.0)
@@ -85,7 +85,7 @@ def test_where_the_tool_stands_is_where_it_came_to_rest_and_not_where_the_stop_w
     assert rig.notes[-1] == found
 
 
-def test_reset_twice_is_an_interrupted_job_too() -> None:
+def test_second_reset_records_an_interrupted_job() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.post(FeedHold())
@@ -97,7 +97,7 @@ def test_reset_twice_is_an_interrupted_job_too() -> None:
     assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, RESET_REASON)
 
 
-def test_an_alarm_names_itself_as_the_cause() -> None:
+def test_alarm_is_recorded_as_the_cause() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.sim.machine.jam("Z")
@@ -108,7 +108,7 @@ def test_an_alarm_names_itself_as_the_cause() -> None:
     )
 
 
-def test_closing_the_control_in_the_cut() -> None:
+def test_closing_turndesk_in_the_cut_records_an_interrupted_job() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.executor.shut_down()
@@ -117,7 +117,7 @@ def test_closing_the_control_in_the_cut() -> None:
     assert rig.notes[-1] == rig.shot.interrupted
 
 
-def test_a_program_that_ends_leaves_nothing() -> None:
+def test_completed_program_clears_the_interrupted_job() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     rig.until(MachineState.IDLE)
@@ -127,7 +127,7 @@ def test_a_program_that_ends_leaves_nothing() -> None:
     assert begins(rig)
 
 
-def test_a_line_of_mdi_is_no_job() -> None:
+def test_mdi_line_is_not_an_interrupted_job() -> None:
     rig = Rig()
     rig.load(PART, TOOLS)
     rig.ready()
@@ -142,7 +142,7 @@ def test_a_line_of_mdi_is_no_job() -> None:
 # --- the next start -----------------------------------------------------------------------------------------
 
 
-def test_both_palms_do_not_begin_at_the_first_line_unasked() -> None:
+def test_cycle_start_after_an_interrupted_job_needs_confirmation() -> None:
     rig = Rig()
     broken_off(rig)
     stood = rig.shot.demand
@@ -155,7 +155,7 @@ def test_both_palms_do_not_begin_at_the_first_line_unasked() -> None:
     assert rig.shot.demand == stood
 
 
-def test_a_confirmed_start_begins_once_and_the_next_break_asks_again() -> None:
+def test_confirmed_start_applies_once_and_next_interruption_asks_again() -> None:
     rig = Rig()
     broken_off(rig)
     rig.confirm()
@@ -169,7 +169,7 @@ def test_a_confirmed_start_begins_once_and_the_next_break_asks_again() -> None:
     assert not begins(rig)
 
 
-def test_an_answer_to_another_question_does_not_count() -> None:
+def test_confirmation_of_another_job_is_rejected() -> None:
     rig = Rig()
     broken_off(rig)
     rig.post(ConfirmStart("2020-01-01T00:00:00Z"))
@@ -178,7 +178,7 @@ def test_an_answer_to_another_question_does_not_count() -> None:
     assert not begins(rig)
 
 
-def test_an_answer_can_be_taken_back() -> None:
+def test_confirmation_can_be_withdrawn() -> None:
     rig = Rig()
     broken_off(rig)
     rig.confirm()
@@ -188,7 +188,7 @@ def test_an_answer_can_be_taken_back() -> None:
     assert not begins(rig)
 
 
-def test_an_answer_counts_for_a_minute() -> None:
+def test_confirmation_expires_after_a_minute() -> None:
     rig = Rig()
     broken_off(rig)
     rig.confirm()
@@ -197,7 +197,7 @@ def test_an_answer_counts_for_a_minute() -> None:
     assert not begins(rig)
 
 
-def test_an_answer_is_taken_back_by_a_jog() -> None:
+def test_jog_withdraws_the_confirmation() -> None:
     rig = Rig()
     broken_off(rig)
     rig.confirm()
@@ -207,7 +207,7 @@ def test_an_answer_is_taken_back_by_a_jog() -> None:
     assert not begins(rig)
 
 
-def test_an_answer_is_taken_back_by_searchto_and_mdi() -> None:
+def test_searchto_and_mdi_withdraw_the_confirmation() -> None:
     for starts in (StartAction.RESTART, StartAction.MDI_LINE):
         rig = Rig()
         broken_off(rig)
@@ -218,7 +218,7 @@ def test_an_answer_is_taken_back_by_searchto_and_mdi() -> None:
         assert not begins(rig)
 
 
-def test_an_answer_while_the_drives_are_off_does_not_count() -> None:
+def test_confirmation_with_drives_off_is_ignored() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.sim.machine.press_estop()
@@ -234,7 +234,7 @@ def test_an_answer_while_the_drives_are_off_does_not_count() -> None:
 # --- what it outlives, and what ends it ---------------------------------------------------------------------
 
 
-def test_it_outlives_reset_drives_off_mdi_and_jog() -> None:
+def test_interrupted_job_survives_reset_drives_off_mdi_and_jog() -> None:
     rig = Rig()
     broken_off(rig)
     rig.run(0.5)
@@ -252,7 +252,7 @@ def test_it_outlives_reset_drives_off_mdi_and_jog() -> None:
     assert rig.shot.actual != first.where if first else False
 
 
-def test_the_same_program_read_again_keeps_it_and_another_clears_it_in_the_log() -> None:
+def test_reloading_the_program_retains_the_job_and_another_clears_it() -> None:
     rig = Rig()
     broken_off(rig)
     rig.load(PART, TOOLS)
@@ -270,7 +270,7 @@ def test_the_same_program_read_again_keeps_it_and_another_clears_it_in_the_log()
     assert begins(rig)
 
 
-def test_a_restart_to_the_end_finishes_it() -> None:
+def test_completed_restart_clears_the_interrupted_job() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 8)
@@ -280,7 +280,7 @@ def test_a_restart_to_the_end_finishes_it() -> None:
     assert rig.notes[-1] is None
 
 
-def test_a_restart_that_is_itself_interrupted_on_its_way_stays_at_the_line() -> None:
+def test_restart_interrupted_on_approach_retains_the_line() -> None:
     rig = Rig()
     broken_off(rig)
     first = rig.shot.interrupted
@@ -296,7 +296,7 @@ def test_a_restart_that_is_itself_interrupted_on_its_way_stays_at_the_line() -> 
     assert again.where[0] > first.where[0] + 1.0
 
 
-def test_a_restart_that_is_interrupted_in_the_program_is_at_its_new_line() -> None:
+def test_restart_interrupted_in_the_program_records_the_new_line() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 8)
@@ -309,7 +309,7 @@ def test_a_restart_that_is_interrupted_in_the_program_is_at_its_new_line() -> No
 # --- a power cut --------------------------------------------------------------------------------------------
 
 
-def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
+def test_note_with_the_power_lost_reason_is_written_before_the_first_move() -> None:
     rig = Rig()
     rig.post(SetPartCount(11))
     rig.load(PART, TOOLS)
@@ -323,7 +323,7 @@ def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
     assert (note.program, note.line, note.part, note.why) == ("PART", 1, 12, POWER_LOST_REASON)
 
 
-def test_notes_follow_the_tool_at_once_and_lines_once_a_second() -> None:
+def test_notes_record_tool_changes_at_once_and_lines_every_second() -> None:
     text = "G90G94F300\nT1\n" + "".join(f"X1Z{n % 2}.{n % 10}\n" for n in range(200)) + "T2\nX2Z2\nM30\n"
     rig = Rig()
     rig.start(text, TOOLS)
@@ -337,7 +337,7 @@ def test_notes_follow_the_tool_at_once_and_lines_once_a_second() -> None:
     assert len(rig.notes) >= 0.8 * (rig.clock.now() - began)
 
 
-def test_a_hold_is_noted_where_it_came_to_rest() -> None:
+def test_note_after_a_hold_has_the_rest_position() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.post(FeedHold())
@@ -348,7 +348,7 @@ def test_a_hold_is_noted_where_it_came_to_rest() -> None:
     assert note.where == pytest.approx(rig.shot.actual, abs=0.05)
 
 
-def test_after_a_power_cut_the_job_stands_there_and_the_palms_are_asked() -> None:
+def test_job_interrupted_by_a_power_cut_needs_confirmation() -> None:
     before = Rig()
     in_the_cut(before)
     kept = (
@@ -369,7 +369,7 @@ def test_after_a_power_cut_the_job_stands_there_and_the_palms_are_asked() -> Non
     assert rig.shot.interrupted is None
 
 
-def test_a_job_that_is_known_late_asks_the_palms_too() -> None:
+def test_job_restored_late_also_needs_confirmation() -> None:
     """The store was away at the start."""
     rig = Rig()
     rig.load(PART, TOOLS)
@@ -382,14 +382,14 @@ def test_a_job_that_is_known_late_asks_the_palms_too() -> None:
     assert not begins(rig)
 
 
-def test_a_job_that_the_log_has_is_not_logged_again() -> None:
+def test_job_already_in_the_log_is_not_logged_again() -> None:
     rig = Rig()
     rig.post(ReportInterruptedJob(made(), logged=True))
     assert rig.shot.interrupted == made()
     assert rig.said("interrupted") == []
 
 
-def test_a_program_begun_meanwhile_is_what_counts() -> None:
+def test_program_started_meanwhile_replaces_the_restored_job() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.post(ReportInterruptedJob(made()))
@@ -401,7 +401,7 @@ def test_a_program_begun_meanwhile_is_what_counts() -> None:
     assert rig.shot.interrupted.program == "PART"
 
 
-def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing() -> None:
+def test_interrupted_job_in_cycle_repeat_has_its_part_number() -> None:
     rig = Rig()
     rig.post(SetSwitch("cycle_repeat", True))
     rig.post(SetPartCount(3))
@@ -424,7 +424,7 @@ def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing(
         {"axes": 3},
     ],
 )
-def test_what_cannot_be_understood_is_no_job(change: dict[str, object]) -> None:
+def test_invalid_stored_job_is_ignored(change: dict[str, object]) -> None:
     good = convert_interrupted_job_to_json(made())
     assert parse_interrupted_job(good) == made()
     assert parse_interrupted_job(good | change) is None
@@ -432,7 +432,7 @@ def test_what_cannot_be_understood_is_no_job(change: dict[str, object]) -> None:
     assert parse_interrupted_job(None) is None
 
 
-def test_the_log_says_which_job() -> None:
+def test_log_entry_identifies_the_interrupted_job() -> None:
     assert made().words == text(
         "executor.interrupted-job", program="PIN.NC", line=8, tool="T3", part=5, why="E-STOP"
     )

@@ -34,7 +34,7 @@ def ready() -> Rig:
 
 @pytest.mark.parametrize("lease", [0.05, 0.2, 0.25])
 @pytest.mark.parametrize("speed", [1.0, 20.0, FAST])
-def test_a_lease_that_nobody_renews_ends_the_jog(lease: float, speed: float) -> None:
+def test_jog_ends_when_its_lease_is_not_renewed(lease: float, speed: float) -> None:
     rig = ready()
     rig.executor.post(Jog("Z", -speed, lease))
     rig.executor.run_tick()
@@ -45,7 +45,7 @@ def test_a_lease_that_nobody_renews_ends_the_jog(lease: float, speed: float) -> 
     assert 0 < run <= lease * speed + speed * speed / (2 * AMAX) + 1e-9
 
 
-def test_a_dead_host_ends_a_jog_as_well() -> None:
+def test_jog_ends_when_the_host_dies() -> None:
     rig = ready()
     rig.post(Jog("X", FAST, 0.2))
     rig.clock.advance(5.0)
@@ -58,7 +58,7 @@ def test_a_dead_host_ends_a_jog_as_well() -> None:
     assert rig.state is MachineState.IDLE
 
 
-def test_a_renewed_lease_goes_on_at_one_speed() -> None:
+def test_renewed_jog_continues_at_constant_speed() -> None:
     rig = ready()
     rig.post(Jog("X", 10.0, 0.2))
     rig.run(0.1)
@@ -120,7 +120,7 @@ def test_jog_is_never_faster_than_the_manual_rapid() -> None:
         (Jog("X", 1.0, math.inf), text("executor.jog-lease")),
     ],
 )
-def test_jogs_without_sense_are_refused(jog: Jog, why: str) -> None:
+def test_invalid_jogs_are_rejected(jog: Jog, why: str) -> None:
     rig = ready()
     rig.post(jog)
     rig.run(0.5)
@@ -128,7 +128,7 @@ def test_jogs_without_sense_are_refused(jog: Jog, why: str) -> None:
     assert rig.shot.demand == (0.0, 0.0, 0.0)
 
 
-def test_no_lease_is_longer_than_a_second() -> None:
+def test_jog_lease_is_limited_to_one_second() -> None:
     rig = ready()
     rig.post(Jog("X", 1.0, 3600.0))
     assert rig.until(MachineState.IDLE) < 1.2
@@ -160,7 +160,7 @@ def test_another_axis_ends_the_jog() -> None:
 
 
 @pytest.mark.parametrize("stopper", [FeedHold(), Reset(), StopJog()])
-def test_everything_that_stops_ends_a_jog(stopper: FeedHold | Reset | StopJog) -> None:
+def test_every_stop_command_ends_a_jog(stopper: FeedHold | Reset | StopJog) -> None:
     rig = ready()
     rig.post(Jog("X", 10.0, 1.0))
     rig.run(0.2)
@@ -168,7 +168,7 @@ def test_everything_that_stops_ends_a_jog(stopper: FeedHold | Reset | StopJog) -
     assert rig.until(MachineState.IDLE) < 0.03 + 10.0 / AMAX + 2 * TICK + 0.001
 
 
-def test_the_hold_button_refuses_jogs() -> None:
+def test_jog_is_rejected_while_the_hold_button_is_pressed() -> None:
     rig = ready()
     rig.sim.machine.press_hold()
     rig.run(0.05)
@@ -198,7 +198,7 @@ def test_estop_ends_a_jog() -> None:
     assert not rig.sim.ports.axes.sample().moving
 
 
-def test_an_axis_that_is_not_homed_jogs_slowly_and_homes() -> None:
+def test_unhomed_axis_jogs_slowly_and_can_be_homed() -> None:
     rig = Rig(unhomed_machine())
     rig.ready()
     fastest = []
@@ -213,7 +213,7 @@ def test_an_axis_that_is_not_homed_jogs_slowly_and_homes() -> None:
     assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.002)
 
 
-def test_homing_that_makes_no_sense_is_refused() -> None:
+def test_invalid_homing_commands_are_rejected() -> None:
     rig = Rig(unhomed_machine())
     rig.post(HomeAxes())
     assert rig.state is MachineState.DISABLED
@@ -243,7 +243,7 @@ def test_hold_ends_homing() -> None:
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_slide_beyond_its_travel_is_jogged_back_and_no_further_out(side: float) -> None:
+def test_axis_beyond_its_travel_jogs_only_back_inside(side: float) -> None:
     rig = Rig()
     edge = next(axis.travel[side > 0] for axis in rig.machine.axes if axis.name == "X" and axis.travel)
     rig.sim.machine.push("X", edge + side * 5.0)  # by hand, the drives off
@@ -262,7 +262,7 @@ def test_a_slide_beyond_its_travel_is_jogged_back_and_no_further_out(side: float
 
 @pytest.mark.parametrize("release", [StopJog(), DeselectHandwheel()], ids=["jog", "wheel"])
 @pytest.mark.parametrize("stop", ["estop", "fault", "mistake"])
-def test_a_release_that_comes_after_a_stop_and_in_a_cut_breaks_nothing(stop: str, release: Command) -> None:
+def test_late_jog_release_in_a_cut_has_no_effect(stop: str, release: Command) -> None:
     """The jog was ended by the stop, and its release was lost until a program cuts."""
     rig = ready()
     rig.post(Jog("X", FAST, 1.0))

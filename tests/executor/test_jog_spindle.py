@@ -50,7 +50,7 @@ def stopped_by_hand(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("stops", [switch_off, pot_to_nought, stopped_by_hand])
-def test_what_stops_the_spindle_ends_the_jog_and_a_held_key_begins_no_other(
+def test_spindle_stop_ends_the_jog_and_held_down_key_starts_no_other(
     stops: Callable[[Rig], None],
 ) -> None:
     rig = turning()
@@ -85,7 +85,7 @@ def test_an_open_guard_stops_spindle_and_jog() -> None:
     assert (rig.state, rig.shot.rpm_command) == (MachineState.IDLE, 0.0)  # neither comes on again by itself
 
 
-def test_a_jog_with_a_spindle_that_stands_is_nobodys_business() -> None:
+def test_stopped_spindle_does_not_affect_a_jog() -> None:
     rig = Rig()
     rig.ready()
     held(rig, 0.5)
@@ -95,7 +95,7 @@ def test_a_jog_with_a_spindle_that_stands_is_nobodys_business() -> None:
     assert rig.state is MachineState.JOG
 
 
-def test_a_slower_spindle_is_no_lost_one() -> None:
+def test_slower_spindle_does_not_end_the_jog() -> None:
     rig = turning()
     rig.sim.machine.set_spindle_pot(0.4)
     held(rig, 3.0)

@@ -61,7 +61,7 @@ def test_a_step_is_exactly_its_length_and_ends_at_rest(axis: str, sign: int, inc
     assert rig.shot.actual[index] == pytest.approx(sign * inches * INCH, abs=0.00127)
 
 
-def test_ten_steps_are_ten_times_one_and_take_the_time_they_must() -> None:
+def test_ten_steps_move_ten_lengths_in_the_expected_time() -> None:
     rig = ready()
     for _ in range(10):
         rig.post(JogByStep("Z", -0.001 * INCH, SPEED))
@@ -79,7 +79,7 @@ def test_c_steps_in_degrees() -> None:
     assert rig.shot.demand[2] == pytest.approx(1.0, abs=1e-9)
 
 
-def test_a_step_under_way_refuses_the_next_and_goes_on() -> None:
+def test_running_step_rejects_the_next_and_continues() -> None:
     rig = ready()
     rig.post(JogByStep("X", 2.54, SPEED))
     rig.run(0.1)
@@ -101,7 +101,7 @@ def test_a_step_under_way_refuses_the_next_and_goes_on() -> None:
         (JogByStep("X", 0.1, math.nan), pattern("executor.step-speed")),
     ],
 )
-def test_steps_without_sense_are_refused(step: JogByStep, why: str) -> None:
+def test_invalid_steps_are_rejected(step: JogByStep, why: str) -> None:
     rig = ready()
     rig.post(step)
     rig.run(0.3)
@@ -109,7 +109,7 @@ def test_steps_without_sense_are_refused(step: JogByStep, why: str) -> None:
     assert rig.shot.demand == (0.0, 0.0, 0.0)
 
 
-def test_a_step_that_would_leave_the_travel_is_refused_whole() -> None:
+def test_step_beyond_the_travel_is_rejected_entirely() -> None:
     rig = ready()
     for _ in range(600):
         rig.executor.post(Jog("X", FAST, 0.2))
@@ -126,7 +126,7 @@ def test_a_step_that_would_leave_the_travel_is_refused_whole() -> None:
     assert rig.shot.demand[0] == pytest.approx(before - 0.0254, abs=1e-9)
 
 
-def test_a_jog_against_the_end_of_the_travel_is_told() -> None:
+def test_jog_at_the_travel_limit_is_reported() -> None:
     rig = ready()
     for _ in range(600):
         rig.executor.post(Jog("Z", -500.0, 0.2))
@@ -137,7 +137,7 @@ def test_a_jog_against_the_end_of_the_travel_is_told() -> None:
 
 
 @pytest.mark.parametrize("stopper", [StopJog(), FeedHold(), Reset()])
-def test_a_step_that_is_stopped_says_that_it_is_short(stopper: StopJog | FeedHold | Reset) -> None:
+def test_stopped_step_is_reported_as_cut_short(stopper: StopJog | FeedHold | Reset) -> None:
     rig = ready()
     rig.post(JogByStep("X", 2.54, SPEED))
     rig.run(0.1)
@@ -147,7 +147,7 @@ def test_a_step_that_is_stopped_says_that_it_is_short(stopper: StopJog | FeedHol
     assert rig.said("refused") == [text("executor.step-cut-short", axis="X")]
 
 
-def test_a_step_whose_host_dies_ends_at_its_end() -> None:
+def test_step_completes_when_the_host_dies() -> None:
     rig = ready()
     rig.post(JogByStep("X", 2.54, SPEED))
     rig.clock.advance(5.0)
@@ -159,7 +159,7 @@ def test_a_step_whose_host_dies_ends_at_its_end() -> None:
 # --- two things at once ------------------------------------------------------------------------------------
 
 
-def test_a_step_while_a_jog_is_held_ends_both() -> None:
+def test_step_during_a_jog_ends_both() -> None:
     rig = ready()
     rig.post(Jog("X", 10.0, 1.0))
     rig.run(0.1)
@@ -168,7 +168,7 @@ def test_a_step_while_a_jog_is_held_ends_both() -> None:
     assert text("executor.moving", what="X") in rig.said("refused")[0]
 
 
-def test_a_held_jog_during_a_step_ends_the_step() -> None:
+def test_jog_during_a_step_ends_the_step() -> None:
     rig = ready()
     rig.post(JogByStep("X", 2.54, SPEED))
     rig.run(0.1)
@@ -182,7 +182,7 @@ def test_a_held_jog_during_a_step_ends_the_step() -> None:
     ]
 
 
-def test_after_an_estop_in_the_middle_of_a_jog_another_axis_may_be_jogged() -> None:
+def test_another_axis_can_be_jogged_after_estop_in_a_jog() -> None:
     rig = ready()
     rig.post(Jog("X", 10.0, 1.0))
     rig.run(0.1)
@@ -207,7 +207,7 @@ def test_a_late_step_is_refused() -> None:
 
 
 @pytest.mark.parametrize("command", [Jog("X", 10.0, 0.2), JogByStep("X", 0.1, SPEED)])
-def test_nothing_is_jogged_while_a_program_is_under_way(command: Jog | JogByStep) -> None:
+def test_jog_step_is_rejected_while_a_program_runs(command: Jog | JogByStep) -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
     rig.run(0.2)
@@ -236,7 +236,7 @@ def test_c_is_not_jogged_while_the_spindle_turns() -> None:
 # --- a machine that does not know where it is ---------------------------------------------------------------
 
 
-def test_unhomed_only_slow_jogs_and_no_program() -> None:
+def test_unhomed_machine_allows_slow_jogs_and_rejects_programs() -> None:
     rig = ready(nothing_homed())
     fastest: list[float] = []
     rig.watch.append(lambda shot: fastest.append(shot.velocity))
@@ -249,7 +249,7 @@ def test_unhomed_only_slow_jogs_and_no_program() -> None:
     assert rig.shot.start_refusal == text("executor.not-homed", axes="X, Z")
 
 
-def test_home_takes_the_axes_in_their_order() -> None:
+def test_homing_follows_the_axis_order() -> None:
     rig = ready(nothing_homed())
     order: list[tuple[bool, ...]] = []
     rig.watch.append(lambda shot: order.append(tuple(shot.homed[:2])))
@@ -258,7 +258,7 @@ def test_home_takes_the_axes_in_their_order() -> None:
     assert list(dict.fromkeys(order)) == [(False, False), (False, True), (True, True)]
 
 
-def test_one_axis_is_homed_alone() -> None:
+def test_single_axis_can_be_homed() -> None:
     rig = ready(nothing_homed())
     rig.post(HomeAxes("X"))
     rig.until(MachineState.IDLE)
@@ -268,7 +268,7 @@ def test_one_axis_is_homed_alone() -> None:
 @pytest.mark.parametrize(
     "command", [Jog("Z", 5.0, 0.2), JogByStep("Z", 0.1, SPEED), HomeAxes(), CycleStart()]
 )
-def test_nothing_else_moves_while_it_is_homing(command: Jog | JogByStep | HomeAxes | CycleStart) -> None:
+def test_other_motion_is_rejected_while_homing(command: Jog | JogByStep | HomeAxes | CycleStart) -> None:
     rig = ready(unhomed_machine())
     rig.post(Jog("Z", -5.0, 0.9))
     rig.until(MachineState.IDLE)

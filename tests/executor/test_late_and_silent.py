@@ -33,7 +33,7 @@ def begun(text: str) -> Machine:
 
 
 @pytest.mark.parametrize("times", [2, 3, 10])
-def test_a_repeated_reset_while_the_spindle_speeds_up_is_no_alarm(times: int) -> None:
+def test_repeated_reset_during_spindle_acceleration_raises_no_alarm(times: int) -> None:
     rig = Rig()
     rig.start(SPIN_UP)
     rig.tick()
@@ -44,7 +44,7 @@ def test_a_repeated_reset_while_the_spindle_speeds_up_is_no_alarm(times: int) ->
     assert rig.state is MachineState.IDLE
 
 
-def test_repeated_stops_give_a_spindle_no_more_time_to_obey() -> None:
+def test_repeated_stops_do_not_extend_the_spindle_stop_time() -> None:
     machine = begun("G90G94F300\nM03S1500\nG04F9.\nM05\nM30\n")
     machine.run(4.0)
     machine.harmed = True
@@ -56,7 +56,7 @@ def test_repeated_stops_give_a_spindle_no_more_time_to_obey() -> None:
 
 
 @pytest.mark.parametrize("release", [StopJog(), DeselectHandwheel()])
-def test_a_release_that_comes_twice_in_a_cut_changes_nothing(release: Any) -> None:
+def test_repeated_jog_release_in_a_cut_has_no_effect(release: Any) -> None:
     rig = Rig()
     rig.start(CUT)
     rig.run(0.5)
@@ -65,7 +65,7 @@ def test_a_release_that_comes_twice_in_a_cut_changes_nothing(release: Any) -> No
     assert (rig.state, codes(rig)) == (MachineState.RUN, [])
 
 
-def test_palms_that_were_pressed_while_the_control_was_away_are_refused_and_not_ignored() -> None:
+def test_cycle_start_pressed_while_the_host_was_away_is_rejected() -> None:
     machine = Machine()
     machine.ready()
     machine.load(CUT)
@@ -78,7 +78,7 @@ def test_palms_that_were_pressed_while_the_control_was_away_are_refused_and_not_
     assert len(machine.said("refused")) == 1
 
 
-def test_slides_that_nobody_hears_are_not_ready() -> None:
+def test_silent_axes_are_not_ready() -> None:
     machine = Machine()
     machine.ready()
     machine.harmed = True
@@ -87,7 +87,7 @@ def test_slides_that_nobody_hears_are_not_ready() -> None:
     assert (machine.state, codes(machine)) == (MachineState.FAULT, ["drive-silent"])
 
 
-def test_slides_that_nobody_hears_move_no_further_even_where_no_driver_reports_a_fault() -> None:
+def test_silent_axes_stop_without_a_driver_fault() -> None:
     machine = begun(CUT)
     machine.run(0.5)
     machine.harmed = True
@@ -99,7 +99,7 @@ def test_slides_that_nobody_hears_move_no_further_even_where_no_driver_reports_a
 
 
 @pytest.mark.parametrize("times", [1, 50])
-def test_drives_that_refuse_to_brake_lose_their_power_when_turndesk_is_closed(times: int) -> None:
+def test_drives_that_reject_braking_lose_power_when_turndesk_closes(times: int) -> None:
     machine = begun(CUT)
     machine.run(0.5)
     machine.broken["axes"].breaks["stop"] = (DriverError("the wire is out"), times)
@@ -108,7 +108,7 @@ def test_drives_that_refuse_to_brake_lose_their_power_when_turndesk_is_closed(ti
     assert not machine.true_ports.axes.sample().enabled
 
 
-def test_an_encoder_that_freezes_as_a_hold_ends_is_found_when_its_axis_is_sent_on() -> None:
+def test_encoder_frozen_at_hold_end_is_detected_on_the_next_move() -> None:
     """Until then a slide that stands and an encoder that stands tell the same."""
     rig = Rig(every=0.01)
     rig.start(CUT)

@@ -15,7 +15,7 @@ from tests.executor.rig import INCH, Rig
 from tests.texts import text
 
 
-def test_modes_feed_and_tool_are_inherited_from_line_to_line() -> None:
+def test_modes_feed_and_tool_carry_over_between_mdi_lines() -> None:
     rig = Rig()
     mdi(rig, "G90G72", "T1", "X1Z.5F100", "X.5")
     # the tip of T1 stands on X0 Z0 at machine -12.7, -50.8; X.5 is a diameter
@@ -26,7 +26,7 @@ def test_modes_feed_and_tool_are_inherited_from_line_to_line() -> None:
     assert rig.shot.state is MachineState.IDLE
 
 
-def test_the_spindle_stays_on_and_the_next_line_knows_it() -> None:
+def test_spindle_stays_on_for_the_next_mdi_line() -> None:
     rig = Rig()
     mdi(rig, "M03S900")
     rig.run(2.0)
@@ -40,7 +40,7 @@ def test_the_spindle_stays_on_and_the_next_line_knows_it() -> None:
     assert rig.shot.rpm_command == 0.0
 
 
-def test_a_line_without_any_block_changes_its_modes() -> None:
+def test_mdi_line_without_a_motion_block_changes_modes() -> None:
     rig = Rig()
     mdi(rig, "G71", "G91", "X5F500", "X5")
     assert rig.shot.actual[0] == pytest.approx(10.0, abs=0.006)
@@ -48,7 +48,7 @@ def test_a_line_without_any_block_changes_its_modes() -> None:
     assert not rig.shot.modal.absolute
 
 
-def test_the_first_move_after_a_tool_needs_both_axes_in_mdi_too() -> None:
+def test_first_mdi_move_after_a_tool_call_needs_both_axes() -> None:
     rig = Rig()
     mdi(rig, "G90F100", "T1")
     assert rig.shot.is_tool_move_pending
@@ -86,14 +86,14 @@ def test_the_first_move_after_a_tool_needs_both_axes_in_mdi_too() -> None:
         ("X1X2", "word-twice", "X"),
     ],
 )
-def test_what_means_nothing_alone_or_cannot_be_done_is_refused(line: str, code: str, named: str) -> None:
+def test_invalid_mdi_line_is_rejected(line: str, code: str, named: str) -> None:
     rig = Rig()
     mdi(rig, "G90")
     found = errors(rig, line)
     assert any(each.code == code and named in each.message for each in found), found
 
 
-def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() -> None:
+def test_cycle_start_in_mdi_without_a_line_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     rig.load("G90G94F300\nX1\nM30\n")
@@ -103,7 +103,7 @@ def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() 
     assert rig.state is MachineState.IDLE
 
 
-def test_a_line_runs_once() -> None:
+def test_mdi_line_runs_once() -> None:
     rig = Rig()
     mdi(rig, "G91", "X.1F100")
     rig.run(0.4)
@@ -112,7 +112,7 @@ def test_a_line_runs_once() -> None:
     assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
 
 
-def test_a_line_proved_elsewhere_or_under_another_state_does_not_start() -> None:
+def test_mdi_line_proved_for_another_state_does_not_start() -> None:
     rig = Rig()
     mdi(rig, "G91", "X.1F100")
     old = line_job(rig, "X.1")
@@ -131,7 +131,7 @@ def test_a_line_proved_elsewhere_or_under_another_state_does_not_start() -> None
     assert rig.shot.start_refusal == text("executor.state-changed", remedy=text("executor.ask-again"))
 
 
-def test_a_tool_that_nobody_has_set_is_not_called() -> None:
+def test_tool_without_an_offset_is_not_called() -> None:
     rig = Rig()
     mdi(rig, "G90")
     job = line_job(rig, "T9")
@@ -143,7 +143,7 @@ def test_a_tool_that_nobody_has_set_is_not_called() -> None:
     assert rig.shot.start_refusal == text("executor.tool-offset-unset", tools="T9")
 
 
-def test_hold_go_on_and_reset_keep_the_modes() -> None:
+def test_hold_resume_and_reset_retain_the_modes() -> None:
     rig = Rig()
     mdi(rig, "G90G72", "M08")
     press(rig, "X1F10")
@@ -189,7 +189,7 @@ def test_m30_in_mdi_resets_the_modes_and_counts_no_part() -> None:
     assert (rig.shot.modal.tool, rig.shot.modal.coolant) == (2, False)
 
 
-def test_work_shift_and_preset_stay_for_the_next_line() -> None:
+def test_work_shift_and_preset_apply_to_the_next_mdi_line() -> None:
     rig = Rig()
     tools = {1: ToolOffset(-12.7, -50.8)}
     mdi(rig, "G90F100", "G10Z.1", "T1", "G92X1Z1")
@@ -201,7 +201,7 @@ def test_work_shift_and_preset_stay_for_the_next_line() -> None:
     assert rig.shot.actual[1] == pytest.approx(-0.1 * INCH, abs=0.006)
 
 
-def test_after_a_line_the_program_starts_from_its_first_line_with_its_own_modes() -> None:
+def test_program_after_mdi_starts_at_its_first_line_with_its_own_modes() -> None:
     rig = Rig()
     mdi(rig, "G91G72F100", "X.2")
     rig.post(PrepareStart(StartAction.PROGRAM))
@@ -212,7 +212,7 @@ def test_after_a_line_the_program_starts_from_its_first_line_with_its_own_modes(
 
 
 @pytest.mark.parametrize("line", ["X.1F50", "G00Z1", "G92X0Z0"])
-def test_nothing_moves_before_g90_or_g91_has_been_said(line: str) -> None:
+def test_mdi_move_before_g90_or_g91_is_rejected(line: str) -> None:
     rig = Rig()
     rig.ready()
     assert errors(rig, line)[0].code == "first-line"
@@ -223,7 +223,7 @@ def test_nothing_moves_before_g90_or_g91_has_been_said(line: str) -> None:
     assert errors(rig, line)
 
 
-def test_the_live_tool_that_runs_is_known_to_the_next_line() -> None:
+def test_running_live_tool_is_known_to_the_next_mdi_line() -> None:
     """It is switched by M2=3, and so stands beside no M code of the machine file."""
     rig = Rig(load_shipped_machine("sinumerik-live"))
     mdi(rig, "S2=900 M2=3", "G4 F0.1")

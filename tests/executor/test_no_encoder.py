@@ -16,7 +16,7 @@ def rig_without_encoder() -> Rig:
     )
 
 
-def test_a_program_with_a_turning_spindle_runs() -> None:
+def test_program_with_spindle_runs_without_an_encoder() -> None:
     rig = rig_without_encoder()
     rig.start("G90G94F300\nM03S1000\nX.5Z.1\nG95F.004X.4\nM30\n")
     rig.until(MachineState.IDLE, MachineState.FAULT)
@@ -24,7 +24,7 @@ def test_a_program_with_a_turning_spindle_runs() -> None:
     assert not rig.shot.alarms
 
 
-def test_a_thread_is_refused_with_a_sentence() -> None:
+def test_thread_without_an_encoder_is_rejected_with_a_message() -> None:
     rig = rig_without_encoder()
     rig.start("G90G94F300\nM03S1000\nX.25Z.2\nG33X.24Z-.2I.01K.05O\nM30\n")
     rig.until(MachineState.FAULT)

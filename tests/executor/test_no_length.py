@@ -85,7 +85,7 @@ def prove_out(rig: Rig, chance: Random | None) -> int:
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(programs(), st.randoms(use_true_random=False), st.booleans())
 @pytest.mark.long
-def test_a_prove_out_ends_where_the_program_does(
+def test_program_with_zero_length_moves_ends_at_programmed_position(
     program: tuple[str, tuple[float, float]], chance: Random, single: bool
 ) -> None:
     text, end = program
@@ -100,7 +100,7 @@ def test_a_prove_out_ends_where_the_program_does(
     assert rig.shot.demand[:2] == pytest.approx((end[0] * INCH, end[1] * INCH), abs=1e-6)
 
 
-def test_it_stands_where_the_first_move_goes_and_single_block_is_switched_off() -> None:
+def test_zero_length_first_move_runs_after_single_block_is_switched_off() -> None:
     """Two starts in single block, single block off, Cycle Start: the rest joins a path of no length."""
     rig = Rig()
     rig.ready()
@@ -119,7 +119,7 @@ def test_it_stands_where_the_first_move_goes_and_single_block_is_switched_off() 
 
 
 @pytest.mark.parametrize("at", range(8))
-def test_single_block_switched_at_every_block(at: int) -> None:
+def test_single_block_can_be_switched_at_every_block(at: int) -> None:
     """On for the blocks before ``at``, off from there, and the other way round."""
     text = "G90G94F300\nX0Z0\nX0Z0\nM08\nX.5\nX.5\nM03S500\nG01F60X.5Z-.1\nX.5Z-.1\nM30\n"
     for first in (True, False):

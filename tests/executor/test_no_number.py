@@ -25,9 +25,7 @@ def cutting() -> Rig:
 
 @ODD
 @pytest.mark.parametrize("field", ["demand", "actual", "following_error"])
-def test_a_position_that_is_no_number_stops_the_machine(
-    odd: float, field: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nan_position_stops_the_machine(odd: float, field: str, monkeypatch: pytest.MonkeyPatch) -> None:
     rig = cutting()
     sample = rig.sim.ports.axes.sample
 
@@ -52,9 +50,7 @@ def test_a_position_that_is_no_number_stops_the_machine(
 
 
 @ODD
-def test_a_speed_that_is_no_number_is_no_spindle_that_stands(
-    odd: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nan_spindle_speed_is_not_treated_as_stopped(odd: float, monkeypatch: pytest.MonkeyPatch) -> None:
     rig = cutting()
     monkeypatch.setattr(rig.sim.ports.spindle, "speed", lambda: odd)
     rig.tick()
@@ -67,7 +63,7 @@ def test_a_speed_that_is_no_number_is_no_spindle_that_stands(
 
 @ODD
 @pytest.mark.parametrize("field", ["feed_pot", "spindle_pot", "age"])
-def test_a_pot_that_is_no_number_is_a_silent_station(
+def test_nan_override_is_treated_as_a_silent_station(
     odd: float, field: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if field == "age" and odd < 0.0:

@@ -78,7 +78,7 @@ def all_off(rig: Rig) -> bool:
 
 @pytest.mark.parametrize("moment", MOMENTS)
 @pytest.mark.parametrize(("port", "call"), EACH, ids=NAMED)
-def test_estop_with_a_driver_that_breaks_takes_every_other_step(port: str, call: str, moment: str) -> None:
+def test_estop_completes_all_other_steps_when_a_driver_raises(port: str, call: str, moment: str) -> None:
     for error in ODD[:2]:
         rig = OddRig()
         odd = rig.break_into(port, call, error)
@@ -101,7 +101,7 @@ def test_estop_with_a_driver_that_breaks_takes_every_other_step(port: str, call:
 
 @pytest.mark.parametrize("error", ODD)
 @pytest.mark.parametrize(("port", "call"), EACH, ids=NAMED)
-def test_a_driver_that_breaks_in_a_cut_stops_the_machine_or_is_not_needed(
+def test_driver_failure_in_a_cut_stops_the_machine_unless_not_needed(
     port: str, call: str, error: type[BaseException]
 ) -> None:
     rig = OddRig()
@@ -125,7 +125,7 @@ def test_a_driver_that_breaks_in_a_cut_stops_the_machine_or_is_not_needed(
         assert all_off(rig)
 
 
-def test_an_output_that_cannot_be_switched_off_is_tried_on_and_an_alarm_of_its_own() -> None:
+def test_failed_output_switch_off_is_retried_and_raises_its_own_alarm() -> None:
     rig = OddRig()
     odd = rig.break_into("io", "switch_to_safe_state", ValueError)
     write = rig.sim.ports.io.write
@@ -151,7 +151,7 @@ def test_an_output_that_cannot_be_switched_off_is_tried_on_and_an_alarm_of_its_o
     assert "coolant" not in rig.shot.outputs
 
 
-def test_who_keeps_the_log_may_break_too() -> None:
+def test_log_failure_does_not_prevent_the_stop() -> None:
     def lost(event: LogEvent) -> None:
         raise RuntimeError(f"no disk for {event.kind}")
 
@@ -166,7 +166,7 @@ def test_who_keeps_the_log_may_break_too() -> None:
     assert all_off(rig)
 
 
-def test_a_start_seen_before_the_drivers_broke_starts_nothing_afterwards() -> None:
+def test_cycle_start_seen_before_a_driver_failure_starts_nothing_later() -> None:
     rig = OddRig()
     odd = rig.break_into("axes", "sample", ValueError)
     rig.ready()

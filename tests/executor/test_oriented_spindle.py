@@ -65,7 +65,7 @@ def held(rig: Rig) -> bool:
     return rig.sim.machine.get_spindle_rpm() == 0.0 and abs(angle(rig) - ANGLE) < 1e-6
 
 
-def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_angle() -> None:
+def test_bar_moves_off_center_only_while_the_spindle_is_oriented() -> None:
     rig = begun()
     rig.until_true(lambda shot: shot.rpm_actual > 2000.0)
     rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
@@ -86,7 +86,7 @@ def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_an
 
 
 @pytest.mark.parametrize("how", ["hold", "reset", "estop"])
-def test_whatever_stops_the_cycle_stops_the_spindle_on_its_way_to_the_angle(how: str) -> None:
+def test_every_stop_ends_an_orientation_in_progress(how: str) -> None:
     rig = orienting()
     rig.until_true(lambda _: rig.sim.machine.get_spindle_rpm() != 0.0)
     at = rig.shot.actual
@@ -103,7 +103,7 @@ def test_whatever_stops_the_cycle_stops_the_spindle_on_its_way_to_the_angle(how:
     assert rig.state in {MachineState.HOLD, MachineState.IDLE, MachineState.ESTOP}
 
 
-def test_behind_a_hold_the_angle_is_asked_for_again_and_the_part_is_finished() -> None:
+def test_resume_after_hold_repeats_the_orientation_and_completes_the_part() -> None:
     rig = orienting()
     rig.post(FeedHold())
     rig.run(1.0)
@@ -115,7 +115,7 @@ def test_behind_a_hold_the_angle_is_asked_for_again_and_the_part_is_finished() -
     assert rig.shot.alarms == ()
 
 
-def test_held_in_its_hole_the_bar_stays_at_its_angle() -> None:
+def test_hold_in_the_hole_leaves_the_spindle_oriented() -> None:
     rig = begun()
     rig.until_true(lambda shot: shot.actual[Z] < -360.0)
     rig.post(FeedHold())
@@ -126,7 +126,7 @@ def test_held_in_its_hole_the_bar_stays_at_its_angle() -> None:
     assert rig.shot.alarms == ()
 
 
-def test_a_drive_that_never_arrives_is_one_alarm_and_nothing_has_moved() -> None:
+def test_orientation_timeout_raises_one_alarm_before_any_motion() -> None:
     rig = begun()
     rig.sim.machine.spindle_never_oriented()
     rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-orient"))
@@ -137,7 +137,7 @@ def test_a_drive_that_never_arrives_is_one_alarm_and_nothing_has_moved() -> None
     assert rig.shot.actual == pytest.approx(at, abs=0.01)
 
 
-def test_a_drive_that_lets_its_angle_go_stops_the_bar_in_its_hole() -> None:
+def test_lost_orientation_stops_the_bar_in_the_hole() -> None:
     rig = begun()
     rig.until_true(lambda shot: shot.actual[Z] < -360.0)
     rig.sim.machine.spindle_never_oriented()
@@ -147,7 +147,7 @@ def test_a_drive_that_lets_its_angle_go_stops_the_bar_in_its_hole() -> None:
     assert rig.shot.actual[Z] > LOW + 5.0
 
 
-def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
+def test_spindle_switch_prevents_orientation() -> None:
     rig = begun()
     rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
     rig.sim.machine.set_spindle_auto(False)
@@ -161,7 +161,7 @@ def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
     assert held(rig)
 
 
-def test_no_bar_is_turned_to_an_angle_in_an_open_chuck() -> None:
+def test_spindle_is_not_oriented_with_an_open_chuck() -> None:
     lathe = load_shipped_machine("sinumerik-modulo")
     setup = create_setup(lathe, tool_offsets={}, secondary_offsets={})
     source = ProgramSource("T.MPF", "G4 F2\nSPOS=90\nG4 F1\nM30\n")
@@ -177,7 +177,7 @@ def test_no_bar_is_turned_to_an_angle_in_an_open_chuck() -> None:
     assert rig.sim.machine.get_spindle_rpm() == 0.0
 
 
-def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
+def test_driver_without_orientation_is_rejected_before_the_start() -> None:
     needs = remove_repeated_requirements(list_requirements(blocks_of()))
     assert SPINDLE_ORIENTATION in {need.function for need in needs}
     rig = Rig(machine=replace(MILL, spindle=replace(MILL.spindle, oriented=False)))
@@ -190,7 +190,7 @@ def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
     assert find_missing_function(able, Proof("x", (), required_functions=needs)) == ""
 
 
-def test_the_proof_counts_stop_and_the_longest_way_to_the_angle() -> None:
+def test_proof_includes_spindle_stop_and_longest_orientation_time() -> None:
     """M19 at 3000 rpm: down to the speed that counts as rest, .08 s of the drive, half a turn at 100 rpm."""
     setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     head = "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL Z+5 R0 FMAX M3\n"

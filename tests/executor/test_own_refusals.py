@@ -35,12 +35,12 @@ from tests.texts import pattern, text
 # --- before a start -----------------------------------------------------------------------------------------
 
 
-def test_a_controller_that_may_not_begin_says_why() -> None:
+def test_controller_that_cannot_start_reports_why() -> None:
     context = context_of(PlayedController(hindrance="its modes are being verified"))
     assert find_state_refusal(context, MachineState.IDLE) == "its modes are being verified"
 
 
-def test_what_a_controller_cannot_do_is_named_with_its_line() -> None:
+def test_missing_controller_function_is_reported_with_its_line() -> None:
     context = context_of(PlayedController(capabilities=frozenset({ARC_MOTION})))
     proof = Proof(
         "", (), required_functions=(MachineRequirement(ARC_MOTION, 3), MachineRequirement(THREADING, 5))
@@ -48,7 +48,7 @@ def test_what_a_controller_cannot_do_is_named_with_its_line() -> None:
     assert re.fullmatch(pattern("executor.controller-cannot", line=5), find_missing_function(context, proof))
 
 
-def test_what_the_machine_has_not_is_named_with_its_line() -> None:
+def test_missing_machine_function_is_reported_with_its_line() -> None:
     context = context_of(None)
     context.machine = dataclasses.replace(context.machine, missing_outputs=frozenset({"catcher"}))
     proof = Proof("", (), required_functions=(MachineRequirement("output catcher", 4),))
@@ -69,7 +69,7 @@ def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> 
     assert find_outdated_setting(job, ModalState(rapid_rate=60.0)) == text("executor.other-rapid-rate")
 
 
-def test_nothing_asked_for_bars_no_next_part() -> None:
+def test_repeat_is_allowed_without_pending_offsets() -> None:
     assert ChangedOffsets(context_of(None)).find_repeat_refusal(ModalState()) == ""
 
 
@@ -81,7 +81,7 @@ def test_nothing_asked_for_bars_no_next_part() -> None:
         (False, False, ""),
     ],
 )
-def test_no_drive_test_under_feed_hold_or_with_the_guard_open(held: bool, guard: bool, why: str) -> None:
+def test_drive_test_is_rejected_in_feed_hold_or_with_guard_open(held: bool, guard: bool, why: str) -> None:
     context = context_of(None)
     context.signals = StationSignals(
         is_estop_pressed=False,
@@ -101,7 +101,7 @@ def test_no_drive_test_under_feed_hold_or_with_the_guard_open(held: bool, guard:
 # --- inputs by name and terminal ----------------------------------------------------------------------------
 
 
-def test_an_input_goes_by_its_name_and_by_its_terminal_and_no_other_is_on() -> None:
+def test_input_is_found_by_name_or_terminal_and_is_off_when_unknown() -> None:
     context = context_of(None)
     name, model = next((name, each) for name, each in context.machine.inputs.items() if each.terminal)
     context.inputs = {name: True}
@@ -115,13 +115,13 @@ def test_an_input_goes_by_its_name_and_by_its_terminal_and_no_other_is_on() -> N
 # --- a block checked once more before it moves --------------------------------------------------------------
 
 
-def test_a_feed_by_the_turn_of_a_spindle_that_stands_is_refused() -> None:
+def test_feed_per_rev_with_stopped_spindle_is_rejected() -> None:
     (block,) = Maker().thread(0.0, -1.0, 0.5).blocks
     with raises_code(AlarmError, "spindle-still", text("executor.line-feeds-by-rev", line=1)):
         check_block(block, load_machine())
 
 
-def test_c_does_not_move_while_it_turns_as_the_spindle() -> None:
+def test_c_move_while_c_turns_as_the_spindle_is_rejected() -> None:
     machine = dataclasses.replace(load_machine(), has_c_own_drive=False)
     (block,) = Maker().feed(0.0, -1.0, 0.5).blocks
     block = dataclasses.replace(block, c=90.0, modal=ModalState(spindle=1), kind=BlockKind.ROTATE)
@@ -129,7 +129,7 @@ def test_c_does_not_move_while_it_turns_as_the_spindle() -> None:
         check_block(block, machine)
 
 
-def test_a_section_forgets_no_block_that_it_does_not_hold() -> None:
+def test_dropping_unknown_blocks_leaves_the_section_unchanged() -> None:
     section = PathSection(MotionLimits(), 3500.0)
     section.append_blocks(Maker().feed(0.0, -1.0, 5.0).feed(0.0, -2.0, 5.0).blocks)
     for n in (None, 7):
@@ -159,7 +159,7 @@ def locked() -> tuple[SpindleControl, PlayedLock]:
     return SpindleControl(context.ports.spindle, context.machine.spindle, lock), lock
 
 
-def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
+def test_spindle_switches_to_c_once_and_stop_releases_it() -> None:
     spindle, lock = locked()
     assert not spindle.engage_c_axis(should_orient=True)
     assert lock.asked == [(True, True)]
@@ -173,14 +173,14 @@ def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
     assert lock.asked[1:] == [(False, False)]
 
 
-def test_a_hold_ends_a_change_over_that_is_under_way() -> None:
+def test_hold_cancels_a_pending_change_to_c() -> None:
     spindle, lock = locked()
     spindle.engage_c_axis(should_orient=False)
     spindle.cancel_orientation()
     assert lock.asked == [(True, False), (False, False)]
 
 
-def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> None:
+def test_spindle_wait_reasons_are_reported_by_priority() -> None:
     spindle, _ = locked()
     assert (spindle.start_inhibit_reason, spindle.slow_reason) == ("", text("executor.spindle-stopped"))
     spindle.request_speed(SpindleRequest(600.0))
@@ -197,7 +197,7 @@ def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> No
     assert spindle.waiting_reason  # barred: nothing is permitted
 
 
-def test_an_encoder_that_counts_nothing_or_stands_carries_no_thread() -> None:
+def test_missing_or_stopped_encoder_does_not_predict_the_angle() -> None:
     angle = SpindleAnglePredictor()
     with raises_code(AlarmError, "thread-no-encoder", text("executor.counts-nothing")):
         angle.predict_turning_angle(1.0)
@@ -215,7 +215,7 @@ def test_an_encoder_that_counts_nothing_or_stands_carries_no_thread() -> None:
 # --- what must not stop the rest ----------------------------------------------------------------------------
 
 
-def test_who_fails_and_fails_to_say_so_is_in_the_log_twice(caplog: pytest.LogCaptureFixture) -> None:
+def test_failure_in_the_failure_handler_is_logged_as_second_error(caplog: pytest.LogCaptureFixture) -> None:
     def tell(_error: BaseException) -> None:
         raise OSError("the log is gone")
 

@@ -19,7 +19,7 @@ def counted(rig: Rig) -> tuple[int, int]:
     return rig.shot.parts, len(rig.said("part"))
 
 
-def test_a_dry_run_is_no_part() -> None:
+def test_dry_run_counts_no_part() -> None:
     rig = Rig()
     rig.post(SetSwitch("no_count", True))
     rig.start(SHORT)
@@ -32,7 +32,7 @@ def test_a_dry_run_is_no_part() -> None:
 
 
 @pytest.mark.parametrize("at_the_end", [True, False])
-def test_what_stands_at_the_end_decides(at_the_end: bool) -> None:
+def test_no_count_switch_at_program_end_decides_the_part_count(at_the_end: bool) -> None:
     """Forgotten before the start: the switch may be turned until the end."""
     rig = Rig()
     rig.post(SetSwitch("no_count", not at_the_end))
@@ -44,7 +44,7 @@ def test_what_stands_at_the_end_decides(at_the_end: bool) -> None:
     assert counted(rig) == ((0, 0) if at_the_end else (1, 1))
 
 
-def test_dry_runs_repeat_uncounted() -> None:
+def test_dry_runs_repeat_without_counting() -> None:
     rig = Rig()
     rig.post(SetSwitch("no_count", True), SetSwitch("cycle_repeat", True))
     rig.start(SHORT)
@@ -57,7 +57,7 @@ def test_dry_runs_repeat_uncounted() -> None:
     assert rig.shot.ends == 4
 
 
-def test_block_by_block_is_a_part() -> None:
+def test_single_block_run_counts_a_part() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start(SHORT)
@@ -70,7 +70,7 @@ def test_block_by_block_is_a_part() -> None:
     assert counted(rig) == (1, 1)
 
 
-def test_a_line_of_mdi_and_a_program_given_up_are_none() -> None:
+def test_mdi_line_and_aborted_program_count_no_part() -> None:
     rig = Rig()
     rig.ready()
     mdi(rig, "G90")
@@ -84,7 +84,7 @@ def test_a_line_of_mdi_and_a_program_given_up_are_none() -> None:
     assert rig.shot.ends == 0
 
 
-def test_a_restart_where_it_was_broken_off_finishes_the_part() -> None:
+def test_restart_at_the_interrupted_line_counts_the_part() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 8)
@@ -93,7 +93,7 @@ def test_a_restart_where_it_was_broken_off_finishes_the_part() -> None:
     assert counted(rig) == (1, 1)
 
 
-def test_a_restart_that_leaves_something_out_makes_none() -> None:
+def test_restart_that_skips_lines_counts_no_part() -> None:
     """Line 8 was being cut when it was broken off; from line 10 on its rest is missing."""
     rig = Rig()
     broken_off(rig)
@@ -104,7 +104,7 @@ def test_a_restart_that_leaves_something_out_makes_none() -> None:
     assert text("executor.left-out") in rig.said("uncounted")[0]
 
 
-def test_a_restart_in_a_piece_that_was_never_begun_makes_none() -> None:
+def test_restart_of_a_part_never_started_counts_no_part() -> None:
     rig = Rig()
     rig.ready()
     rig.load(PART, TOOLS)
@@ -113,7 +113,7 @@ def test_a_restart_in_a_piece_that_was_never_begun_makes_none() -> None:
     assert counted(rig) == (0, 0)
 
 
-def test_a_mistaken_restart_given_up_can_be_made_good() -> None:
+def test_aborted_wrong_restart_can_be_corrected_and_counts_the_part() -> None:
     """From line 10, given up on the way; then from line 8: nothing is left out after all."""
     rig = Rig()
     broken_off(rig)
@@ -126,7 +126,7 @@ def test_a_mistaken_restart_given_up_can_be_made_good() -> None:
     assert counted(rig) == (1, 1)
 
 
-def test_broken_off_twice_it_is_still_one_part() -> None:
+def test_part_interrupted_twice_counts_once() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 8)
@@ -138,7 +138,7 @@ def test_broken_off_twice_it_is_still_one_part() -> None:
     assert counted(rig) == (1, 1)
 
 
-def test_the_part_after_a_restart_is_a_part_of_its_own() -> None:
+def test_part_after_a_restart_is_counted_as_a_new_part() -> None:
     rig = Rig()
     broken_off(rig)
     rig.post(SetSwitch("cycle_repeat", True))
@@ -149,7 +149,7 @@ def test_the_part_after_a_restart_is_a_part_of_its_own() -> None:
     assert counted(rig) == (1, 1)
 
 
-def test_another_program_of_the_same_length_is_another_piece() -> None:
+def test_other_program_of_equal_length_is_another_part() -> None:
     rig = Rig()
     broken_off(rig)
     rig.start(SHORT)
@@ -160,7 +160,7 @@ def test_another_program_of_the_same_length_is_another_piece() -> None:
     assert counted(rig) == (1, 1)  # the short one
 
 
-def test_the_time_of_a_restart_is_not_that_of_a_cycle() -> None:
+def test_restart_time_is_not_recorded_as_cycle_time() -> None:
     rig = Rig()
     seen: list[Snapshot] = []
     rig.start(PART, TOOLS)

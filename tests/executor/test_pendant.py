@@ -73,7 +73,7 @@ def test_a_pendant_that_is_lost_holds_the_cycle_and_starts_nothing() -> None:
     rig.until(MachineState.IDLE)
 
 
-def test_a_jog_by_key_is_held_once_and_may_begin_again() -> None:
+def test_key_jog_stops_once_when_the_pendant_is_lost_and_can_restart() -> None:
     rig = ready()
     rig.post(Jog("X", 5.0, 0.25))
     rig.run(0.1)
@@ -85,7 +85,7 @@ def test_a_jog_by_key_is_held_once_and_may_begin_again() -> None:
     assert rig.state is MachineState.JOG
 
 
-def test_the_wheel_is_taken_away_and_comes_back_by_a_new_choice() -> None:
+def test_handwheel_of_a_lost_pendant_returns_only_on_new_selection() -> None:
     rig = ready()
     wheel = SelectHandwheel("X", 0.0254, 0.25)
     rig.post(wheel)
@@ -101,7 +101,7 @@ def test_the_wheel_is_taken_away_and_comes_back_by_a_new_choice() -> None:
     assert rig.shot.wheel == ""
 
 
-def test_start_inhibit_bars_every_start_and_going_on() -> None:
+def test_start_inhibit_blocks_every_start_and_resume() -> None:
     rig = ready("start_inhibit")
     rig.cutting()
     rig.sim.machine.press_hold()
@@ -120,7 +120,7 @@ def test_start_inhibit_bars_every_start_and_going_on() -> None:
 
 
 @pytest.mark.parametrize("name", ["jog_x_plus", "wheel_enable"])
-def test_a_jog_ends_with_its_button_and_with_the_enabling_switch(name: str) -> None:
+def test_jog_ends_when_its_button_or_enabling_switch_is_released(name: str) -> None:
     """Though the screen goes on asking: it has not seen it, or stands still."""
     rig = ready("jog_x_plus", "wheel_enable")
     for each in ("jog_x_plus", "wheel_enable"):
@@ -140,7 +140,7 @@ def test_a_jog_ends_with_its_button_and_with_the_enabling_switch(name: str) -> N
     assert rig.said("refused") == []
 
 
-def test_a_screen_that_stands_still_cannot_hold_a_button() -> None:
+def test_jog_ends_on_button_release_when_the_screen_hangs() -> None:
     """Nobody posts any more: the lease would go on for a quarter of a second."""
     rig = ready("jog_x_plus")
     rig.sim.machine.set_input("jog_x_plus", True)
@@ -151,7 +151,7 @@ def test_a_screen_that_stands_still_cannot_hold_a_button() -> None:
     assert rig.state is MachineState.IDLE
 
 
-def test_a_jog_whose_button_is_up_never_begins() -> None:
+def test_jog_with_a_released_button_never_starts() -> None:
     rig = ready("jog_x_plus")
     rig.post(Jog("X", 5.0, 0.25, "jog_x_plus"))
     rig.run(0.2)
@@ -159,7 +159,7 @@ def test_a_jog_whose_button_is_up_never_begins() -> None:
     assert rig.shot.demand[0] == 0.0
 
 
-def test_the_load_of_the_spindle_is_told() -> None:
+def test_spindle_load_is_reported() -> None:
     rig = ready()
     assert rig.shot.spindle_load is None
     rig.pendant = {"spindle_load": 43.5}

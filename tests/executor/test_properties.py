@@ -110,7 +110,9 @@ class Observer:
 @pytest.mark.parametrize("base", [0, 1])
 @settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(steps=STEPS)
-def test_any_commands_at_any_time(base: int, steps: list[tuple[float, Command | str]]) -> None:
+def test_random_commands_never_cause_a_program_alarm(
+    base: int, steps: list[tuple[float, Command | str]]
+) -> None:
     rig = Rig()
     rig.ready()
     rig.load(PART)
@@ -152,7 +154,7 @@ def estop(rig: Rig) -> None:
     holds=st.lists(st.floats(0.0, 0.9), min_size=1, max_size=6),
     overrides=st.lists(st.sampled_from([0.1, 0.4, 1.0, 1.5]), min_size=1, max_size=6),
 )
-def test_stops_and_overrides_never_change_where_a_program_ends(
+def test_stops_and_overrides_do_not_change_the_end_position(
     holds: list[float], overrides: list[float]
 ) -> None:
     rig = Rig()

@@ -31,7 +31,7 @@ def ridden(pieces: list[Ramp], v0: float) -> tuple[float, float, float]:
 
 
 @given(SPEEDS, WAYS, TOPS)
-def test_it_arrives_exactly_and_at_rest(v0: float, way: float, top: float) -> None:
+def test_plan_ends_exactly_at_the_distance_and_at_rest(v0: float, way: float, top: float) -> None:
     pieces = plan_stop_at_distance(v0, way, top, A)
     gone, v, most = ridden(pieces, v0)
     assert gone == pytest.approx(way, abs=1e-6)
@@ -40,7 +40,7 @@ def test_it_arrives_exactly_and_at_rest(v0: float, way: float, top: float) -> No
 
 
 @given(st.floats(0.0, 42.0), WAYS, TOPS)
-def test_it_never_passes_a_place_that_it_can_stop_at(v0: float, way: float, top: float) -> None:
+def test_plan_never_overshoots_a_reachable_target(v0: float, way: float, top: float) -> None:
     stop = v0 * v0 / (2.0 * A)
     at, furthest = 0.0, 0.0
     for dt, begins, a in plan_stop_at_distance(v0, way, top, A):
@@ -59,7 +59,7 @@ def test_it_never_passes_a_place_that_it_can_stop_at(v0: float, way: float, top:
         (10.0, 0.0, 10.0, 10.0 / A + 2 * math.sqrt(10.0**2 / (2 * A) / A)),  # past it, and back
     ],
 )
-def test_times_by_hand(v0: float, way: float, top: float, seconds: float) -> None:
+def test_plan_durations_match_hand_calculation(v0: float, way: float, top: float, seconds: float) -> None:
     assert sum(piece[0] for piece in plan_stop_at_distance(v0, way, top, A)) == pytest.approx(
         seconds, abs=1e-9
     )

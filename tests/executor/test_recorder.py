@@ -82,7 +82,7 @@ def test_a_part_is_recorded_with_line_block_state_and_outputs() -> None:
     assert np.diff(record.times_s[feeding]) == pytest.approx(0.001, abs=1e-9)
 
 
-def test_a_driver_without_samples_is_recorded_as_it_is_seen() -> None:
+def test_driver_without_samples_is_recorded_once_per_tick() -> None:
     it = rig(own=False)
     it.make_part()
     it.recorder.store_queued_ticks()
@@ -109,7 +109,7 @@ class Loadless:
 
 
 @pytest.mark.parametrize("own", [True, False])
-def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: bool) -> None:
+def test_load_input_fills_gaps_in_the_samples(own: bool) -> None:
     machine = load_machine()
     pots = {"spindle_load": AnalogInputModel("spindle_load", "AI-1", (0.0, 150.0))}
     hardware = dataclasses.replace(machine.hardware, analog_inputs=pots)
@@ -129,7 +129,7 @@ def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: boo
 
 
 @pytest.mark.parametrize("own", [True, False])
-def test_a_machine_at_rest_takes_ten_rows_a_second(own: bool) -> None:
+def test_machine_at_rest_records_ten_rows_per_second(own: bool) -> None:
     it = rig(own=own)
     it.run(10.0)
     it.recorder.store_queued_ticks()
@@ -137,7 +137,7 @@ def test_a_machine_at_rest_takes_ten_rows_a_second(own: bool) -> None:
     assert it.recorder.ring.samples.completed_row_count == pytest.approx(100, abs=12)
 
 
-def test_a_late_tick_is_told_also_by_a_machine_at_rest() -> None:
+def test_late_tick_at_rest_is_recorded() -> None:
     it = rig()
     it.run(1.0)
     it.tick(0.08)
@@ -148,7 +148,7 @@ def test_a_late_tick_is_told_also_by_a_machine_at_rest() -> None:
     ].max() == pytest.approx(0.07)
 
 
-def test_a_driver_that_cannot_tell_its_samples_stops_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failing_sample_driver_stops_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     it = rig()
 
     def broken() -> FloatArray:
@@ -159,7 +159,7 @@ def test_a_driver_that_cannot_tell_its_samples_stops_nothing(monkeypatch: pytest
     assert it.shot.alarms == ()
 
 
-def test_a_recorder_that_raises_stops_nothing_and_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
+def test_recorder_exception_stops_nothing_and_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
     it = Rig()
 
     def raises(_tick: TickData) -> None:
@@ -176,7 +176,7 @@ def test_a_recorder_that_raises_stops_nothing_and_is_told_once(caplog: pytest.Lo
 # --- alarms ----------------------------------------------------------------------------------------------
 
 
-def test_an_alarm_keeps_the_ten_seconds_before_it_until_the_machine_stands(tmp_path: Path) -> None:
+def test_alarm_record_spans_ten_seconds_before_until_rest(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.post(EnableDrives())
     it.run(11.0)
@@ -204,7 +204,7 @@ def test_an_alarm_keeps_the_ten_seconds_before_it_until_the_machine_stands(tmp_p
     assert not [each for each in tmp_path.iterdir() if each.name.endswith(".part")]
 
 
-def test_alarms_that_come_together_have_one_record_and_a_closing_desk_writes_it(tmp_path: Path) -> None:
+def test_simultaneous_alarms_share_a_record_that_close_writes(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.post(EnableDrives())
     it.run(0.5)
@@ -218,7 +218,7 @@ def test_alarms_that_come_together_have_one_record_and_a_closing_desk_writes_it(
     assert open_record(tmp_path / names.pop()).times_s.size > 5
 
 
-def test_a_record_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_missing_alarm_record_is_reported(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.post(EnableDrives())
     it.sim.machine.drive_fault("X", "overcurrent")
@@ -236,7 +236,7 @@ def test_a_record_that_is_not_there_is_told(tmp_path: Path) -> None:
         rig().recorder.open_alarm_record(name)
 
 
-def test_a_stop_has_no_record(tmp_path: Path) -> None:
+def test_normal_stop_writes_no_record(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.make_part()
     it.recorder.close()
@@ -244,7 +244,7 @@ def test_a_stop_has_no_record(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == [CURRENT_RING_NAME]
 
 
-def test_the_oldest_records_of_alarms_go(tmp_path: Path) -> None:
+def test_oldest_alarm_records_are_deleted(tmp_path: Path) -> None:
     for n in range(MAX_ALARM_RECORDS + 3):
         (tmp_path / f"20260101T1200{n:02d}-alarm507.scope").write_bytes(b"")
     (tmp_path / "mine.scope").write_bytes(b"")
@@ -258,7 +258,7 @@ def test_the_oldest_records_of_alarms_go(tmp_path: Path) -> None:
 # --- the file --------------------------------------------------------------------------------------------
 
 
-def test_the_file_has_what_the_memory_has(tmp_path: Path) -> None:
+def test_ring_file_matches_the_record_in_memory(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.make_part()
     it.recorder.close()
@@ -271,7 +271,7 @@ def test_the_file_has_what_the_memory_has(tmp_path: Path) -> None:
         np.testing.assert_array_equal(found.values_by_channel[name], kept.values_by_channel[name], name)
 
 
-def test_a_full_disk_is_told_and_the_record_goes_on_in_memory(
+def test_full_disk_is_reported_and_recording_continues_in_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(_fd: int, _at: int, _size: int) -> None:
@@ -288,7 +288,7 @@ def test_a_full_disk_is_told_and_the_record_goes_on_in_memory(
     it.recorder.close()
 
 
-def test_a_disk_that_fails_later_ends_the_file_and_not_the_record(
+def test_later_disk_failure_ends_the_file_but_not_the_record(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     it = rig(tmp_path)
@@ -308,7 +308,7 @@ def test_a_disk_that_fails_later_ends_the_file_and_not_the_record(
 
 
 @pytest.mark.parametrize("own", [True, False])
-def test_of_what_nothing_is_heard_the_record_has_a_gap(own: bool) -> None:
+def test_record_has_a_gap_while_the_machine_is_silent(own: bool) -> None:
     """0.5 s without a word, then it is heard again: nothing is drawn across."""
     it = rig(own=own)
     it.make_part()

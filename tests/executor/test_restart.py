@@ -63,7 +63,7 @@ def broken_off(rig: Rig, at_z: float = -0.3) -> None:
     rig.ready()
 
 
-def test_the_line_that_was_running_is_offered_and_forgotten_when_the_part_is_done() -> None:
+def test_interrupted_line_is_offered_until_the_part_is_done() -> None:
     rig = Rig()
     broken_off(rig)
     assert rig.shot.interrupted_line == 8
@@ -76,7 +76,7 @@ def test_the_line_that_was_running_is_offered_and_forgotten_when_the_part_is_don
     assert rig.shot.parts == 1
 
 
-def test_after_an_estop_the_part_is_finished_from_the_line() -> None:
+def test_part_is_completed_from_the_line_after_estop() -> None:
     rig = Rig()
     broken_off(rig)
     seen: list[Snapshot] = []
@@ -99,7 +99,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line() -> None:
     assert rig.shot.actual[:2] == pytest.approx((-12.7 + INCH, -50.8 + 2 * INCH), abs=0.01)
 
 
-def test_no_leg_is_fed_into_the_part_before_the_spindle_is_at_its_speed() -> None:
+def test_feed_leg_into_the_part_waits_for_spindle_speed() -> None:
     rig = Rig()
     broken_off(rig)
     seen: list[Snapshot] = []
@@ -113,7 +113,7 @@ def test_no_leg_is_fed_into_the_part_before_the_spindle_is_at_its_speed() -> Non
     assert max(shot.velocity for shot in fed) <= 21.0 * INCH / 60
 
 
-def test_coolant_that_is_not_confirmed_stays_off() -> None:
+def test_unconfirmed_coolant_stays_off() -> None:
     rig = Rig()
     broken_off(rig)
     seen: list[Snapshot] = []
@@ -123,7 +123,7 @@ def test_coolant_that_is_not_confirmed_stays_off() -> None:
     assert not any("coolant" in shot.outputs for shot in seen)
 
 
-def test_the_spindle_of_mdi_is_stopped_where_the_line_has_none() -> None:
+def test_mdi_spindle_is_stopped_if_the_restart_line_has_none() -> None:
     rig = Rig()
     broken_off(rig)
     mdi(rig, "M04S500", "M08")
@@ -145,7 +145,7 @@ def test_a_program_is_repeated_from_its_first_line_after_a_restart() -> None:
     rig.until(MachineState.IDLE)
 
 
-def test_the_next_start_is_the_whole_program_again() -> None:
+def test_start_after_a_restart_runs_the_whole_program() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 13)
@@ -163,7 +163,7 @@ def refused(rig: Rig) -> str:
     return rig.shot.start_refusal
 
 
-def test_no_start_from_another_place_than_was_proved() -> None:
+def test_restart_is_rejected_after_the_axes_have_moved() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
@@ -172,7 +172,7 @@ def test_no_start_from_another_place_than_was_proved() -> None:
     assert refused(rig) == text("executor.moved-since", remedy=text("executor.search-again"))
 
 
-def test_no_start_with_the_collet_otherwise() -> None:
+def test_restart_is_rejected_if_the_collet_state_differs() -> None:
     rig = Rig()
     broken_off(rig)
     mdi(rig, "M13")
@@ -180,7 +180,7 @@ def test_no_start_with_the_collet_otherwise() -> None:
     assert refused(rig) == text("executor.collet-must-close", line=8)
 
 
-def test_no_start_of_a_program_that_was_loaded_anew() -> None:
+def test_restart_is_rejected_after_the_program_is_reloaded() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
@@ -189,7 +189,7 @@ def test_no_start_of_a_program_that_was_loaded_anew() -> None:
     assert refused(rig) == text("executor.loaded-anew")
 
 
-def test_loading_a_program_takes_a_prepared_restart_back() -> None:
+def test_loading_a_program_cancels_a_prepared_restart() -> None:
     rig = Rig()
     broken_off(rig)
     prepare(rig, restart_job(rig, 8))
@@ -200,7 +200,7 @@ def test_loading_a_program_takes_a_prepared_restart_back() -> None:
 
 
 @pytest.mark.parametrize(("seconds", "starts"), [(0.3, False), (0.9, True)])
-def test_palms_in_one_slap_with_the_answer_start_no_restart(seconds: float, starts: bool) -> None:
+def test_cycle_start_pressed_together_with_confirmation_is_rejected(seconds: float, starts: bool) -> None:
     """Both palms that came down with the key that has accepted the way there were not meant for it."""
     rig = Rig()
     broken_off(rig)
@@ -216,7 +216,7 @@ def test_palms_in_one_slap_with_the_answer_start_no_restart(seconds: float, star
     assert (text("executor.meant-just-now") in rig.shot.start_refusal) is not starts
 
 
-def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
+def test_cycle_start_after_a_canceled_restart_reports_no_restart() -> None:
     """Nothing is meant by it: the palms that come right behind are told that a restart is not ready."""
     rig = Rig()
     broken_off(rig)
@@ -229,7 +229,7 @@ def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
     assert rig.shot.start_refusal == text("executor.no-restart")
 
 
-def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
+def test_approach_beyond_the_travel_is_found_by_the_proof() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
@@ -254,7 +254,7 @@ def test_an_unproved_restart_does_not_start() -> None:
     assert refused(rig).startswith(text("executor.other-proof"))
 
 
-def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
+def test_restart_is_not_prepared_while_a_program_runs() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     job = rig.executor._control.status.job
@@ -265,7 +265,7 @@ def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
     assert rig.shot.starts is StartAction.PROGRAM
 
 
-def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
+def test_single_block_stops_on_each_approach_leg_and_resumes() -> None:
     rig = Rig()
     broken_off(rig)
     rig.executor._context.switches.single_block = True
@@ -283,7 +283,7 @@ def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
     assert texts[-1] == "X.8"
 
 
-def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
+def test_restart_with_an_unset_tool_is_rejected() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
@@ -335,7 +335,7 @@ def way_out_alone(rig: Rig) -> None:
     assert not rig.shot.start_refusal, rig.shot.start_refusal
 
 
-def test_a_restart_that_leaves_a_cut_incomplete_makes_no_part() -> None:
+def test_restart_that_leaves_a_cut_incomplete_counts_no_part() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
@@ -348,7 +348,7 @@ def test_a_restart_that_leaves_a_cut_incomplete_makes_no_part() -> None:
     assert piece.uncounted_reason == text("executor.left-out")
 
 
-def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() -> None:
+def test_retract_only_leaves_a_groove_along_x_and_starts_nothing() -> None:
     rig = Rig()
     stopped_in_a_groove(rig)
     seen: list[Snapshot] = []
@@ -368,7 +368,7 @@ def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() ->
     assert rig.shot.interrupted_line == 7  # it is still to be finished
 
 
-def test_the_way_out_can_be_held_and_the_rest_of_it_asked_for_anew() -> None:
+def test_feed_hold_in_a_retract_allows_requesting_the_remainder() -> None:
     rig = Rig()
     stopped_in_a_groove(rig)
     way_out_alone(rig)
@@ -384,7 +384,7 @@ def test_the_way_out_can_be_held_and_the_rest_of_it_asked_for_anew() -> None:
     assert (rig.shot.actual[1] + 50.8) / INCH == pytest.approx(0.5, abs=2e-3)
 
 
-def test_a_loop_is_gone_on_with_in_the_pass_that_was_interrupted() -> None:
+def test_restart_in_a_loop_continues_in_the_interrupted_pass() -> None:
     rig = Rig()
     stopped_in_a_groove(rig)
     restart(rig, 7)
@@ -399,7 +399,7 @@ def test_a_loop_is_gone_on_with_in_the_pass_that_was_interrupted() -> None:
     assert rig.shot.parts == 1
 
 
-def test_a_turned_pass_that_is_fed_off_is_left_along_itself() -> None:
+def test_interrupted_turning_pass_retracts_along_the_pass() -> None:
     """Nothing tells whether the bar or a groove in its face stands around it."""
     rig = Rig()
     rig.start(PART.replace("G94F300X1.2\nZ.2", "X1.2\nG94F300Z.2"), TOOLS)
@@ -417,7 +417,7 @@ def test_a_turned_pass_that_is_fed_off_is_left_along_itself() -> None:
     assert all(shot.actual[0] == pytest.approx(x, abs=0.01) for shot in seen if shot.actual[1] < -50.8)
 
 
-def test_a_restart_that_breaks_off_on_its_way_out_still_knows_the_way_out() -> None:
+def test_restart_interrupted_on_retract_remembers_the_retract_path() -> None:
     rig = Rig()
     stopped_in_a_groove(rig)
     restart(rig, 7)
@@ -440,7 +440,7 @@ def test_a_restart_that_breaks_off_on_its_way_out_still_knows_the_way_out() -> N
     assert all(shot.actual[1] == pytest.approx(z, abs=0.02) for shot in low)
 
 
-def test_a_turned_pass_broken_off_again_on_its_way_off_the_part() -> None:
+def test_turning_pass_interrupted_again_on_retract_plans_a_retract() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 8)
@@ -472,7 +472,7 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     assert not out.start_state.approach
 
 
-def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
+def test_retract_is_rejected_from_an_unproved_position() -> None:
     rig = Rig()
     stopped_in_a_groove(rig)
     rig.run(0.4)

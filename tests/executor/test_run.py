@@ -19,7 +19,7 @@ from tests.texts import text
 LINE = "G90G94F300\nG01F60Z-1\nX1\nM30\n"
 
 
-def test_runs_to_the_end_and_counts_the_part() -> None:
+def test_program_runs_to_the_end_and_counts_the_part() -> None:
     rig = Rig()
     rig.start(LINE)
     rig.until(MachineState.IDLE)
@@ -32,7 +32,7 @@ def test_runs_to_the_end_and_counts_the_part() -> None:
     assert rig.shot.underruns == 0
 
 
-def test_the_block_shown_is_the_one_being_played() -> None:
+def test_displayed_block_is_the_one_in_motion() -> None:
     rig = Rig()
     rig.start(LINE)
     rig.until_true(lambda shot: shot.actual[1] < -0.5 * INCH)
@@ -57,7 +57,7 @@ def test_feed_waits_for_the_spindle_and_rapids_do_not() -> None:
     assert rig.shot.rpm_command == 0.0
 
 
-def test_dwell_and_collet_take_their_time() -> None:
+def test_dwell_and_collet_delays_last_the_configured_time() -> None:
     rig = Rig(every=FINE)
     rig.start("G90G94F300\nG04F1.5\nM13\nM12\nM30\n")
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
@@ -81,7 +81,7 @@ def test_wait_input_waits_for_its_terminal() -> None:
 
 
 @pytest.mark.parametrize("closed", [True, False])
-def test_a_branch_asks_its_input_when_its_turn_comes(closed: bool) -> None:
+def test_conditional_branch_reads_its_input_at_execution_time(closed: bool) -> None:
     rig = Rig()
     rig.start("G90G94F300\nG04F1\nM97I10C1P1\nZ-.5\nM30\n}1\nX1\nM99\n")
     rig.run(0.5)
@@ -91,7 +91,7 @@ def test_a_branch_asks_its_input_when_its_turn_comes(closed: bool) -> None:
     assert rig.shot.actual[1] == pytest.approx(-0.5 * INCH, abs=0.006)
 
 
-def test_m00_waits_with_its_message_and_goes_on() -> None:
+def test_m00_stops_with_its_message_and_resumes() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM00(TURN THE PART)\nX1\nM30\n")
     rig.until(MachineState.PROGRAM_STOP)
@@ -114,7 +114,7 @@ def test_m01_stops_only_with_optional_stop(on: bool) -> None:
     assert rig.shot.message == ("LOOK" if on else "")
 
 
-def test_m30_switches_off_and_m02_leaves_on() -> None:
+def test_m30_switches_outputs_off_and_m02_leaves_them_on() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM08\nM25\nX.1\nM02\n")
     rig.until(MachineState.IDLE)
@@ -128,7 +128,7 @@ def test_m30_switches_off_and_m02_leaves_on() -> None:
     assert rig.shot.parts == 2
 
 
-def test_cycle_repeat_starts_over_until_m31() -> None:
+def test_cycle_repeat_restarts_the_program_until_m31() -> None:
     rig = Rig()
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start("G90G94F300\nX.5\nX0\nM30\n")
@@ -144,7 +144,7 @@ def test_cycle_repeat_starts_over_until_m31() -> None:
     assert not rig.shot.cycle_repeat
 
 
-def test_stops_do_not_count_in_the_cycle_time() -> None:
+def test_cycle_time_excludes_program_stops() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM00\nG04F1\nM30\n")
     rig.until(MachineState.PROGRAM_STOP)
@@ -154,7 +154,7 @@ def test_stops_do_not_count_in_the_cycle_time() -> None:
     assert rig.shot.last_cycle == pytest.approx(1.0, abs=0.05)
 
 
-def test_surface_speed_follows_the_radius() -> None:
+def test_css_speed_follows_the_radius() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG77S2500\nX1\nM03G96S250\nG01F30X.25\nM30\n")
     rig.until_true(lambda shot: shot.line == 5 and shot.actual[0] < 0.75 * INCH)
@@ -165,7 +165,7 @@ def test_surface_speed_follows_the_radius() -> None:
     assert rig.shot.rpm_command == pytest.approx(1910, rel=0.04)
 
 
-def test_per_rev_feed_follows_the_spindle_pot() -> None:
+def test_feed_per_rev_follows_the_spindle_override() -> None:
     rig = Rig()
     rig.sim.machine.set_spindle_pot(0.5)
     rig.start("G90G94F300\nM03S1000\nG95F.01Z-1\nM30\n")
@@ -175,7 +175,7 @@ def test_per_rev_feed_follows_the_spindle_pot() -> None:
     assert rig.shot.velocity == pytest.approx(5 * INCH / 60, rel=0.05)
 
 
-def test_a_long_program_of_short_moves_keeps_its_feed() -> None:
+def test_long_program_of_short_moves_maintains_its_feed() -> None:
     rig = Rig()
     moves = "".join(f"Z-{0.002 * k:.4f}\n" for k in range(1, 1501))
     rig.start("G90G94F300\nG01F100\n" + moves + "M30\n")
@@ -184,7 +184,7 @@ def test_a_long_program_of_short_moves_keeps_its_feed() -> None:
     assert rig.shot.underruns == 0
 
 
-def test_an_error_that_only_a_live_input_brings_stops_the_run() -> None:
+def test_error_caused_by_a_live_input_stops_the_run() -> None:
     rig = Rig()
     rig.sim.machine.set_input("10", True)
     rig.start("G90G94F300\nX.5\nM97I10C1P1\nM30\n}1\nM97I10C1P1\nM99\n")
@@ -204,7 +204,7 @@ def test_a_block_beyond_the_travel_is_not_begun() -> None:
     assert rig.shot.actual[0] <= INCH + 0.006
 
 
-def test_feed_per_revolution_with_a_still_spindle_moves_nothing() -> None:
+def test_feed_per_rev_with_a_stopped_spindle_moves_nothing() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG95F.01Z-1\nM30\n")
     rig.until(MachineState.FAULT)
@@ -212,7 +212,7 @@ def test_feed_per_revolution_with_a_still_spindle_moves_nothing() -> None:
     assert rig.shot.alarms[0].code in {"spindle-still", "program"}
 
 
-def test_a_clock_that_never_stands_still_changes_nothing() -> None:
+def test_continuously_advancing_clock_does_not_affect_the_run() -> None:
     rig = Rig(clock_kind=CreepingClock)
     rig.start("G90G94F300\nM03S1000\nX1Z-1\nG01F100X2\nZ-2\nG04F.2\nX0Z0\nM30\n")
     for wait in (0.2, 1.5, 0.4):
@@ -229,7 +229,7 @@ def test_a_clock_that_never_stands_still_changes_nothing() -> None:
     rig.until(MachineState.IDLE, limit=1.0)
 
 
-def test_the_run_obeys_the_law_of_the_whole_path() -> None:
+def test_piecewise_planned_run_equals_the_path_planned_at_once() -> None:
     """Planned piece by piece with a second of look-ahead, played as if planned at once."""
     zigzag = "".join(f"X{0.02 * k:.4f}Z-{0.01 * k + 0.1 * (k // 5 % 2):.4f}\n" for k in range(1, 150))
     text = f"G90G94F300\nG01F100\n{zigzag}G02X3.2Z-2R.4\nG01X3.5Z-1\nX0Z0\nX1\nX2Z-1\nM30\n"
@@ -254,7 +254,7 @@ def test_the_run_obeys_the_law_of_the_whole_path() -> None:
     assert furthest < 1e-4
 
 
-def test_the_next_block_is_never_the_one_that_is_carried_out() -> None:
+def test_next_block_text_differs_from_the_current_block() -> None:
     rig = Rig()
     rig.start("G90G94F300\nX1\nG04F1\nX0\nX1\nM30\n")
     rig.until_true(lambda shot: shot.line == 2 and shot.state is MachineState.RUN)

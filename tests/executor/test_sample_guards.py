@@ -45,7 +45,7 @@ def cutting(name: str) -> Rig:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_an_opened_guard_stops_the_cycle_of_each_sample(name: str) -> None:
+def test_open_guard_stops_the_cycle_on_each_sample_machine(name: str) -> None:
     rig = cutting(name)
     rig.sim.machine.set_input("guard", False)
     rig.until(MachineState.HOLD, limit=0.5)
@@ -58,13 +58,13 @@ def test_an_opened_guard_stops_the_cycle_of_each_sample(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_the_hold_button_of_each_sample_holds(name: str) -> None:
+def test_hold_button_of_each_sample_machine_holds(name: str) -> None:
     rig = cutting(name)
     rig.sim.machine.press_hold()
     rig.until(MachineState.HOLD, limit=0.5)
 
 
-def test_the_safety_circuit_of_a_parallel_port_with_its_guard_is_an_emergency_stop() -> None:
+def test_parallel_port_safety_circuit_with_guard_triggers_estop() -> None:
     rig = cutting("gt75-parport")
     rig.sim.machine.press_estop()
     rig.until(MachineState.ESTOP, limit=0.1)

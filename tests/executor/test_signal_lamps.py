@@ -57,13 +57,13 @@ def rig() -> Rig:
     return Rig(with_lamps(), every=FINE)
 
 
-def test_nothing_is_lit_before_anything_runs(rig: Rig) -> None:
+def test_lamps_are_off_before_anything_runs(rig: Rig) -> None:
     rig.ready()
     rig.run(3.0)
     assert tower(rig) == set()
 
 
-def test_green_while_a_cycle_runs_and_amber_when_the_part_is_done(rig: Rig) -> None:
+def test_lamp_is_green_in_a_cycle_and_amber_when_the_part_is_done(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     assert tower(rig) == {"green"}
@@ -79,7 +79,7 @@ def test_green_while_a_cycle_runs_and_amber_when_the_part_is_done(rig: Rig) -> N
     assert tower(rig) == {"green"}
 
 
-def test_parts_that_follow_each_other_keep_it_green(rig: Rig) -> None:
+def test_lamp_stays_green_between_repeated_parts(rig: Rig) -> None:
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start(PART)
     rig.run(0.3)
@@ -100,7 +100,7 @@ def test_a_stop_blinks_amber_and_buzzes_once(rig: Rig, how: str) -> None:
     assert times(rig, 10.0) == {"red": 0, "amber": 10, "green": 0, "buzzer": 0}  # once a second
 
 
-def test_an_alarm_blinks_red_and_the_rest_is_safe(rig: Rig) -> None:
+def test_alarm_blinks_red_and_clears_amber_and_green(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     rig.sim.machine.drive_fault("X")
@@ -112,7 +112,7 @@ def test_an_alarm_blinks_red_and_the_rest_is_safe(rig: Rig) -> None:
     assert found["buzzer"] == 2  # three seconds by turns, the first began with the alarm
 
 
-def test_an_estop_is_red_and_silent(rig: Rig) -> None:
+def test_estop_lights_red_without_the_buzzer(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     rig.sim.machine.press_estop()
@@ -122,7 +122,7 @@ def test_an_estop_is_red_and_silent(rig: Rig) -> None:
     assert times(rig, 5.0) == {"red": 0, "amber": 0, "green": 0, "buzzer": 0}
 
 
-def test_a_barred_part_blinks_amber_beside_green(rig: Rig) -> None:
+def test_blocked_next_part_blinks_amber_next_to_green(rig: Rig) -> None:
     rig.start(PART.replace("F30", "F10"))
     rig.run(0.3)
     rig.post(BlockNextPart("T1: its life is gone"))
@@ -132,14 +132,14 @@ def test_a_barred_part_blinks_amber_beside_green(rig: Rig) -> None:
     assert "green" in tower(rig)
 
 
-def test_the_end_of_the_control_leaves_what_the_file_calls_safe(rig: Rig) -> None:
+def test_shutdown_sets_the_lamps_to_their_configured_safe_state(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     rig.executor.shut_down()
     assert tower(rig) == {"red"}
 
 
-def test_what_switches_a_lamp_off_holds_no_cycle_and_it_is_lit_again(rig: Rig) -> None:
+def test_externally_switched_off_lamp_is_relit_without_a_hold(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     rig.sim.ports.io.write("lamp_green", False)  # somebody else
@@ -168,7 +168,7 @@ class Broken:
 
 
 @pytest.mark.parametrize("error", [DriverError("the module is away", "output"), ZeroDivisionError("odd")])
-def test_a_lamp_that_is_refused_is_told_once_and_stops_nothing(rig: Rig, error: BaseException) -> None:
+def test_rejected_lamp_output_is_reported_once_and_stops_nothing(rig: Rig, error: BaseException) -> None:
     broken = Broken(rig.sim.ports.io, error)
     ports = dataclasses.replace(rig.sim.ports, io=broken)  # type: ignore[arg-type]
     rig.executor = Executor(rig.machine, ports, rig.events.append, rig._passes)
@@ -182,7 +182,7 @@ def test_a_lamp_that_is_refused_is_told_once_and_stops_nothing(rig: Rig, error: 
     ]
 
 
-def test_of_a_lost_wire_nothing_is_told_or_switched(rig: Rig) -> None:
+def test_lamps_are_not_reported_or_switched_while_outputs_are_unknown(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     lost = dataclasses.replace(rig.sim.ports, unknown=lambda: frozenset({UnknownPart.OUTPUTS}))
@@ -192,7 +192,7 @@ def test_of_a_lost_wire_nothing_is_told_or_switched(rig: Rig) -> None:
     assert tower(rig) == {"green"}  # as it was left: nothing was written
 
 
-def test_the_lamps_are_tested_by_hand_at_rest_alone(rig: Rig) -> None:
+def test_lamps_can_be_tested_manually_only_at_rest(rig: Rig) -> None:
     rig.ready()
     rig.post(ForceOutput("lamp_red", True))
     rig.run(0.5)
@@ -215,7 +215,7 @@ def test_a_machine_at_rest_sleeps_with_a_lamp_on(rig: Rig) -> None:
     assert rig.executor._rest.wait_for_wakeup()
 
 
-def test_a_machine_without_lamps_is_as_it_was() -> None:
+def test_machine_without_lamps_switches_only_its_own_outputs() -> None:
     rig = Rig(every=FINE)
     assert rig.machine.lamp_outputs == ()
     rig.start(PART)
@@ -223,7 +223,7 @@ def test_a_machine_without_lamps_is_as_it_was() -> None:
     assert rig.shot.outputs == frozenset({"collet"})
 
 
-def test_the_snapshot_has_the_lamps_and_the_modes_have_not(rig: Rig) -> None:
+def test_lamps_are_in_the_snapshot_but_not_in_the_modal_outputs(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     assert "lamp_green" in rig.shot.outputs
@@ -247,9 +247,7 @@ def test_the_snapshot_has_the_lamps_and_the_modes_have_not(rig: Rig) -> None:
         ),
     ],
 )
-def test_a_machine_file_with_a_lamp_that_cannot_be_is_refused(
-    lamps: str, also: str, path: str, value: str
-) -> None:
+def test_machine_file_with_an_invalid_lamp_is_rejected(lamps: str, also: str, path: str, value: str) -> None:
     with pytest.raises(MachineFileError) as told:
         with_lamps(lamps, also)
     finding = told.value.findings[0]

@@ -49,12 +49,12 @@ def check(source: ProgramSource, setup: Setup, machine: Machine = LATHE) -> None
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
-def test_a_golden_is_stepped_through_to_its_end(path: Path) -> None:
+def test_golden_program_runs_to_its_end_in_single_block(path: Path) -> None:
     check(ProgramSource(path.stem, path.read_text("utf-8")), golden_setup(path))
 
 
 @pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
-def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
+def test_worked_example_runs_to_its_end_in_single_block(path: Path) -> None:
     if not path.exists():
         pytest.skip(f"the worked examples are not here: {FOLDER}")
     nose = {1: SecondaryOffset(-RADIUS, -RADIUS, RADIUS)}
@@ -66,7 +66,7 @@ def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["pinbar", "bushing", "grooves", "knob", "pin"])
-def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
+def test_sample_runs_to_its_end_in_single_block(name: str) -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     check(
         load_source(SAMPLES / f"{name}.nc"),
@@ -78,7 +78,7 @@ def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
     ("name", "machine"),
     [("roof.h", "ac-table-mill"), ("ring.mpf", "sinumerik-modulo"), ("ring.mpf", "sinumerik-linear")],
 )
-def test_a_sample_of_another_dialect_is_stepped_through_to_its_end(name: str, machine: str) -> None:
+def test_sample_of_another_dialect_runs_to_its_end_in_single_block(name: str, machine: str) -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     model = load_shipped_machine(machine)
     source = load_called_files(load_source(SAMPLES / name), [SAMPLES])
@@ -104,7 +104,7 @@ def stops_of(rig: Rig, most: int = 40) -> list[int]:
     return lines
 
 
-def test_blocks_that_go_nowhere_are_steps_like_all_others() -> None:
+def test_zero_length_blocks_are_single_block_steps() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start(NOWHERE)
@@ -112,14 +112,14 @@ def test_blocks_that_go_nowhere_are_steps_like_all_others() -> None:
     assert rig.shot.parts == 1
 
 
-def test_a_program_that_goes_nowhere_is_stepped_through() -> None:
+def test_program_of_zero_length_moves_can_be_single_stepped() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX0Z0\nX0\nG01Z0F10\nZ0\nM30\n")
     assert stops_of(rig) == [2, 3, 4, 5]
 
 
-def test_the_same_place_is_shown_block_by_block_and_nothing_moves() -> None:
+def test_zero_length_moves_are_shown_one_by_one_without_motion() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX.3Z.3\nX.3\nX.3\nX.3\nG01X.4F10\nM30\n")
@@ -144,7 +144,7 @@ def test_a_hold_in_a_step_ends_at_the_end_of_its_block() -> None:
     assert stops_of(rig) == [2, 3, 4]
 
 
-def test_without_single_block_the_last_block_counts_though_it_goes_nowhere() -> None:
+def test_final_zero_length_block_is_shown_without_single_block() -> None:
     """What is shown at the end of a stretch, and where a reset says it was, is the block that was done."""
     rig = Rig()
     rig.start("G90G94F300\nX.3Z.3\nX.3\nG04F5\nM30\n")
@@ -183,7 +183,7 @@ def test_single_block_switched_on_at_any_moment_stops_at_the_end_of_a_block(on: 
     assert rig.shot.demand[:2] == pytest.approx((0.3 * INCH, 0.1 * INCH), abs=1e-6)
 
 
-def test_a_thread_begins_behind_a_moment_in_which_the_control_was_away() -> None:
+def test_thread_waits_for_the_encoder_after_the_host_was_away() -> None:
     """Its encoder was not read meanwhile: that is waited for, and is no alarm."""
     rig = Rig()
     rig.post(SetSwitch("single_block", True))

@@ -54,7 +54,7 @@ from tests.texts import text
         (ForceOutput("no such", True), text("executor.no-output", output="no such")),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_reason_and_changes_nothing(asked: Command, why: str) -> None:
+def test_invalid_command_is_rejected_with_a_reason_and_changes_nothing(asked: Command, why: str) -> None:
     rig = Rig()
     rig.ready()
     before = rig.shot
@@ -66,7 +66,7 @@ def test_what_cannot_be_is_refused_with_its_reason_and_changes_nothing(asked: Co
         assert getattr(rig.shot, name) == getattr(before, name)
 
 
-def test_drives_stay_off_while_an_alarm_stands_and_no_jog_begins() -> None:
+def test_active_alarm_prevents_enabling_drives_and_jogging() -> None:
     rig = Rig()
     rig.sim.machine.press_estop()
     rig.run(0.1)
@@ -77,7 +77,7 @@ def test_drives_stay_off_while_an_alarm_stands_and_no_jog_begins() -> None:
     assert not rig.sim.ports.axes.sample().enabled
 
 
-def test_a_bar_for_the_next_part_is_told_once_and_taken_back_once() -> None:
+def test_next_part_block_is_reported_once_when_set_and_when_cleared() -> None:
     rig = Rig()
     for why in ("the insert is worn", "the insert is worn", "", ""):
         rig.post(BlockNextPart(why))
@@ -91,9 +91,7 @@ def test_a_bar_for_the_next_part_is_told_once_and_taken_back_once() -> None:
 
 
 @pytest.mark.parametrize(("frequency", "waves", "pieces"), [(2.0, 5, 40), (20.0, 16, 25), (90.0, 72, 12)])
-def test_a_wave_has_forty_pieces_none_shorter_than_two_milliseconds_and_twelve_at_least(
-    frequency: float, waves: int, pieces: int
-) -> None:
+def test_sine_wave_has_12_to_40_pieces_of_at_least_2_ms(frequency: float, waves: int, pieces: int) -> None:
     """20 Hz: a wave takes 50 ms. Five waves at least, and .8 s."""
     path = DriveTestMotion("X", Shape.SINE, 0.1, frequencies_hz=(frequency,))
     ramps = path.make_ramps(
@@ -125,7 +123,7 @@ def played(ramps: list[tuple[float, float, float]]) -> tuple[float, float]:
         (10.0, -20.0, 1.1, math.inf, 1.3, -19.5),  # .1 s to rest (.5), then as the first
     ],
 )
-def test_a_jog_goes_for_its_time_and_no_further_than_its_way(
+def test_jog_ramps_are_limited_by_time_and_distance(
     v0: float, v1: float, time: float, way: float, seconds: float, mm: float
 ) -> None:
     """At 100 mm/s²."""
@@ -135,14 +133,14 @@ def test_a_jog_goes_for_its_time_and_no_further_than_its_way(
 # --- threads ------------------------------------------------------------------------------------------------
 
 
-def test_a_chain_begins_at_its_first_place_with_its_first_lead() -> None:
+def test_thread_chain_starts_at_its_first_position_and_lead() -> None:
     """Half a turn more lead each turn: 3 mm in two turns are 1.5 on average, 1 at the begin."""
     growing = thread(1, 0.0, -3.0, 1.5, growth=0.5, x0=4.0)
     path = ThreadPath.from_blocks([growing, thread(2, -3.0, -7.0, 2.0), OUT], LIMITS)
     assert (path.x, path.z, path.lead) == pytest.approx((4.0, 0.0, 1.0))
 
 
-def test_joints_closer_than_a_turn_are_followed() -> None:
+def test_thread_joints_closer_than_a_revolution_are_followed() -> None:
     """Half a turn of lead 1, .75 of lead 2, half of lead 4: each joint within a turn of both ends."""
     chain = [thread(1, 0.0, -0.5, 1.0), thread(2, -0.5, -2.0, 2.0), thread(3, -2.0, -4.0, 4.0)]
     way, left = ThreadPath.from_blocks([*chain, OUT], LIMITS).plan_remaining_pass(0.0, 0.0, 1.0, [])
@@ -154,7 +152,7 @@ def test_joints_closer_than_a_turn_are_followed() -> None:
 # --- the spindle --------------------------------------------------------------------------------------------
 
 
-def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
+def test_angle_predictor_reproduces_a_cubic() -> None:
     """Turns t³ + 2t² + 3t: at .3 s .027 + .18 + .9, and 3t² + 4t + 3 turns a second there."""
     angle = SpindleAnglePredictor()
     for n in range(21):
@@ -166,7 +164,7 @@ def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
 
 
 @pytest.mark.parametrize("rpm", [60.0, 137.0, 600.0, 3000.0])
-def test_readings_of_4096_steps_tell_45_ms_ahead_within_three_steps(rpm: float) -> None:
+def test_prediction_45_ms_ahead_is_within_three_encoder_steps(rpm: float) -> None:
     """Each reading is off by half a step at most; a polynomial of a higher degree makes five of it."""
     for phase in range(7):
         angle, first = SpindleAnglePredictor(), 0.13 * phase / 4096.0
@@ -200,7 +198,7 @@ class _Port:
         return ""
 
 
-def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> None:
+def test_spindle_command_is_sent_once_and_again_when_permitted_again() -> None:
     """A drive may have dropped it; told at each tick it would be a wire full of the same word."""
     context, port = context_of(None), _Port()
     spindle = context.spindle
@@ -215,7 +213,7 @@ def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> No
     assert port.told == [600.0, 600.0]
 
 
-def test_a_wait_for_the_speed_says_what_keeps_the_spindle() -> None:
+def test_speed_wait_label_names_what_holds_the_spindle_back() -> None:
     """The operator where it is he, by what he can change; else only that it is waited for."""
     context = context_of(None)
     context.spindle.request_speed(SpindleRequest(600.0))
@@ -225,7 +223,7 @@ def test_a_wait_for_the_speed_says_what_keeps_the_spindle() -> None:
     assert wait.make_label() == text("executor.spindle-override-0")
 
 
-def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn() -> None:
+def test_at_speed_timeout_starts_when_the_operator_permits_rotation() -> None:
     """A minute with the pot at 0 is no alarm; then the timeout of the machine file counts whole."""
     context = context_of(None)
     context.spindle.request_speed(SpindleRequest(600.0))
@@ -260,7 +258,7 @@ class _Held:
         return self.there
 
 
-def test_an_angle_counts_from_when_the_drive_holds_it_until_it_is_let_go() -> None:
+def test_oriented_angle_is_reported_from_arrival_until_release() -> None:
     port = _Held()
     held = OrientationControl(port, 100.0)
     assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
@@ -279,7 +277,7 @@ def test_an_angle_counts_from_when_the_drive_holds_it_until_it_is_let_go() -> No
     assert port.told == [(90.0, 1), (90.0, -1), "release"]
 
 
-def test_an_angle_that_the_drive_lets_slip_is_an_alarm_once() -> None:
+def test_lost_orientation_raises_one_alarm() -> None:
     port = _Held(there=True)
     held = OrientationControl(port, 100.0)
     held.request_angle(45.0, 0)
@@ -320,7 +318,7 @@ def sample(context: MachineContext, homed: tuple[bool, ...], *, moving: bool = F
     return context.axis_sample._replace(homed=homed, moving=moving)
 
 
-def test_the_next_axis_waits_until_the_one_before_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_next_axis_homes_after_the_previous_one_stops(monkeypatch: pytest.MonkeyPatch) -> None:
     order, context, asked = homing(monkeypatch)
     assert order.start_homing("") == ""
     assert not order.home_next_axis()
@@ -341,7 +339,7 @@ def test_the_next_axis_waits_until_the_one_before_stands(monkeypatch: pytest.Mon
     assert order.home_next_axis()
 
 
-def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_stops(
+def test_homing_requires_a_lost_existing_axis_and_stops_on_cancel(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     order, context, asked = homing(monkeypatch)
@@ -361,7 +359,7 @@ def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_
 # --- outputs ------------------------------------------------------------------------------------------------
 
 
-def test_who_writes_through_the_remembered_outputs_reads_the_drivers_inputs() -> None:
+def test_commanded_outputs_port_reads_the_driver_inputs() -> None:
     context = context_of(None)
     assert dict(context.commanded_outputs.inputs()) == dict(context.ports.io.inputs())
     assert context.commanded_outputs.inputs()

@@ -53,7 +53,7 @@ def never_turns(rig: Rig, seconds: float = 3.0) -> None:
         assert rig.shot.rpm_command == 0.0
 
 
-def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do() -> None:
+def test_spindle_switch_in_hold_starts_nothing_but_cycle_start_does() -> None:
     rig = held()
     switched_off(rig)
     assert rig.shot.announced == ()
@@ -69,7 +69,7 @@ def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do() -> None:
 
 
 @pytest.mark.parametrize(("code", "way"), [("M03", "FORWARD"), ("M04", "REVERSE")])
-def test_the_announcement_names_the_way_it_turns(code: str, way: str) -> None:
+def test_spindle_announcement_states_the_direction(code: str, way: str) -> None:
     rig = held(CUT.replace("M03", code))
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
@@ -77,7 +77,7 @@ def test_the_announcement_names_the_way_it_turns(code: str, way: str) -> None:
     assert rig.shot.announced == (text("executor.spindle-starts", rpm=1500, direction=way),)
 
 
-def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() -> None:
+def test_cycle_start_before_the_announcement_is_readable_is_rejected() -> None:
     rig = held()
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
@@ -91,7 +91,7 @@ def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() ->
     assert (rig.state, rig.shot.start_refusal) == (MachineState.WAIT, "")
 
 
-def test_a_start_and_the_switch_in_one_tick_turn_nothing() -> None:
+def test_cycle_start_and_spindle_switch_in_one_tick_start_nothing() -> None:
     rig = held()
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
@@ -101,7 +101,7 @@ def test_a_start_and_the_switch_in_one_tick_turn_nothing() -> None:
     never_turns(rig)
 
 
-def test_a_pot_turned_up_meanwhile_is_another_announcement() -> None:
+def test_raised_spindle_override_renews_the_announcement() -> None:
     rig = held()
     rig.sim.machine.set_spindle_pot(0.0)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
@@ -115,7 +115,7 @@ def test_a_pot_turned_up_meanwhile_is_another_announcement() -> None:
     never_turns(rig, 1.0)
 
 
-def test_a_pot_at_0_stops_and_more_turns_nothing_before_the_palms() -> None:
+def test_spindle_stopped_by_zero_override_needs_cycle_start() -> None:
     rig = Rig()
     rig.start(CUT)
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
@@ -133,7 +133,7 @@ def test_a_pot_at_0_stops_and_more_turns_nothing_before_the_palms() -> None:
     assert rig.shot.parts == 1
 
 
-def test_a_station_that_was_silent_while_the_switch_was_turned_turns_nothing() -> None:
+def test_switch_turned_while_the_station_was_silent_starts_nothing() -> None:
     rig = held()
     switched_off(rig)
     rig.sim.machine.station_silent(True)
@@ -144,7 +144,7 @@ def test_a_station_that_was_silent_while_the_switch_was_turned_turns_nothing() -
     never_turns(rig)
 
 
-def test_a_spindle_that_stopped_by_itself_does_not_come_back_by_itself() -> None:
+def test_spindle_that_stopped_unexpectedly_does_not_restart_automatically() -> None:
     rig = held()
     rig.sim.machine.spindle_bog(0.0)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
@@ -157,7 +157,7 @@ def test_a_spindle_that_stopped_by_itself_does_not_come_back_by_itself() -> None
     rig.until(MachineState.IDLE)
 
 
-def test_estop_in_a_cut_leaves_nothing_that_could_start() -> None:
+def test_spindle_does_not_restart_after_estop_in_a_cut() -> None:
     rig = held()
     rig.sim.machine.press_estop()
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
@@ -169,7 +169,7 @@ def test_estop_in_a_cut_leaves_nothing_that_could_start() -> None:
     assert rig.shot.announced == ()
 
 
-def test_reset_leaves_nothing_that_could_start() -> None:
+def test_spindle_does_not_restart_after_reset() -> None:
     rig = held()
     switched_off(rig)
     rig.post(Reset())
@@ -179,7 +179,7 @@ def test_reset_leaves_nothing_that_could_start() -> None:
     assert rig.shot.announced == ()
 
 
-def test_m05_with_the_switch_off_passes_and_a_cut_does_not() -> None:
+def test_m05_passes_with_the_spindle_switch_off_and_a_cut_does_not() -> None:
     rig = Rig()
     rig.sim.machine.set_spindle_auto(False)
     rig.start("G90G94F300\nM03S1500\nM05\nG01F10Z-.1\nM30\n")
@@ -187,14 +187,14 @@ def test_m05_with_the_switch_off_passes_and_a_cut_does_not() -> None:
     assert rig.shot.parts == 1
 
 
-def test_nothing_is_announced_where_the_spindle_turns() -> None:
+def test_turning_spindle_is_not_announced() -> None:
     rig = held()
     assert rig.shot.announced == ()
     rig.post(CycleStart())
     rig.until(MachineState.IDLE)
 
 
-def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
+def test_waiting_spindle_does_not_start_with_an_open_collet() -> None:
     rig = held()
     switched_off(rig)
     rig.sim.machine.collet_sensor_stuck()
@@ -206,7 +206,7 @@ def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
     never_turns(rig)
 
 
-def test_a_collet_that_the_program_has_opened_is_closed_behind_a_reset() -> None:
+def test_collet_opened_by_the_program_can_be_closed_after_a_reset() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S600\nM13\nG04F5\nM12\nM30\n")
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
@@ -244,7 +244,7 @@ def left_turning() -> Rig:
     return rig
 
 
-def test_between_programs_the_switch_stops_it_and_starts_it_again() -> None:
+def test_spindle_switch_stops_and_restarts_the_spindle_between_programs() -> None:
     rig = left_turning()
     switched_off(rig)
     assert rig.shot.announced == (text("executor.switch-to-auto", what=SAID),)
@@ -253,7 +253,7 @@ def test_between_programs_the_switch_stops_it_and_starts_it_again() -> None:
     assert rig.shot.announced == ()
 
 
-def test_a_switch_that_only_flickered_does_not_start_it() -> None:
+def test_flicker_of_the_spindle_switch_does_not_start_the_spindle() -> None:
     rig = left_turning()
     rig.sim.machine.set_spindle_auto(False)
     rig.run(0.1)
@@ -263,7 +263,7 @@ def test_a_switch_that_only_flickered_does_not_start_it() -> None:
     assert any(SAID in said for said in rig.said("refused"))
 
 
-def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
+def test_raising_zero_override_between_programs_does_not_start_spindle() -> None:
     rig = left_turning()
     rig.sim.machine.set_spindle_pot(0.0)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
@@ -275,7 +275,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
 
 
-def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_programs() -> None:
+def test_switch_turned_with_silent_station_starts_nothing_between_programs() -> None:
     rig = left_turning()
     switched_off(rig)
     rig.run(MIN_READING_TIME_S)
@@ -287,7 +287,7 @@ def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_p
     never_turns(rig)
 
 
-def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
+def test_switch_turned_after_a_stall_starts_nothing() -> None:
     rig = left_turning()
     switched_off(rig)
     rig.run(MIN_READING_TIME_S)
@@ -296,7 +296,7 @@ def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
     never_turns(rig)
 
 
-def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
+def test_switch_does_not_start_the_spindle_with_an_open_collet() -> None:
     rig = left_turning()
     switched_off(rig)
     rig.run(MIN_READING_TIME_S)
@@ -334,7 +334,7 @@ def guarded(program: str = CUT) -> Rig:
     return rig
 
 
-def test_an_opened_guard_stops_feed_and_spindle_and_closing_it_starts_nothing() -> None:
+def test_open_guard_stops_feed_and_spindle_and_closing_starts_nothing() -> None:
     rig = guarded()
     rig.sim.machine.set_input("guard", False)
     rig.until(MachineState.HOLD)
@@ -353,7 +353,7 @@ def test_an_opened_guard_stops_feed_and_spindle_and_closing_it_starts_nothing() 
     assert rig.shot.parts == 1
 
 
-def test_an_opened_guard_lets_a_thread_be_followed_or_drawn_out() -> None:
+def test_open_guard_lets_a_thread_finish_or_retract() -> None:
     rig = guarded("G90G94F300\nM03S600\nX.5Z.2\nG01F40Z.1\nG33X.48Z-.6I.01K.05O\nM30\n")
     rig.until_true(lambda shot: shot.line == 5 and shot.actual[1] < -5.0)
     rig.sim.machine.set_input("guard", False)
@@ -361,7 +361,7 @@ def test_an_opened_guard_lets_a_thread_be_followed_or_drawn_out() -> None:
     assert rig.shot.actual[0] > 0.48 * 25.4 + 0.05  # out of the thread
 
 
-def test_no_start_with_the_guard_open_and_none_by_closing_it() -> None:
+def test_start_is_rejected_with_open_guard_and_closing_it_starts_nothing() -> None:
     machine = load_machine()
     interlocks = dataclasses.replace(machine.interlocks, guard_stops=True)
     rig = Rig(machine=dataclasses.replace(machine, interlocks=interlocks))
@@ -374,7 +374,7 @@ def test_no_start_with_the_guard_open_and_none_by_closing_it() -> None:
     assert rig.state is MachineState.IDLE
 
 
-def test_a_refusal_ends_with_its_cause() -> None:
+def test_start_refusal_is_cleared_with_its_cause() -> None:
     rig = guarded()
     rig.sim.machine.set_input("guard", False)
     rig.until(MachineState.HOLD)
@@ -399,7 +399,7 @@ def warned(*what: str) -> Rig:
     return rig
 
 
-def test_what_was_warned_of_is_read_before_the_first_start() -> None:
+def test_warnings_are_announced_before_the_first_start() -> None:
     rig = warned(WARNED, "LINE 4: CUTS-AIR")
     said = text("executor.warning", what=text("executor.more-warnings", what=WARNED, count=1))
     rig.post(CycleStart())
@@ -412,7 +412,7 @@ def test_what_was_warned_of_is_read_before_the_first_start() -> None:
     assert rig.shot.announced == ()
 
 
-def test_it_is_read_while_the_drives_are_off_too() -> None:
+def test_warnings_can_be_acknowledged_while_the_drives_are_off() -> None:
     rig = Rig()
     job = rig.load(CUT)
     rig.post(SupplyProof(Proof(job.digest, (), warnings=(WARNED,))))
@@ -424,7 +424,7 @@ def test_it_is_read_while_the_drives_are_off_too() -> None:
     assert rig.state in {MachineState.RUN, MachineState.WAIT}
 
 
-def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> None:
+def test_warnings_reappear_between_parts_without_blocking_the_next() -> None:
     rig = warned(WARNED)
     rig.run(MIN_READING_TIME_S)
     rig.post(CycleStart())
@@ -435,7 +435,7 @@ def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> N
     assert rig.state in {MachineState.RUN, MachineState.WAIT}
 
 
-def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
+def test_warnings_do_not_apply_to_mdi_or_another_program() -> None:
     rig = warned(WARNED)
     rig.post(PrepareStart(StartAction.MDI_LINE))
     assert rig.shot.announced == ()
@@ -445,7 +445,7 @@ def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
     assert rig.shot.announced == ()
 
 
-def test_going_on_after_a_hold_announces_nothing_of_it() -> None:
+def test_resume_after_a_hold_does_not_repeat_the_warnings() -> None:
     rig = warned(WARNED)
     rig.run(MIN_READING_TIME_S)
     rig.post(CycleStart())

@@ -45,13 +45,13 @@ def refused(rig: Rig) -> str:
     return rig.shot.start_refusal
 
 
-def test_without_a_program() -> None:
+def test_start_without_a_program_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     assert refused(rig) == text("executor.no-program")
 
 
-def test_without_a_proof_until_it_comes() -> None:
+def test_start_is_rejected_until_the_proof_arrives() -> None:
     rig = Rig()
     rig.ready()
     job = make_job(ProgramSource("PART", TEXT), rig.load(TEXT).setup)
@@ -64,7 +64,7 @@ def test_without_a_proof_until_it_comes() -> None:
     assert rig.state is MachineState.RUN
 
 
-def test_with_a_proof_of_another_program() -> None:
+def test_start_with_a_proof_of_another_program_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
@@ -73,7 +73,7 @@ def test_with_a_proof_of_another_program() -> None:
     assert text("executor.other-proof") in refused(rig)
 
 
-def test_with_offsets_changed_since_the_proof() -> None:
+def test_start_with_offsets_changed_since_the_proof_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
@@ -83,7 +83,7 @@ def test_with_offsets_changed_since_the_proof() -> None:
     assert text("executor.other-proof") in refused(rig)
 
 
-def test_with_errors_in_the_proof() -> None:
+def test_start_with_errors_in_the_proof_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
@@ -91,7 +91,7 @@ def test_with_errors_in_the_proof() -> None:
     assert refused(rig) == text("executor.program-errors", errors="line 2: no")
 
 
-def test_with_a_tool_that_was_never_set() -> None:
+def test_start_with_an_unset_tool_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
@@ -99,7 +99,7 @@ def test_with_a_tool_that_was_never_set() -> None:
     assert refused(rig) == text("executor.tool-offset-unset", tools="T3, T4")
 
 
-def test_a_tool_that_the_program_measures_itself_needs_no_offset() -> None:
+def test_tool_measured_by_the_program_needs_no_offset() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
@@ -107,13 +107,13 @@ def test_a_tool_that_the_program_measures_itself_needs_no_offset() -> None:
     assert refused(rig) == text("executor.tool-offset-unset", tools="T3")
 
 
-def test_with_drives_off() -> None:
+def test_start_with_drives_off_is_rejected() -> None:
     rig = Rig()
     rig.load(TEXT)
     assert text("executor.drives-off") in refused(rig)
 
 
-def test_in_estop_and_after_its_release() -> None:
+def test_start_is_rejected_in_estop_and_until_drives_are_enabled() -> None:
     rig = Rig()
     rig.ready()
     rig.load(TEXT)
@@ -130,7 +130,7 @@ def test_in_estop_and_after_its_release() -> None:
     assert rig.state is MachineState.RUN
 
 
-def test_with_an_alarm_until_reset() -> None:
+def test_start_with_an_alarm_is_rejected_until_reset() -> None:
     rig = Rig()
     rig.ready()
     rig.load(TEXT)
@@ -145,14 +145,14 @@ def test_with_an_alarm_until_reset() -> None:
     assert rig.shot.alarms == ()
 
 
-def test_with_an_axis_that_is_not_homed() -> None:
+def test_start_with_an_unhomed_axis_is_rejected() -> None:
     rig = Rig(unhomed_machine())
     rig.ready()
     rig.load(TEXT)
     assert refused(rig) == text("executor.not-homed", axes="Z")
 
 
-def test_with_a_silent_station() -> None:
+def test_start_with_a_silent_station_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     rig.load(TEXT)
@@ -160,7 +160,7 @@ def test_with_a_silent_station() -> None:
     assert refused(rig) == text("executor.station-silent-refused")
 
 
-def test_one_button_is_not_two_hands_on_a_real_machine() -> None:
+def test_screen_start_is_rejected_on_a_real_machine() -> None:
     rig = Rig(dataclasses.replace(load_machine(), backend="canopen"))
     rig.ready()
     rig.load(TEXT)
@@ -183,7 +183,7 @@ def test_two_starts_within_a_bounce_are_one_cycle() -> None:
     assert rig.said("start") == ["PART"]
 
 
-def test_start_while_running_is_nothing() -> None:
+def test_start_while_running_has_no_effect() -> None:
     rig = Rig()
     rig.start("G90G94F300\nX3\nX0\nM30\n")
     for _ in range(3):
@@ -194,7 +194,7 @@ def test_start_while_running_is_nothing() -> None:
     assert rig.said("refused") == []
 
 
-def test_another_program_during_a_cycle_is_refused() -> None:
+def test_loading_another_program_during_a_cycle_is_rejected() -> None:
     rig = Rig()
     rig.start("G90G94F300\nX3\nM00\nM30\n")
     digest = rig.shot.program
@@ -210,7 +210,7 @@ def test_another_program_during_a_cycle_is_refused() -> None:
 
 @pytest.mark.parametrize("state", [MachineState.ESTOP, MachineState.DISABLED, MachineState.FAULT])
 @pytest.mark.parametrize("command", [CycleStart(), SetSpindleLimit(1000.0)])
-def test_nothing_moves_in_dead_states(state: MachineState, command: Command) -> None:
+def test_commands_in_stopped_states_move_nothing(state: MachineState, command: Command) -> None:
     rig = Rig()
     rig.load(TEXT)
     if state is MachineState.ESTOP:
@@ -234,7 +234,7 @@ def test_a_spindle_limit_out_of_range_is_refused(rpm: float) -> None:
     assert rig.shot.rpm_command == 3000
 
 
-def test_the_spindle_limit_holds_until_it_is_lifted() -> None:
+def test_spindle_limit_applies_until_it_is_removed() -> None:
     rig = Rig()
     rig.post(SetSpindleLimit(1200.0))
     rig.start("G90G94F300\nM03S3000\nG04F3\nM05\nG04F3\nM03S3000\nG04F9\nM30\n")
@@ -246,7 +246,7 @@ def test_the_spindle_limit_holds_until_it_is_lifted() -> None:
 
 
 @pytest.mark.parametrize("command", [CycleStart(), Jog("X", 10.0, 0.2)])
-def test_a_press_that_a_stalled_host_finds_too_late_moves_nothing(command: Command) -> None:
+def test_late_press_after_a_host_stall_moves_nothing(command: Command) -> None:
     rig = Rig()
     rig.ready()
     rig.load(TEXT)
@@ -258,7 +258,7 @@ def test_a_press_that_a_stalled_host_finds_too_late_moves_nothing(command: Comma
     assert nothing_moved(rig)
 
 
-def test_a_hold_is_never_too_late() -> None:
+def test_late_feed_hold_is_always_accepted() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F5Z-5\nM30\n")
     rig.executor.post(FeedHold())
@@ -274,17 +274,17 @@ FORBIDDEN = sorted(
 
 
 @pytest.mark.parametrize(("old", "new"), ALLOWED)
-def test_allowed_transitions(old: MachineState, new: MachineState) -> None:
+def test_allowed_transitions_are_accepted(old: MachineState, new: MachineState) -> None:
     require_transition(old, new)
 
 
 @pytest.mark.parametrize(("old", "new"), FORBIDDEN)
-def test_forbidden_transitions(old: MachineState, new: MachineState) -> None:
+def test_forbidden_transitions_raise_an_error(old: MachineState, new: MachineState) -> None:
     with pytest.raises(TransitionError, match=f"{old.value} .* {new.value}$"):
         require_transition(old, new)
 
 
-def test_nothing_leads_from_dead_states_into_motion() -> None:
+def test_stopped_states_have_no_transition_to_motion() -> None:
     moving = {
         MachineState.RUN,
         MachineState.WAIT,
@@ -297,7 +297,7 @@ def test_nothing_leads_from_dead_states_into_motion() -> None:
     assert STATE_TRANSITIONS[MachineState.ESTOP] == {MachineState.DISABLED}
 
 
-def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_forbidden_internal_transition_raises_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     rig.start("G90G94F300\nX3\nM30\n")
     rig.run(0.3)
@@ -308,7 +308,7 @@ def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPat
     assert not rig.sim.ports.axes.sample().enabled
 
 
-def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_start_of_a_thread_without_an_encoder_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     rig.ready()
     program = "G90G94F300\nT1\nM03S500\nX.5Z.2\nG33X.45Z-.5K.05\nM30\n"
@@ -323,7 +323,7 @@ def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatc
     assert refused(rig) == text("executor.thread-no-encoder", line=5)
 
 
-def test_an_m_function_that_nothing_answers_says_which_lines_bind_it() -> None:
+def test_unassigned_m_function_refusal_shows_the_machine_file_lines() -> None:
     rig = Rig()
     rig.ready()
     job = make_job(ProgramSource("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), Setup())
@@ -342,7 +342,7 @@ def slapped(rig: Rig, seconds: float) -> None:
 
 
 @pytest.mark.parametrize(("seconds", "starts"), [(0.0, False), (0.3, False), (0.7, False), (0.9, True)])
-def test_an_answer_and_palms_in_one_slap_start_nothing(seconds: float, starts: bool) -> None:
+def test_confirmation_and_two_hand_start_together_start_nothing(seconds: float, starts: bool) -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S900\nG01X.5Z.5F5\nM30\n")
     rig.run(3.0)
@@ -360,7 +360,7 @@ def test_an_answer_and_palms_in_one_slap_start_nothing(seconds: float, starts: b
 
 
 @pytest.mark.parametrize(("seconds", "starts"), [(0.0, False), (0.7, False), (0.9, True)])
-def test_an_answer_and_the_one_button_in_one_slap_start_nothing(seconds: float, starts: bool) -> None:
+def test_confirmation_and_single_start_button_together_start_nothing(seconds: float, starts: bool) -> None:
     machine = load_machine()
     rig = Rig(
         machine=dataclasses.replace(

@@ -32,7 +32,7 @@ def stop_of(rig: Rig) -> tuple[str, str]:
     return rig.shot.stop.code, rig.shot.stop.cause
 
 
-def test_a_hold_says_who_pressed_it() -> None:
+def test_hold_reports_its_source() -> None:
     rig = cutting()
     rig.post(FeedHold("Esc at the screen"))
     rig.until(MachineState.HOLD)
@@ -43,7 +43,7 @@ def test_a_hold_says_who_pressed_it() -> None:
     assert rig.shot.stop is None
 
 
-def test_a_press_that_arrives_again_holds_no_cycle_that_was_started_since() -> None:
+def test_repeated_press_does_not_hold_a_cycle_started_since() -> None:
     rig = cutting()
     rig.post(FeedHold(press=7))
     rig.until(MachineState.HOLD)
@@ -57,7 +57,7 @@ def test_a_press_that_arrives_again_holds_no_cycle_that_was_started_since() -> N
     rig.until(MachineState.HOLD)
 
 
-def test_presses_without_a_number_all_hold() -> None:
+def test_presses_without_a_number_always_hold() -> None:
     rig = cutting()
     for _ in range(2):
         rig.post(FeedHold())
@@ -68,7 +68,7 @@ def test_presses_without_a_number_all_hold() -> None:
     assert rig.numbers("stop") == [702, 702]
 
 
-def test_a_hold_by_the_station_says_so() -> None:
+def test_hold_by_the_station_reports_the_hold_button() -> None:
     rig = cutting()
     rig.sim.machine.press_hold()
     rig.until(MachineState.HOLD)
@@ -79,7 +79,7 @@ def test_a_hold_by_the_station_says_so() -> None:
     )
 
 
-def test_an_estop_has_its_entry() -> None:
+def test_estop_has_a_stop_entry() -> None:
     rig = cutting()
     rig.sim.machine.press_estop()
     rig.until(MachineState.ESTOP)
@@ -90,7 +90,7 @@ def test_an_estop_has_its_entry() -> None:
     assert rig.shot.stop is None
 
 
-def test_stops_of_the_program_and_single_block_are_told_apart() -> None:
+def test_program_stops_and_single_block_stops_are_distinguished() -> None:
     rig = Rig()
     rig.post(SetSwitch("optional_stop", True))
     rig.start(CUT)
@@ -107,7 +107,7 @@ def test_stops_of_the_program_and_single_block_are_told_apart() -> None:
     assert stop_of(rig)[0] == "optional-stop"
 
 
-def test_blocks_stepped_through_are_one_line_of_the_log_and_each_is_shown() -> None:
+def test_single_steps_share_one_log_line_and_are_all_shown() -> None:
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX0Z0\nG01F20X.1\nX.2\nX.3\nX.4\nM30\n")
@@ -124,7 +124,7 @@ def test_blocks_stepped_through_are_one_line_of_the_log_and_each_is_shown() -> N
     assert len(rig.said("stop")) == 1
 
 
-def test_a_reset_that_gives_the_program_up_is_in_the_log() -> None:
+def test_reset_that_ends_the_program_is_logged() -> None:
     rig = cutting()
     rig.post(FeedHold())
     rig.until(MachineState.HOLD)
@@ -134,7 +134,7 @@ def test_a_reset_that_gives_the_program_up_is_in_the_log() -> None:
     assert rig.shot.stop is None
 
 
-def test_a_silent_station_is_a_hold_of_its_own() -> None:
+def test_silent_station_causes_its_own_kind_of_hold() -> None:
     rig = cutting()
     rig.sim.machine.station_silent()
     rig.until(MachineState.HOLD)
@@ -158,7 +158,7 @@ def too_late(monkeypatch: pytest.MonkeyPatch) -> Callable[[Rig, bool], None]:
     return turn
 
 
-def test_a_late_computer_in_a_cut_is_a_hold_and_the_part_is_made(
+def test_late_computer_in_a_cut_holds_and_the_part_is_completed(
     too_late: Callable[[Rig, bool], None],
 ) -> None:
     rig = cutting()
@@ -175,7 +175,7 @@ def test_a_late_computer_in_a_cut_is_a_hold_and_the_part_is_made(
     assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
 
 
-def test_a_computer_that_is_late_within_a_tick_does_not_go_on_by_itself(
+def test_late_computer_within_a_tick_does_not_resume_automatically(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The queue runs dry between two looks of one tick: the slides rest, and only the palms go on."""
@@ -201,7 +201,7 @@ def test_a_computer_that_is_late_within_a_tick_does_not_go_on_by_itself(
     assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
 
 
-def test_a_late_computer_before_the_first_move_is_a_hold_too(
+def test_late_computer_before_the_first_move_also_holds(
     too_late: Callable[[Rig, bool], None],
 ) -> None:
     rig = Rig()
@@ -230,7 +230,7 @@ def test_a_late_computer_in_a_jog_ends_the_jog_and_is_in_the_log(
     assert rig.said("refused")[0] == text("executor.computer-late")
 
 
-def test_a_hold_without_an_entry_tells_its_reason_all_the_same() -> None:
+def test_hold_reason_without_a_catalog_entry_is_shown_as_text() -> None:
     assert find_hold_code("SOMETHING NEW", "") == ("held", "something new")
     assert find_hold_code("", "") == ("feed-hold", "")
 
@@ -248,12 +248,12 @@ def reasons() -> list[str]:
     return [word for word in words if isinstance(word, str) and word.isupper()]
 
 
-def test_every_reason_of_a_hold_is_in_the_catalogue() -> None:
+def test_every_hold_reason_has_a_hold_code() -> None:
     found = reasons()
     assert len(found) >= 3
     assert [reason for reason in found if reason not in HOLD_CODES] == []
 
 
-def test_holds_are_found_by_their_words() -> None:
+def test_number_of_hold_codes_equals_number_of_catalog_holds() -> None:
     holds = [entry for entry in CATALOG.values() if entry.reaction is Reaction.HOLD]
     assert len(HOLD_CODES) == len(holds)

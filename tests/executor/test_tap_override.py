@@ -21,7 +21,7 @@ TAP = (
 )
 
 
-def test_a_tap_follows_the_spindle_alone() -> None:
+def test_tap_follows_only_the_spindle_override() -> None:
     """1.5 mm at S600 are 15 mm/s; with the spindle at 80 % 12 mm/s, whatever the feed override is."""
     setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     blocks = list(interpret_program(ProgramSource("T.H", TAP), setup).generate_blocks())

@@ -54,7 +54,7 @@ CHAIN = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 2.0)]
 OUT = thread(3, -8.0, -8.0, 40.0, kind=BlockKind.RAPID, x=9.0, per_rev=False, continues=False)
 
 
-def test_behind_a_joint_z_goes_as_the_next_lead_says() -> None:
+def test_z_follows_the_next_lead_after_a_joint() -> None:
     curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.length_mm == pytest.approx(6.0)
     for s, z, lead in ((2.0, -2.0, -1.0), (5.0, -6.0, -2.0)):
@@ -63,7 +63,7 @@ def test_behind_a_joint_z_goes_as_the_next_lead_says() -> None:
     assert curve.compute_max_acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
 
 
-def test_a_joint_is_rounded_off_as_far_as_half_of_the_acceleration_takes() -> None:
+def test_joint_is_rounded_using_half_of_the_acceleration() -> None:
     """From 1 to 2 mm/s at A/2 takes 2/A s, so 1/A mm of s on each side; in its middle Z is 1/4A behind."""
     curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.s_mm[1] == pytest.approx(4.0 - 1.0 / A)
@@ -71,7 +71,7 @@ def test_a_joint_is_rounded_off_as_far_as_half_of_the_acceleration_takes() -> No
     assert curve.evaluate(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
 
 
-def test_where_x_changes_its_speed_more_than_z_x_says_how_far_a_joint_is_rounded() -> None:
+def test_joint_rounding_is_set_by_the_axis_that_changes_speed_most() -> None:
     """A cylinder goes over into 45 degrees outwards: from 0 to 1 mm/s of X at half of A/4 takes 8/A s."""
     cone = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 1.0, x=9.0)]
     curve = build_thread_curve(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
@@ -80,12 +80,12 @@ def test_where_x_changes_its_speed_more_than_z_x_says_how_far_a_joint_is_rounded
     assert curve.evaluate(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
 
 
-def test_a_joint_that_changes_nothing_stays_as_it_is() -> None:
+def test_joint_without_a_change_is_unchanged() -> None:
     same = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -6.0, 1.0)]
     assert build_thread_curve(same, LIMITS).s_mm.tolist() == [0.0, 4.0, 6.0]
 
 
-def test_a_lead_that_grows_is_followed_turn_by_turn() -> None:
+def test_growing_lead_is_followed_per_revolution() -> None:
     """From 1 mm on .5 mm more a turn: (1 + q/4)·q, 1.25 mm in a turn and 3 mm in two; 1.5 on average."""
     curve = build_thread_curve([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
     assert len(curve.s_mm) == 33  # sixteen a turn
@@ -95,12 +95,12 @@ def test_a_lead_that_grows_is_followed_turn_by_turn() -> None:
 
 
 @pytest.mark.parametrize("block", [thread(1, -4.0, -4.0, 1.0), thread(1, 0.0, -4.0, 0.0)])
-def test_a_thread_without_way_or_lead_is_refused(block: Block) -> None:
+def test_thread_without_length_or_lead_is_rejected(block: Block) -> None:
     with raises_code(AlarmError, "program", text("executor.thread-nothing")):
         ThreadPath.from_blocks([block], LIMITS)
 
 
-def test_the_slides_follow_a_chain_and_leave_it_by_its_rapid() -> None:
+def test_axes_follow_a_thread_chain_and_leave_it_by_its_rapid() -> None:
     """At 1 mm/s of s: Z −2 after two seconds, −6 after five, at rest at −8; then X goes out to 9."""
     path = ThreadPath.from_blocks([*CHAIN, OUT], LIMITS)
     assert (path.lead, path.z_direction, path.retract_x_mm, path.exit_length_mm) == (1.0, -1.0, 9.0, 0.0)
@@ -116,7 +116,7 @@ def test_the_slides_follow_a_chain_and_leave_it_by_its_rapid() -> None:
     assert place(back, 99.0) == pytest.approx((9.0, -8.0))
 
 
-def test_a_pull_out_in_step_goes_on_by_its_own_way() -> None:
+def test_synchronized_pull_out_follows_its_own_path() -> None:
     """1 mm of Z at a lead of 2 is half a turn of the first lead."""
     out = thread(3, -8.0, -9.0, 2.0, x=6.0, continues=False)
     path = ThreadPath.from_blocks([*CHAIN, out], LIMITS)
@@ -127,7 +127,7 @@ def test_a_pull_out_in_step_goes_on_by_its_own_way() -> None:
     assert place(way, 99.0) == pytest.approx((6.0, -9.0))
 
 
-def test_a_chain_is_stopped_along_itself() -> None:
+def test_stop_in_a_thread_chain_follows_the_chain() -> None:
     """At s 5 with 1 mm/s; s brakes with A/2: 1/A mm further, of which Z makes two."""
     path = ThreadPath.from_blocks([*CHAIN, OUT], LIMITS)
     assert place(path.make_stop(0.0, 5.0, 1.0), 99.0) == pytest.approx((5.0, -6.0 - 2.0 / A), abs=1e-9)
@@ -148,14 +148,14 @@ def retract(measured: float, behind: Sequence[Block], **words: object) -> Thread
         (20.0, text("executor.spindle-fell", rpm=20, ordered=600)),
     ],
 )
-def test_why_a_thread_was_left_is_told(measured: float, why: str) -> None:
+def test_reason_for_leaving_a_thread_is_reported(measured: float, why: str) -> None:
     lost = retract(measured, [OUT])
     lost.require_axes_in_thread((8.0, -2.0, 0.0))  # not out yet
     with raises_code(AlarmError, "thread-lost", text("executor.left-thread", why=why, z="-2.000")):
         lost.require_axes_in_thread((9.0, -2.0, 0.0))
 
 
-def test_a_thread_left_in_its_pull_out_is_told_so_and_inches_are_inches() -> None:
+def test_thread_left_in_its_pull_out_is_reported_in_program_units() -> None:
     fell = text("executor.spindle-fell", rpm=20, ordered=600)
     with raises_code(AlarmError, "thread-lost", text("executor.thread-cut", why=fell)):
         retract(20.0, []).require_axes_in_thread((5.0, -4.0, 0.0))
@@ -178,7 +178,7 @@ class BrakingAxes:
         return (5.0, z, 0.0), (0.0, 0.0 if t >= 1.0 else -1.0, 0.0)
 
 
-def test_a_late_tick_draws_the_tool_out_from_where_it_is_at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_late_tick_retracts_the_tool_from_its_rest_position(monkeypatch: pytest.MonkeyPatch) -> None:
     """The time of the tick is before the end of the braking; the axes are at rest when they are asked."""
     begun: list[Block] = []
     motion = object.__new__(SetpointMotion)

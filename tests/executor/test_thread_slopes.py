@@ -133,7 +133,7 @@ _PAIRS = [(60, 0.2), (150, 0.4), (300, 0.1), (300, 0.4), (600, 0.05), (600, 0.2)
 )
 @example(pair=(300, 0.1), form="P", slope="pot", to=0.5, z=-0.2, gear=True, clock="step")
 @example(pair=(300, 0.1), form="straight", slope="up", to=0.3, z=0.1, gear=True, clock="creeping")
-def test_a_pass_is_followed_to_its_end_or_drawn_out(
+def test_thread_pass_is_completed_or_retracted(
     pair: tuple[int, float], form: str, slope: str, to: float, z: float, gear: bool, clock: str
 ) -> None:
     kind = CreepingClock if clock == "creeping" else ManualClock
@@ -167,7 +167,7 @@ def _clear(rig: Rig) -> bool:
 
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])
 @pytest.mark.parametrize("z", [0.49, 0.1, -0.3, -0.65])
-def test_a_pot_turned_up_is_no_lost_spindle(z: float, gear: bool) -> None:
+def test_raised_override_is_not_a_lost_spindle(z: float, gear: bool) -> None:
     """From 40 to 100 % the command is at once more than twice what is measured."""
     rig, _ = begun(300, 0.1, "P", 0.4, gear=gear)
     rig.until_true(at_z(z))
@@ -177,7 +177,7 @@ def test_a_pot_turned_up_is_no_lost_spindle(z: float, gear: bool) -> None:
 
 
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])
-def test_a_drive_that_turns_the_wrong_way_is_a_lost_spindle(gear: bool) -> None:
+def test_drive_turning_in_the_wrong_direction_is_a_lost_spindle(gear: bool) -> None:
     rig, _ = begun(300, 0.1, "P", gear=gear)
     rig.until_true(at_z(-0.2))
     rig.sim.ports.spindle.set_speed(-300.0)  # an inverter gone mad: nobody asked for it
@@ -188,7 +188,7 @@ def test_a_drive_that_turns_the_wrong_way_is_a_lost_spindle(gear: bool) -> None:
 
 
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])
-def test_the_tool_leaves_the_thread_by_x_alone_and_never_deeper(gear: bool) -> None:
+def test_tool_leaves_the_thread_along_x_and_never_deeper(gear: bool) -> None:
     rig, slides = begun(600, 0.2, "P", gear=gear)
     rig.until_true(at_z(-0.3))
     began = len(slides.rows)
@@ -201,7 +201,7 @@ def test_the_tool_leaves_the_thread_by_x_alone_and_never_deeper(gear: bool) -> N
     assert x[-1] == pytest.approx(OUT * INCH, abs=1e-4)
 
 
-def test_the_alarm_tells_why_and_what_the_thread_is() -> None:
+def test_thread_alarm_reports_the_cause_and_the_thread() -> None:
     rig, slides = begun(300, 0.1, "P")
     rig.until_true(at_z(-0.3))
     rig.sim.machine.set_spindle_auto(False)
@@ -212,7 +212,7 @@ def test_the_alarm_tells_why_and_what_the_thread_is() -> None:
     )
 
 
-def test_in_the_pull_out_the_thread_is_told_as_cut() -> None:
+def test_spindle_loss_in_the_pull_out_reports_the_thread_as_cut() -> None:
     rig, _ = begun(300, 0.1, "P")
     rig.until_true(lambda shot: shot.block_text.endswith("P"))
     rig.sim.machine.spindle_bog(0.1)
@@ -221,7 +221,7 @@ def test_in_the_pull_out_the_thread_is_told_as_cut() -> None:
 
 
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])
-def test_a_pass_that_waits_for_its_index_is_given_back(gear: bool) -> None:
+def test_pass_waiting_for_its_index_is_canceled_and_repeated(gear: bool) -> None:
     """Switched OFF before anything has moved: a hold, and the pass begins at another index."""
     rig, slides = begun(60, 0.2, "P", gear=gear)
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
@@ -251,7 +251,7 @@ def test_a_stall_is_seen_while_the_command_still_rises() -> None:
     assert rig.shot.demand[0] > 0.6 * INCH
 
 
-def test_a_hold_that_comes_as_the_pass_begins_acts_at_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hold_at_the_start_of_a_pass_acts_at_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     """The driver foresees the first motion, the control does not yet: no alarm, the pass is made."""
     rig, _ = begun(300, 0.1, "P")
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
@@ -267,7 +267,7 @@ def test_a_hold_that_comes_as_the_pass_begins_acts_at_its_end(monkeypatch: pytes
     assert rig.shot.demand[0] == pytest.approx(OUT * INCH, abs=1e-4)
 
 
-def test_a_spindle_that_turns_the_other_way_at_its_full_speed_is_lost() -> None:
+def test_spindle_in_reverse_at_full_speed_is_lost() -> None:
     rig, _ = begun(300, 0.1, "P")
     rig.until_true(at_z(0.1))
     spindle = rig.executor._context.spindle

@@ -81,7 +81,7 @@ def gear(request: pytest.FixtureRequest) -> bool:
 @pytest.mark.parametrize(
     ("period", "clock"), [(1.0, "step"), (2.0, "step"), (3.0, "step"), (2.0, "creeping")]
 )
-def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str, gear: bool) -> None:
+def test_lead_and_entry_are_accurate_with_a_wandering_spindle(period: float, clock: str, gear: bool) -> None:
     rig = Rig(clock_kind=CreepingClock, gear=gear) if clock == "creeping" else Rig(gear=gear)
     rig.sim.machine.spindle_wander(0.02, period)
     recorder = Recorder(rig)
@@ -114,7 +114,9 @@ def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str, gear: 
         (0.4, 700, 1.0),
     ],
 )
-def test_a_gear_follows_a_fast_swing_and_coarse_leads(lead: float, rpm: int, period: float) -> None:
+def test_electronic_gear_follows_fast_speed_swings_and_coarse_leads(
+    lead: float, rpm: int, period: float
+) -> None:
     rig = Rig()
     rig.sim.machine.spindle_wander(0.02, period)
     recorder = Recorder(rig, lead)
@@ -134,7 +136,7 @@ def test_a_gear_follows_a_fast_swing_and_coarse_leads(lead: float, rpm: int, per
     assert rig.said("thread") == []
 
 
-def test_a_slide_that_runs_up_to_a_coarse_lead_is_no_thread_out_of_step() -> None:
+def test_axis_accelerating_to_a_coarse_lead_is_not_out_of_step() -> None:
     """It lags behind the spindle by half of its run-up, which lies before the thread."""
     rig = Rig(gear=False)
     rig.start(EXTERNAL.replace("K.05", "K.16").replace("Z-1.2", "Z-.4"), TOOLS)
@@ -143,7 +145,7 @@ def test_a_slide_that_runs_up_to_a_coarse_lead_is_no_thread_out_of_step() -> Non
     assert rig.said("thread") == []
 
 
-def test_without_following_it_would_not_hold() -> None:
+def test_lead_error_without_following_would_exceed_the_limit() -> None:
     """The wander alone, at the commanded speed, is thirty times what the test above allows."""
     swing = 0.02 * 10.0 * 2.0 / (2.0 * math.pi)  # turns, of 10 a second, in a period of 2 s
     assert 2 * swing * LEAD > 30 * 0.0002
@@ -162,7 +164,7 @@ def test_passes_at_other_speeds_enter_at_the_same_angle(gear: bool) -> None:
     assert entries(recorder.phases(0)).max() < 0.2
 
 
-def test_a_spindle_that_turns_backwards(gear: bool) -> None:
+def test_thread_with_a_reversed_spindle_is_accurate(gear: bool) -> None:
     rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL.replace("M03", "M04"), TOOLS)
@@ -171,7 +173,7 @@ def test_a_spindle_that_turns_backwards(gear: bool) -> None:
     assert entries(recorder.phases(0)).max() < 0.2
 
 
-def test_the_pull_out_stays_in_step(gear: bool) -> None:
+def test_pull_out_stays_synchronized(gear: bool) -> None:
     rig = Rig(gear=gear)
     seen: list[tuple[float, float, float]] = []
 
@@ -192,7 +194,7 @@ def test_the_pull_out_stays_in_step(gear: bool) -> None:
     assert x1 - x0 == pytest.approx(z0 - z1, abs=0.03)
 
 
-def test_it_ends_where_the_block_says(gear: bool) -> None:
+def test_thread_ends_at_the_programmed_position(gear: bool) -> None:
     rig = Rig(gear=gear)
     rig.start(HEAD + "G33X.2Z-.5I.025K.05PO\nM00\nM30\n", TOOLS)
     ends: list[tuple[float, ...]] = []
@@ -228,7 +230,7 @@ def test_hold_in_a_pass_acts_at_its_end(program: str, z: float, gear: bool) -> N
     [(EXTERNAL, -0.2), (STRAIGHT_OUT, -0.2), (EXTERNAL, -1.19)],
     ids=["P", "straight", "pull-out"],
 )
-def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) -> None:
+def test_lost_spindle_never_moves_the_tool_deeper(program: str, z: float, gear: bool) -> None:
     rig = Rig(gear=gear, every=FINE)
     rig.start(program, TOOLS)
     in_thread(rig, z)
@@ -245,7 +247,7 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) ->
 
 
 @pytest.mark.parametrize("z", [-0.2, -1.19], ids=["thread", "pull-out"])
-def test_a_lost_thread_is_left_once(gear: bool, z: float) -> None:
+def test_lost_thread_is_retracted_only_once(gear: bool, z: float) -> None:
     """While the tool is on its way out the spindle stays lost: nothing is begun anew by that."""
     rig = Rig(gear=gear, every=FINE)
     rig.start(EXTERNAL, TOOLS)
@@ -255,7 +257,7 @@ def test_a_lost_thread_is_left_once(gear: bool, z: float) -> None:
     assert rig.said("thread").count(text("executor.spindle-lost")) == 1
 
 
-def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -> None:
+def test_pass_waiting_for_the_index_does_not_start_after_hold(gear: bool) -> None:
     rig = Rig(gear=gear)
     recorder = Recorder(rig, 0.2)
     rig.start(EXTERNAL.replace("S600", "S60").replace("K.05", "K.2"), TOOLS)  # a turn takes a second
@@ -271,7 +273,7 @@ def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -
     assert entries(recorder.phases(0)).max() < 0.2
 
 
-def test_a_thread_at_the_slides_greatest_speed_is_no_alarm(gear: bool) -> None:
+def test_thread_at_maximum_axis_speed_is_reported_without_an_alarm(gear: bool) -> None:
     """300 in/min and a spindle that runs 2 % fast: the slide falls behind, and that is told."""
     rig = Rig(gear=gear)
     rig.sim.machine.spindle_wander(0.02, 2.0)
@@ -282,7 +284,7 @@ def test_a_thread_at_the_slides_greatest_speed_is_no_alarm(gear: bool) -> None:
     assert rig.said("thread")
 
 
-def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPatch, gear: bool) -> None:
+def test_pass_completes_when_the_encoder_fails(monkeypatch: pytest.MonkeyPatch, gear: bool) -> None:
     rig = Rig(gear=gear)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
@@ -304,7 +306,7 @@ def test_reset_in_a_pass_stops_along_the_thread(gear: bool) -> None:
     assert -2.0 < rig.shot.demand[1] - before[1] < 0.0
 
 
-def test_a_host_that_is_away_leaves_a_whole_pass(gear: bool) -> None:
+def test_pass_completes_while_the_host_is_away(gear: bool) -> None:
     rig = Rig(gear=gear)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
@@ -313,7 +315,7 @@ def test_a_host_that_is_away_leaves_a_whole_pass(gear: bool) -> None:
     assert rig.shot.alarms == ()
 
 
-def test_a_spindle_that_is_braked_in_a_pass_is_followed_and_told(gear: bool) -> None:
+def test_braked_spindle_in_a_pass_is_followed_and_reported(gear: bool) -> None:
     rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL, TOOLS)
@@ -339,14 +341,14 @@ def test_feed_override_does_not_touch_a_pass(gear: bool) -> None:
 # --- the spindle's angle ------------------------------------------------------------------------------------
 
 
-def test_an_even_spindle_is_foretold_exactly() -> None:
+def test_constant_spindle_speed_is_predicted_exactly() -> None:
     turns = SpindleAnglePredictor()
     for i in range(20):
         turns.add_reading((0.01 * i, -3.0 - 0.1 * i))
     assert turns.predict_angle(0.5) == pytest.approx((-8.0, -10.0))
 
 
-def test_nothing_is_foretold_from_too_little() -> None:
+def test_too_few_readings_give_no_prediction() -> None:
     turns = SpindleAnglePredictor()
     assert turns.predict_angle(0.0) is None
     for i in range(30):
@@ -359,7 +361,7 @@ def test_nothing_is_foretold_from_too_little() -> None:
     assert turns.predict_angle(2.0) is None
 
 
-def test_a_swinging_speed_is_foretold_within_a_fifth_of_a_degree() -> None:
+def test_oscillating_speed_is_predicted_within_a_fifth_of_a_degree() -> None:
     turns, worst = SpindleAnglePredictor(), 0.0
 
     def truth(t: float) -> float:

@@ -29,7 +29,7 @@ def cut(rig: Rig) -> list[float]:
     return [rig.shot.cutting.get(number, 0.0) for number in (1, 2)]
 
 
-def test_time_at_feed_is_that_of_the_tool_that_cuts() -> None:
+def test_feed_time_is_charged_to_the_cutting_tool() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     rig.until(MachineState.IDLE)
@@ -37,7 +37,7 @@ def test_time_at_feed_is_that_of_the_tool_that_cuts() -> None:
     assert set(rig.shot.cutting) == {1, 2}
 
 
-def test_a_slower_feed_takes_longer_and_a_hold_takes_nothing() -> None:
+def test_slower_feed_adds_tool_time_and_hold_adds_none() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     rig.post(SetFeedOverride(0.5))
@@ -53,7 +53,7 @@ def test_a_slower_feed_takes_longer_and_a_hold_takes_nothing() -> None:
     assert cut(rig) == pytest.approx([4.0, 4.0], abs=0.2)
 
 
-def test_a_part_that_is_given_up_has_worn_its_tool_all_the_same() -> None:
+def test_aborted_part_still_counts_tool_time() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     rig.until_true(lambda shot: shot.line == 4)
@@ -63,7 +63,7 @@ def test_a_part_that_is_given_up_has_worn_its_tool_all_the_same() -> None:
     assert cut(rig) == pytest.approx([1.0, 0.0], abs=0.1)
 
 
-def test_a_dry_run_cuts_nothing() -> None:
+def test_dry_run_adds_no_tool_time() -> None:
     rig = Rig()
     rig.post(SetSwitch("no_count", True))
     rig.start(PART, TOOLS)
@@ -71,7 +71,7 @@ def test_a_dry_run_cuts_nothing() -> None:
     assert rig.shot.cutting == {}
 
 
-def test_a_snapshot_keeps_its_figures() -> None:
+def test_old_snapshot_retains_its_tool_times() -> None:
     """Whoever looks at an old one finds the old time."""
     rig = Rig()
     rig.start(PART, TOOLS)
@@ -81,7 +81,7 @@ def test_a_snapshot_keeps_its_figures() -> None:
     assert before.cutting[1] == figure < rig.shot.cutting[1]
 
 
-def test_the_part_under_way_is_finished_and_no_other_begins() -> None:
+def test_worn_tool_lets_the_current_part_finish_and_blocks_the_next() -> None:
     rig = Rig()
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start(PART, TOOLS)
@@ -97,7 +97,7 @@ def test_the_part_under_way_is_finished_and_no_other_begins() -> None:
     assert rig.shot.start_refusal == SPENT
 
 
-def test_a_new_insert_and_parts_go_on() -> None:
+def test_new_insert_allows_the_next_part() -> None:
     rig = Rig()
     rig.ready()
     rig.load(PART, TOOLS)
@@ -112,7 +112,7 @@ def test_a_new_insert_and_parts_go_on() -> None:
     assert rig.state is MachineState.RUN
 
 
-def test_a_hold_is_gone_on_from() -> None:
+def test_blocked_next_part_still_allows_resume_from_hold() -> None:
     """The part in the collet is to be finished."""
     rig = Rig()
     rig.start(PART, TOOLS)
@@ -125,7 +125,7 @@ def test_a_hold_is_gone_on_from() -> None:
     assert rig.shot.parts == 1
 
 
-def test_a_line_of_mdi_is_no_part() -> None:
+def test_mdi_line_runs_while_the_next_part_is_blocked() -> None:
     rig = Rig()
     rig.ready()
     rig.post(BlockNextPart(SPENT))
@@ -134,7 +134,7 @@ def test_a_line_of_mdi_is_no_part() -> None:
     rig.post(PrepareStart(StartAction.PROGRAM))
 
 
-def test_what_does_not_start_for_another_reason_says_that_one() -> None:
+def test_missing_program_is_reported_before_the_blocked_next_part() -> None:
     """The cause told first is the one to be removed first."""
     rig = Rig()
     rig.post(BlockNextPart(SPENT))
@@ -144,7 +144,7 @@ def test_what_does_not_start_for_another_reason_says_that_one() -> None:
     assert rig.shot.start_refusal == text("executor.no-program")
 
 
-def test_the_same_bar_again_is_told_once() -> None:
+def test_repeated_next_part_block_is_reported_once() -> None:
     rig = Rig()
     rig.post(BlockNextPart(SPENT))
     rig.post(BlockNextPart(SPENT))
@@ -165,7 +165,7 @@ def loads(rig: Rig) -> list[float | None]:
     return [event.mean_load_percent for event in rig.events if event.kind in {"part", "uncounted"}]
 
 
-def test_a_part_tells_the_mean_load_of_its_spindle_at_feed() -> None:
+def test_part_reports_the_mean_spindle_load_at_feed() -> None:
     """500 rpm need their share of 10 % for the bearings, and 30 % more in the cut."""
     rig = recorded(Rig())
     for _ in range(2):
@@ -176,7 +176,7 @@ def test_a_part_tells_the_mean_load_of_its_spindle_at_feed() -> None:
     assert rig.shot.spindle_load is not None
 
 
-def test_the_next_part_begins_with_no_load_of_the_one_before() -> None:
+def test_mean_load_does_not_carry_over_to_the_next_part() -> None:
     rig = recorded(Rig())
     rig.start(PART.replace("G73\n", "G73\nM03S500\n"), TOOLS)
     rig.until(MachineState.IDLE)
@@ -185,7 +185,7 @@ def test_the_next_part_begins_with_no_load_of_the_one_before() -> None:
     assert loads(rig)[1] is None, "nothing was cut"
 
 
-def test_a_machine_that_tells_no_load_has_none() -> None:
+def test_machine_without_a_load_signal_reports_no_load() -> None:
     rig = Rig()  # nobody takes the samples
     rig.start(PART, TOOLS)
     rig.until(MachineState.IDLE)

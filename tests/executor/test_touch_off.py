@@ -94,7 +94,7 @@ def ready(machine: Machine | None = None, *, x: float = 20.0, z: float = 20.0) -
         (10.0, 11.0, "Z", 1, 17.0),
     ],
 )
-def test_the_place_of_the_touch(x: float, z: float, axis: str, sign: int, face: float) -> None:
+def test_touch_position_is_measured(x: float, z: float, axis: str, sign: int, face: float) -> None:
     rig = ready(x=x, z=z)
     rig.hold(axis, sign)
     assert rig.shot.touch_phase is TouchPhase.SEARCH
@@ -114,7 +114,7 @@ def test_the_place_of_the_touch(x: float, z: float, axis: str, sign: int, face: 
     assert "probe" not in rig.shot.inputs
 
 
-def test_its_phases_come_in_their_order_and_it_is_slow_at_last() -> None:
+def test_touch_phases_follow_in_order_and_end_slowly() -> None:
     rig = ready()
     seen: list[TouchPhase] = []
     slow: list[float] = []
@@ -133,7 +133,7 @@ def test_its_phases_come_in_their_order_and_it_is_slow_at_last() -> None:
     assert max(slow) == pytest.approx(0.25, rel=0.6)  # in counts a tick
 
 
-def test_without_a_driver_that_keeps_the_place_a_tick_is_what_it_may_be_off() -> None:
+def test_uncertainty_includes_a_tick_if_the_driver_latches_no_position() -> None:
     rig = ready()
     context = rig.executor._context
     context.ports = dataclasses.replace(context.ports, touch=None)
@@ -149,7 +149,7 @@ def test_without_a_driver_that_keeps_the_place_a_tick_is_what_it_may_be_off() ->
 
 
 @pytest.mark.parametrize("phase", list(TouchPhase)[:4])
-def test_letting_go_stops_in_every_phase(phase: TouchPhase) -> None:
+def test_key_release_stops_the_touch_off_in_every_phase(phase: TouchPhase) -> None:
     rig = ready()
     rig.hold()
     rig.until_true(lambda shot: shot.touch_phase is phase)
@@ -163,7 +163,7 @@ def test_letting_go_stops_in_every_phase(phase: TouchPhase) -> None:
     assert (touched.touch_position_mm, touched.why) == (None, text("executor.let-go"))
 
 
-def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
+def test_dead_screen_stops_the_touch_off_within_the_lease() -> None:
     rig = ready()
     rig.hold()
     rig.run(0.3)
@@ -175,7 +175,7 @@ def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
     assert rig.shot.touched.touch_position_mm is None
 
 
-def test_a_key_that_is_still_held_begins_nothing_again() -> None:
+def test_held_down_key_starts_no_second_touch_off() -> None:
     rig = ready()
     rig.hold()
     rig.until(MachineState.IDLE)
@@ -189,7 +189,7 @@ def test_a_key_that_is_still_held_begins_nothing_again() -> None:
     assert rig.shot.touched.why == ""
 
 
-def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
+def test_missing_setter_is_reported_and_the_axis_returns() -> None:
     rig = ready(z=60.0)  # beside the setter
     begin = rig.shot.actual[0]
     rig.hold()
@@ -201,7 +201,7 @@ def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
     assert rig.shot.alarms == ()
 
 
-def test_an_input_that_stays_on_while_backing_off_stops_there() -> None:
+def test_probe_input_stuck_on_during_back_off_stops_there() -> None:
     rig = ready()
     rig.hold()
     rig.until_true(lambda shot: shot.touch_phase is TouchPhase.BACK_OFF)
@@ -212,7 +212,7 @@ def test_an_input_that_stays_on_while_backing_off_stops_there() -> None:
     assert rig.shot.touched.touch_position_mm is None
 
 
-def test_a_setter_that_gives_way_is_told() -> None:
+def test_missing_second_touch_is_reported() -> None:
     """The second touch does not come: the stylus is loose, or it was a chip."""
     rig = ready()
     rig.hold()
@@ -223,7 +223,7 @@ def test_a_setter_that_gives_way_is_told() -> None:
     assert text("executor.no-second-touch") in rig.shot.touched.why
 
 
-def test_feed_hold_e_stop_and_another_key_end_it() -> None:
+def test_feed_hold_estop_and_another_key_end_the_touch_off() -> None:
     acts: tuple[tuple[Callable[[TouchRig], None], str], ...] = (
         (lambda rig: rig.sim.machine.press_hold(), "feed hold"),
         (lambda rig: rig.post(Reset()), "reset"),
@@ -243,7 +243,7 @@ def test_feed_hold_e_stop_and_another_key_end_it() -> None:
         assert rig.shot.velocity == 0.0
 
 
-def test_a_button_that_comes_up_ends_it_though_the_screen_goes_on_asking() -> None:
+def test_button_release_ends_the_touch_off_despite_screen_requests() -> None:
     rig = ready(with_setter(SETTER, "jog_x_minus"))
     rig.sim.machine.set_input("jog_x_minus", True)
     rig.tick()
@@ -270,7 +270,7 @@ def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
     assert len(rig.said("refused")) == 1
 
 
-def test_the_handwheel_is_taken_away_at_the_setter() -> None:
+def test_handwheel_is_deselected_at_the_setter() -> None:
     rig = ready(wheeled(with_setter()), x=13.5)
     wheel = SelectHandwheel("X", 0.1, LEASE)
     rig.post(wheel)
@@ -287,7 +287,7 @@ def test_the_handwheel_is_taken_away_at_the_setter() -> None:
 # --- what refuses it --------------------------------------------------------------------------------------
 
 
-def test_the_input_is_on_already() -> None:
+def test_touch_off_is_rejected_if_the_probe_input_is_already_on() -> None:
     rig = ready()
     rig.sim.machine.set_input("probe", True)
     rig.run(0.05)
@@ -296,7 +296,7 @@ def test_the_input_is_on_already() -> None:
     assert any(text("executor.setter-on") in said for said in rig.said("refused"))
 
 
-def test_no_input_and_no_setter() -> None:
+def test_touch_off_without_a_setter_is_rejected() -> None:
     rig = TouchRig(load_machine())
     rig.ready()
     rig.hold()
@@ -304,7 +304,7 @@ def test_no_input_and_no_setter() -> None:
     assert any(text("executor.no-setter") in said for said in rig.said("refused"))
 
 
-def test_the_spindle_turns() -> None:
+def test_touch_off_is_rejected_while_the_spindle_turns() -> None:
     rig = ready()
     rig.start("G90G94F300\nM03S900\nM02\n")
     rig.until(MachineState.IDLE)
@@ -313,7 +313,7 @@ def test_the_spindle_turns() -> None:
     assert any(text("executor.spindle-turns-touch") in said for said in rig.said("refused"))
 
 
-def test_an_axis_that_is_not_homed() -> None:
+def test_touch_off_of_an_unhomed_axis_is_rejected() -> None:
     machine = with_setter()
     x = dataclasses.replace(machine.find_axis("X"), is_position_absolute=False, home_order=1, home_speed=10.0)
     rig = TouchRig(dataclasses.replace(machine, axes=(x, *machine.axes[1:])))
@@ -323,7 +323,7 @@ def test_an_axis_that_is_not_homed() -> None:
     assert any(text("executor.position-means-nothing", axis="X") in said for said in rig.said("refused"))
 
 
-def test_a_search_that_would_leave_the_travel() -> None:
+def test_touch_off_search_beyond_the_travel_is_rejected() -> None:
     rig = ready()
     rig.put(-TIP[0] - 4.0 * INCH + 10.0, 60.0)  # 10 mm from the end, and it looks 12 mm far
     rig.hold()
@@ -335,14 +335,14 @@ def test_a_search_that_would_leave_the_travel() -> None:
 
 
 @pytest.mark.parametrize(("axis", "sign"), [("C", 1), ("", 1), ("X", 0), ("X", 3)])
-def test_no_direction_at_all(axis: str, sign: int) -> None:
+def test_touch_off_without_a_direction_is_rejected(axis: str, sign: int) -> None:
     rig = ready()
     rig.hold(axis, sign)
     assert rig.state is MachineState.IDLE
     assert any(text("executor.not-along", axis=axis or "no axis") in said for said in rig.said("refused"))
 
 
-def test_drives_off_and_feed_hold() -> None:
+def test_touch_off_with_drives_off_or_in_feed_hold_is_rejected() -> None:
     rig = TouchRig(with_setter())
     rig.hold()
     assert any("DRIVES OFF" in said for said in rig.said("refused"))
@@ -354,7 +354,7 @@ def test_drives_off_and_feed_hold() -> None:
     assert any(text("executor.hold-pressed") in said for said in rig.said("refused"))
 
 
-def test_the_handwheel_is_selected() -> None:
+def test_touch_off_is_rejected_while_the_handwheel_is_selected() -> None:
     rig = ready()
     rig.executor._control.handwheel.axis = "X"
     rig.executor._control.touch_off.handle_request(TouchOffTool("X", -1, LEASE, 9), MachineState.IDLE, "X")

@@ -66,7 +66,7 @@ def away(rig: Rig, seconds: float, look: Callable[[], None] | None = None) -> No
 
 @pytest.mark.parametrize("name", ["simulated", "fed", "fed canopen", "grblhal", "delta"])
 @pytest.mark.parametrize("dead", [True, False], ids=["dead", "stuck"])
-def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, dead: bool) -> None:
+def test_machine_stops_with_spindle_and_coolant_off_if_executor_dies(name: str, dead: bool) -> None:
     rig, control = cutting(name)
     dog, thread = watched(control.executor, control.executor.halt_function)
     dog.check_threads()
@@ -92,7 +92,7 @@ def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, de
     rig.close()
 
 
-def test_an_executor_that_comes_back_begins_with_the_alarm() -> None:
+def test_returning_executor_starts_with_the_alarm() -> None:
     rig, control = cutting("simulated")
     dog, _ = watched(control.executor, control.executor.halt_function)
     away(rig, 2.0, dog.check_threads)
@@ -105,7 +105,7 @@ def test_an_executor_that_comes_back_begins_with_the_alarm() -> None:
     assert control.nothing_moves()
 
 
-def test_a_process_that_stood_still_is_not_blamed() -> None:
+def test_suspended_process_raises_no_watchdog_alarm() -> None:
     rig, control = cutting("simulated")
     dog, _ = watched(control.executor, control.executor.halt_function)
     for _ in range(5):
@@ -117,7 +117,7 @@ def test_a_process_that_stood_still_is_not_blamed() -> None:
     assert control.shot.alarms == ()
 
 
-def test_a_wait_for_drives_is_no_stuck_thread() -> None:
+def test_waiting_for_drives_is_not_a_stuck_thread() -> None:
     rig = Simulated()
     dog, _ = watched(rig.executor, rig.executor.halt_function)
     enable = rig.sim.ports.axes.enable
@@ -136,7 +136,7 @@ def test_a_wait_for_drives_is_no_stuck_thread() -> None:
     assert rig.shot.alarms == ()
 
 
-def test_a_controller_is_held_first_and_then_reset() -> None:
+def test_controller_gets_feed_hold_first_and_then_reset() -> None:
     rig, control = cutting("grblhal")
     assert isinstance(rig, Grblhal)
     sent: list[bytes] = []
@@ -169,7 +169,7 @@ def thread_of(name: str) -> threading.Thread:
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 @pytest.mark.parametrize("error", [SystemExit, ValueError, KeyboardInterrupt])
-def test_a_thread_that_is_killed_leaves_nothing_on(error: type[BaseException]) -> None:
+def test_killed_executor_thread_leaves_outputs_and_drives_off(error: type[BaseException]) -> None:
     """SystemExit and mistakes it outlives, with an alarm; what ends it is the watchdog's business."""
     rig = Simulated()
     rig.start(CUT)
@@ -223,7 +223,7 @@ class Noting:
         self.until.append(time_s)
 
 
-def test_between_two_ticks_it_sleeps_only_where_the_executor_has_not_rested(
+def test_executor_thread_sleeps_only_if_it_did_not_wait_at_rest(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """At rest the executor has slept by itself, until something rang: its tick must not come later still."""
@@ -243,7 +243,7 @@ def test_between_two_ticks_it_sleeps_only_where_the_executor_has_not_rested(
     assert noting.until == [5.01]
 
 
-def test_another_thread_that_ends_is_told_once() -> None:
+def test_end_of_another_thread_is_reported_once() -> None:
     name = "ends-in-this-test"
     rig = Simulated()
     ending = threading.Event()
@@ -279,7 +279,7 @@ def test_a_thread_that_starts_after_the_watchdog_is_supervised() -> None:
     assert sorted(told) == ["gone-before-the-next-look", "late-in-this-test"]
 
 
-def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
+def test_drivers_that_block_during_halt_do_not_delay_the_alarm() -> None:
     rig, control = cutting("simulated")
     released, calls = threading.Event(), list[int]()
 
@@ -306,7 +306,7 @@ def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
 
 
 @pytest.mark.parametrize("looks", [True, False], ids=["looks", "hangs"])
-def test_the_executor_reports_a_watchdog_that_looks_no_more(looks: bool) -> None:
+def test_executor_reports_a_watchdog_that_stops_checking(looks: bool) -> None:
     rig, told = Simulated(), list[str]()
     dog, _ = watched(rig.executor, None)
     watch = WatchdogSupervisor(dog, told.append)
@@ -317,7 +317,7 @@ def test_the_executor_reports_a_watchdog_that_looks_no_more(looks: bool) -> None
     assert told == ([] if looks else [WATCHDOG_THREAD_NAME])
 
 
-def test_a_computer_that_was_late_is_no_dead_watchdog() -> None:
+def test_late_computer_is_not_reported_as_a_dead_watchdog() -> None:
     rig, told = Simulated(), list[str]()
     dog, _ = watched(rig.executor, None)
     watch = WatchdogSupervisor(dog, told.append)
@@ -326,7 +326,7 @@ def test_a_computer_that_was_late_is_no_dead_watchdog() -> None:
     assert told == []
 
 
-def test_closing_waits_for_no_executor_that_hangs_and_halts_the_machine() -> None:
+def test_close_does_not_wait_for_a_hung_executor_and_halts_the_machine() -> None:
     """The thread hangs in a driver: it is left, and the drivers stop the machine in their own way."""
     rig, hangs, released = Simulated(), threading.Event(), threading.Event()
 
@@ -349,7 +349,7 @@ def test_closing_waits_for_no_executor_that_hangs_and_halts_the_machine() -> Non
     assert not rig.sim.ports.axes.sample().enabled
 
 
-def test_closing_waits_for_no_watchdog_that_hangs() -> None:
+def test_close_does_not_wait_for_a_hung_watchdog() -> None:
     rig, released, hangs = Simulated(), threading.Event(), threading.Event()
 
     def hang(_name: str) -> None:
@@ -367,7 +367,7 @@ def test_closing_waits_for_no_watchdog_that_hangs() -> None:
     assert alive
 
 
-def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
+def test_watchdog_raises_the_alarm_even_if_its_driver_fails() -> None:
     rig, control = cutting("simulated")
 
     def broken() -> None:

@@ -19,7 +19,7 @@ _SPOILT_SEEDS = {"omniturn", "klartext", "sinumerik", "store file"}  # their see
 
 
 @pytest.mark.parametrize("target", FILES, ids=lambda each: each.name.replace(" ", "-"))
-def test_damage_ends_in_the_readers_own_error(target: Target, tmp_path: Path) -> None:
+def test_damaged_input_raises_only_the_error_of_its_reader(target: Target, tmp_path: Path) -> None:
     examined = Examined(target, tmp_path / "faults.jsonl")
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", category=DeprecationWarning)  # of a library's logger
@@ -31,13 +31,13 @@ def test_damage_ends_in_the_readers_own_error(target: Target, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("target", FILES, ids=lambda each: each.name.replace(" ", "-"))
-def test_what_is_damaged_was_good_before(target: Target) -> None:
+def test_undamaged_seeds_are_valid(target: Target) -> None:
     if target.name in _SPOILT_SEEDS:
         return
     for data in islice(target.seeds(), 3):
         assert "" not in list(target.run(data))
 
 
-def test_the_same_number_is_the_same_damage() -> None:
+def test_same_number_gives_the_same_damage() -> None:
     target = next(each for each in FILES if each.name == "offsets file")
     assert list(damaged_inputs(target, range(3, 9))) == list(damaged_inputs(target, range(9)))[3:]

@@ -82,7 +82,7 @@ each_door = pytest.mark.parametrize("door", DOORS, ids=lambda door: door.name)
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
 @each_door
-def test_a_pipe_that_nobody_writes_does_not_hang(door: Door, tmp_path: Path) -> None:
+def test_pipe_without_a_writer_does_not_hang(door: Door, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / door.name)
     with raises_code(door.error, door.no_file, door.name):
         door.read(tmp_path / door.name)
@@ -90,14 +90,14 @@ def test_a_pipe_that_nobody_writes_does_not_hang(door: Door, tmp_path: Path) -> 
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no device here that never ends")
 @each_door
-def test_a_device_is_no_file(door: Door, tmp_path: Path) -> None:
+def test_device_is_rejected(door: Door, tmp_path: Path) -> None:
     (tmp_path / door.name).symlink_to("/dev/zero")
     with raises_code(door.error, door.no_file, door.name):
         door.read(tmp_path / door.name)
 
 
 @each_door
-def test_a_folder_is_no_file(door: Door, tmp_path: Path) -> None:
+def test_folder_is_rejected(door: Door, tmp_path: Path) -> None:
     (tmp_path / door.name).mkdir()
     with pytest.raises(door.error) as raised:
         door.read(tmp_path / door.name)
@@ -105,7 +105,7 @@ def test_a_folder_is_no_file(door: Door, tmp_path: Path) -> None:
 
 
 @each_door
-def test_three_gigabytes_are_not_read(door: Door, tmp_path: Path) -> None:
+def test_three_gigabyte_file_is_not_read(door: Door, tmp_path: Path) -> None:
     path = tmp_path / door.name
     with path.open("wb") as file:
         file.write(b"TurnDesk ring\n" if door.name.endswith(".ring") else b"PK")
@@ -115,7 +115,7 @@ def test_three_gigabytes_are_not_read(door: Door, tmp_path: Path) -> None:
 
 
 @each_door
-def test_a_name_that_no_file_can_have_is_refused(door: Door, tmp_path: Path) -> None:
+def test_impossible_file_name_is_rejected(door: Door, tmp_path: Path) -> None:
     with pytest.raises(door.error):
         door.read(tmp_path / f"a\0{door.name}")
 
@@ -123,7 +123,7 @@ def test_a_name_that_no_file_can_have_is_refused(door: Door, tmp_path: Path) -> 
 # --- the door itself
 
 
-def test_a_file_has_as_many_bytes_as_its_limit(tmp_path: Path) -> None:
+def test_file_size_is_limited(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(bytes(100))
     assert read_input_bytes(path, 100) == bytes(100)
@@ -132,13 +132,13 @@ def test_a_file_has_as_many_bytes_as_its_limit(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no files here whose size is not known")
-def test_a_file_that_hides_its_size_has_its_limit_all_the_same() -> None:
+def test_file_that_reports_zero_size_is_also_limited() -> None:
     with pytest.raises(TooLargeError):
         read_input_bytes(Path("/proc/self/status"), 10)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
-def test_what_is_no_file_is_closed_again(tmp_path: Path) -> None:
+def test_rejected_pipe_is_closed_again(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(NotAFileError):
         open_input_file(tmp_path / "pipe")
@@ -149,13 +149,13 @@ def test_what_is_no_file_is_closed_again(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "error", [ValueError(), KeyError("x"), MemoryError(), RecursionError(), OSError(5, "x")]
 )
-def test_whatever_a_parser_raises_is_the_readers_error(error: Exception) -> None:
+def test_parser_exception_is_converted_to_the_reader_error(error: Exception) -> None:
     with pytest.raises(CodedError) as raised, convert_exceptions(lambda _: CodedError("damaged", "damaged")):
         raise error
     assert raised.value.__cause__ is error
 
 
-def test_what_has_a_code_stays_as_it_is() -> None:
+def test_coded_error_is_passed_unchanged() -> None:
     own = partial(CodedError, "own", "own")
     with raises_code(CodedError, "own"), convert_exceptions(lambda _: CodedError("other", "other")):
         raise own()

@@ -23,12 +23,12 @@ FACE = Line((0, 0), (5, 0))
 CYLINDER = Line((5, 0), (5, -9))
 
 
-def test_a_chamfer_at_a_right_angle() -> None:
+def test_right_angle_corner_is_chamfered() -> None:
     first, cut, last = chamfer(FACE, CYLINDER, 1)
     assert (first, cut, last) == (Line((0, 0), (4, 0)), Line((4, 0), (5, -1)), Line((5, -1), (5, -9)))
 
 
-def test_a_fillet_at_a_convex_corner_is_clockwise_on_the_way_to_the_spindle() -> None:
+def test_fillet_at_a_convex_corner_toward_the_spindle_is_clockwise() -> None:
     first, round_, last = make_rounding(FACE, CYLINDER, 1)
     assert first.end == (4, 0)
     assert round_.end == last.start == pytest.approx((5, -1))
@@ -36,20 +36,20 @@ def test_a_fillet_at_a_convex_corner_is_clockwise_on_the_way_to_the_spindle() ->
     assert round_.clockwise
 
 
-def test_a_fillet_at_a_hollow_corner_turns_the_other_way() -> None:
+def test_fillet_at_a_concave_corner_is_counterclockwise() -> None:
     _, round_, _ = make_rounding(CYLINDER, Line((5, -9), (8, -9)), 1)
     assert (*round_.start, *round_.end, *round_.center) == pytest.approx((5, -8, 6, -9, 6, -8))
     assert not round_.clockwise
 
 
-def test_the_set_back_of_a_chamfer_counts_along_both_lines() -> None:
+def test_chamfer_setback_is_measured_along_both_lines() -> None:
     # A cone of 45 degrees: 2 back on the face, 2 along the cone.
     _, cut, _ = chamfer(FACE, Line((5, 0), (8, -3)), 2)
     assert cut.start == pytest.approx((3, 0))
     assert cut.end == pytest.approx((5 + sqrt(2), -sqrt(2)))
 
 
-def test_the_set_back_of_a_fillet_is_by_the_half_turn() -> None:
+def test_fillet_setback_depends_on_half_of_the_turn_angle() -> None:
     first, _, _ = make_rounding(FACE, Line((5, 0), (8, -3)), 2)
     assert first.end == pytest.approx((5 - 2 * tan(pi / 8), 0))
 
@@ -69,22 +69,22 @@ def test_a_set_back_longer_than_the_next_line_is_refused() -> None:
     assert (refused.value.is_first_move, refused.value.needed_length) == (False, pytest.approx(2.5))
 
 
-def test_a_corner_may_take_the_whole_line() -> None:
+def test_corner_may_use_the_whole_line() -> None:
     first, _, _ = chamfer(FACE, CYLINDER, 5)
     assert first.length == 0
 
 
-def test_lines_in_one_direction_have_no_corner() -> None:
+def test_collinear_lines_have_no_corner() -> None:
     with pytest.raises(NoCornerError):
         chamfer(FACE, Line((5, 0), (9, 0)), 1)
 
 
-def test_lines_that_run_back_have_no_corner() -> None:
+def test_reversing_lines_have_no_corner() -> None:
     with raises_code(CornerError, "straight-back"):
         make_rounding(FACE, Line((5, 0), (1, 0)), 1)
 
 
-def test_a_line_of_no_length_takes_no_corner() -> None:
+def test_zero_length_line_cannot_be_chamfered() -> None:
     with pytest.raises(CornerTooLargeError):
         chamfer(FACE, Line((5, 0), (5, 0)), 1)
 

@@ -22,13 +22,13 @@ LINE = Line((0.0, 30.0), (0.0, 10.0))
 BALL = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), is_clockwise=True)
 
 
-def test_two_lines_are_cut_as_ever() -> None:
+def test_chamfer_leg_at_a_right_angle_is_length_over_sqrt_2() -> None:
     one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
     assert chamfer(one, other, 3.0) == chamfer(one, other, 3.0)
     assert find_chamfer_leg(one, other, 3.0) == pytest.approx(3.0 / 2**0.5)
 
 
-def test_a_line_onto_a_ball_worked_out() -> None:
+def test_chamfer_between_line_and_arc_matches_hand_calculation() -> None:
     """On the circle of 10 a chord of 4 spans 2 asin(.2)."""
     first, cut, last = chamfer(LINE, BALL, 4.0)
     angle = 2 * asin(0.2)
@@ -38,7 +38,7 @@ def test_a_line_onto_a_ball_worked_out() -> None:
     assert last.end == BALL.end
 
 
-def test_random_pairs() -> None:
+def test_random_chamfers_have_the_requested_leg_length() -> None:
     dice, made = random.Random(7), 0
     for _ in range(3000):
         before, after = _way(dice).make_reversed(), _way(dice)
@@ -61,7 +61,7 @@ def test_random_pairs() -> None:
     assert made > 1000
 
 
-def test_the_leg_of_a_length_makes_it() -> None:
+def test_leg_for_a_chamfer_length_gives_that_length() -> None:
     dice, made = random.Random(11), 0
     for _ in range(1000):
         before, after = _way(dice).make_reversed(), _way(dice)
@@ -97,23 +97,23 @@ def _way(dice: random.Random) -> Element:
         (LONG, Arc(BALL.start, BALL.start, BALL.center, clockwise=True), 20.5, False),
     ],
 )
-def test_what_is_too_short_is_named(before: Element, after: Element, leg: float, first: bool) -> None:
+def test_element_that_is_too_short_is_named(before: Element, after: Element, leg: float, first: bool) -> None:
     with pytest.raises(CornerTooLargeError) as caught:
         chamfer(before, after, leg)
     assert caught.value.is_first_move is first
 
 
-def test_a_chamfer_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
+def test_chamfer_that_consumes_a_whole_arc_is_rejected() -> None:
     with pytest.raises(CornerTooLargeError):
         chamfer(LINE, BALL, dist(BALL.start, BALL.end))
 
 
-def test_a_tangent_has_no_corner() -> None:
+def test_tangent_elements_have_no_corner() -> None:
     with pytest.raises(NoCornerError):
         chamfer(Line((-5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
 
 
-def test_straight_back_is_no_corner_either() -> None:
+def test_reversing_line_and_arc_have_no_corner() -> None:
     with raises_code(CornerError, "straight-back"):
         chamfer(Line((5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
 
@@ -125,6 +125,6 @@ def test_a_chamfer_that_would_cross_the_arc_is_refused() -> None:
         chamfer(before, BALL, 3.0)
 
 
-def test_a_length_that_fits_nowhere() -> None:
+def test_chamfer_length_that_does_not_fit_is_rejected() -> None:
     with raises_code(CornerError, "too-short"):
         find_chamfer_leg(LINE, BALL, 60.0)

@@ -35,7 +35,7 @@ def offset_contour(elements: list[Element], left: float) -> list[Element]:
     return [piece.element for piece in offset_known_contour(elements, left)]
 
 
-def test_the_left_of_a_way_outwards_is_away_from_the_spindle() -> None:
+def test_left_offset_of_an_outward_line_is_away_from_the_spindle() -> None:
     assert offset_element(Line((1, 0), (5, 0)), 0.4) == Line((1, 0.4), (5, 0.4))
     assert offset_element(Line((5, 0), (5, -9)), 0.4) == Line((5.4, 0), (5.4, -9))
     assert offset_element(Line((5, 0), (5, -9)), -0.4) == Line((4.6, 0), (4.6, -9))
@@ -54,13 +54,13 @@ def ends(path: list[Element]) -> list[Point]:
     return [(round(x, 6), round(z, 6)) for x, z in found]
 
 
-def test_an_outside_corner_gets_an_arc_about_it() -> None:
+def test_outside_corner_gets_an_arc_around_it() -> None:
     path = offset_contour(polyline((0, 0), (5, 0), (5, -9)), 0.4)
     assert ends(path) == [(0, 0.4), (5, 0.4), (5.4, 0), (5.4, -9)]
     assert path[1] == Arc((5, 0.4), (5.4, 0), (5, 0), clockwise=True)
 
 
-def test_an_outside_corner_on_the_other_side_turns_the_other_way() -> None:
+def test_outside_corner_on_the_other_side_gets_the_opposite_arc() -> None:
     path = offset_contour(polyline((5, -9), (5, 0), (0, 0)), -0.4)
     assert path[1] == Arc((5.4, 0), (5, 0.4), (5, 0), clockwise=False)
 
@@ -72,7 +72,7 @@ def test_an_inside_corner_is_where_the_offsets_meet() -> None:
     assert ends(path) == [(0, -0.4), (4.6, -0.4), (4.6, -9)]
 
 
-def test_a_line_into_an_arc_at_an_inside_corner() -> None:
+def test_line_and_arc_meet_at_an_inside_corner() -> None:
     # A cylinder of 5 that ends at a ball of radius 5 about (5, -15): the offsets are x 5.4 and radius 5.4.
     ball = Arc((5, -10), (10, -15), (5, -15), clockwise=True)
     path = offset_contour([Line((5, 0), (5, -10)), ball], 0.4)
@@ -81,7 +81,7 @@ def test_a_line_into_an_arc_at_an_inside_corner() -> None:
     assert path[1].radius == pytest.approx(5.4)
 
 
-def test_an_arc_into_an_arc_at_an_inside_corner() -> None:
+def test_two_arcs_meet_at_an_inside_corner() -> None:
     # Two balls of radius 5 whose centres lie 8 apart meet 3 over the line of centres.
     first = Arc((0, 5), (3, -4), (0, 0), clockwise=True)
     second = Arc((3, -4), (0, -13), (0, -8), clockwise=True)
@@ -89,13 +89,13 @@ def test_an_arc_into_an_arc_at_an_inside_corner() -> None:
     assert ends(path)[1] == (round(sqrt(36 - 16), 6), -4)
 
 
-def test_tangent_elements_need_no_corner() -> None:
+def test_tangent_elements_get_no_corner_arc() -> None:
     fillet = Arc((4, 0), (5, -1), (4, -1), clockwise=True)
     path = offset_contour([Line((0, 0), (4, 0)), fillet, Line((5, -1), (5, -9))], 0.4)
     assert ends(path) == [(0, 0.4), (4, 0.4), (5.4, -1), (5.4, -9)]
 
 
-def test_no_distance_gives_the_contour_itself() -> None:
+def test_zero_distance_returns_the_contour() -> None:
     contour = polyline((0, 0), (5, 0), (5, -9), (5, -3))
     assert offset_contour(contour, 0) == contour
 
@@ -119,7 +119,7 @@ REFUSED: list[tuple[str, list[Element], float, int]] = [
 @pytest.mark.parametrize(
     ("contour", "left", "index"), [each[1:] for each in REFUSED], ids=[each[0] for each in REFUSED]
 )
-def test_gouges(contour: list[Element], left: float, index: int) -> None:
+def test_gouges_are_rejected_at_their_element(contour: list[Element], left: float, index: int) -> None:
     with pytest.raises(GougeError) as refused:
         offset_contour(contour, left)
     assert refused.value.element_index == index
@@ -134,7 +134,7 @@ def test_gouges(contour: list[Element], left: float, index: int) -> None:
         (polyline((5, 0), (5, -3), (5.3, -3.3), (5.3, -6), (9, -6)), 0.3),
     ],
 )
-def test_next_to_a_gouge_but_good(contour: list[Element], left: float) -> None:
+def test_contour_just_short_of_a_gouge_is_offset(contour: list[Element], left: float) -> None:
     check(contour, offset_contour(contour, left), abs(left))
 
 
@@ -150,7 +150,9 @@ def check(contour: list[Element], path: list[Element], apart: float) -> None:
 
 @settings(max_examples=400, deadline=None)
 @given(CONTOURS, st.floats(0.05, 1.5), st.booleans())
-def test_no_point_is_nearer_than_the_distance(contour: list[Element], apart: float, left: bool) -> None:
+def test_offset_points_are_never_nearer_than_the_distance(
+    contour: list[Element], apart: float, left: bool
+) -> None:
     try:
         path = offset_contour(contour, apart if left else -apart)
     except GougeError:
@@ -162,7 +164,7 @@ def test_no_point_is_nearer_than_the_distance(contour: list[Element], apart: flo
 
 @settings(max_examples=300, deadline=None)
 @given(CONTOURS, st.floats(0.05, 1.5), st.booleans())
-def test_forth_and_back_are_the_same_offset(contour: list[Element], apart: float, left: bool) -> None:
+def test_offset_of_the_reversed_contour_is_the_same(contour: list[Element], apart: float, left: bool) -> None:
     side = apart if left else -apart
     turned = [element.make_reversed() for element in reversed(contour)]
     try:
@@ -188,14 +190,14 @@ def test_the_clearance_of_two_elements_is_the_least_distance(contour: list[Eleme
 
 
 @given(CONTOURS, st.floats(0, 1))
-def test_the_place_of_a_point_along_an_element(contour: list[Element], share: float) -> None:
+def test_distance_from_start_locates_a_point_on_an_element(contour: list[Element], share: float) -> None:
     for element in contour:
         at = share * element.length
         assert element.get_distance_from_start(element.get_point(at)) == pytest.approx(at, abs=1e-6)
         assert compute_distance_to_point(element, element.get_point(at)) < 1e-6
 
 
-def test_a_long_contour_comes_out_while_it_goes_in() -> None:
+def test_long_contour_is_offset_while_it_is_added() -> None:
     offset, out = OffsetBuilder(0.2), 0
     for k in range(1000):
         out += len(list(offset.add(Line((10.0, -k), (10.0, -k - 1)))))
@@ -203,7 +205,7 @@ def test_a_long_contour_comes_out_while_it_goes_in() -> None:
     assert len(list(offset.finish_contour())) == GOUGE_CHECK_ELEMENT_COUNT + 1
 
 
-def test_the_inside_of_a_cone() -> None:
+def test_cone_inside_corner_matches_hand_calculation() -> None:
     # Half the turn of 45 degrees: the corner moves back by tan 22.5 degrees of the distance.
     corner = offset_contour(polyline((5, 0), (5, -5), (8, -8)), 1)[0].end
     assert corner == pytest.approx((6, -5 + tan(pi / 8)))
@@ -212,7 +214,7 @@ def test_the_inside_of_a_cone() -> None:
 @given(
     st.lists(st.tuples(st.floats(0.01, 9), st.floats(0.001, 0.5)), min_size=2, max_size=6), st.floats(0, 5)
 )
-def test_a_contour_without_hollows_is_never_refused(steps: list[tuple[float, float]], apart: float) -> None:
+def test_convex_contour_is_never_rejected(steps: list[tuple[float, float]], apart: float) -> None:
     # It turns by 172 degrees at most, always away from the free side.
     contour = follow([(length, -turned, "line", 1.0) for length, turned in steps])
     path = offset_contour(contour, -apart)

@@ -59,14 +59,14 @@ def area(
     return found, within, stay
 
 
-def test_a_rectangle_shrinks_by_its_closed_formula_until_nothing_is_left() -> None:
+def test_rectangle_inset_matches_its_formula_until_nothing_is_left() -> None:
     loops, _, _ = area([SQUARE], [])
     for by in (1.0, 7.5, 19.9):
         assert enclosed(make_inset_loops(loops, by)) == pytest.approx((60 - 2 * by) * (40 - 2 * by), abs=1e-6)
     assert make_inset_loops(loops, 20.001) == []
 
 
-def test_an_island_grows_round_and_eats_its_pocket() -> None:
+def test_island_grows_with_rounded_corners_until_the_pocket_is_gone() -> None:
     """Rectangle less a circle, both moved: (60 - 2d)(40 - 2d) - pi (8 + d)^2 while they do not meet."""
     loops, _, _ = area([SQUARE], [circle((30.0, 20.0), 8.0)])
     for by in (1.0, 5.0):
@@ -77,7 +77,7 @@ def test_an_island_grows_round_and_eats_its_pocket() -> None:
     assert all(is_counterclockwise(loop) for loop in make_inset_loops(loops, 7.0))
 
 
-def test_two_circles_come_to_one_and_an_island_that_crosses_a_wall_cuts_in() -> None:
+def test_overlapping_circles_merge_and_an_island_across_a_wall_cuts_in() -> None:
     loops, _, _ = area([circle((35.0, 50.0), 25.0), circle((65.0, 50.0), 25.0, clockwise=True)], [])
     lens = 2 * 25**2 * math.acos(0.6) - 30 * 20  # of two circles of R25, 30 apart
     assert enclosed(loops) == pytest.approx(2 * math.pi * 25**2 - lens, abs=1e-1)
@@ -85,7 +85,7 @@ def test_two_circles_come_to_one_and_an_island_that_crosses_a_wall_cuts_in() -> 
     assert enclosed(loops) == pytest.approx(60 * 40 - 10 * 25)
 
 
-def test_edges_that_lie_on_one_another_are_no_boundary() -> None:
+def test_coincident_edges_are_not_a_boundary() -> None:
     loops, _, _ = area([SQUARE, polygon((60.0, 10.0), (80.0, 10.0), (80.0, 30.0), (60.0, 30.0))], [])
     assert len(loops) == 1
     assert enclosed(loops) == pytest.approx(60 * 40 + 20 * 20)
@@ -108,7 +108,7 @@ def _random_loop(dice: random.Random) -> ElementLoop:
     return polygon(*corners)
 
 
-def test_a_point_is_inside_the_inset_just_where_no_boundary_is_nearer() -> None:
+def test_point_is_inside_the_inset_only_if_far_enough_from_boundaries() -> None:
     """Any pockets and islands: each point by its distance alone, as no offset does it."""
     dice, judged, given_up = random.Random(71), 0, 0
     for _ in range(25):
@@ -133,7 +133,7 @@ def test_a_point_is_inside_the_inset_just_where_no_boundary_is_nearer() -> None:
     assert given_up <= 1
 
 
-def test_a_way_that_breaks_off_is_refused() -> None:
+def test_open_contour_is_rejected() -> None:
     open_end: list[Element] = [Line((0.0, 0.0), (10.0, 0.0)), Line((10.0, 0.0), (10.0, 10.0))]
     with pytest.raises(AreaError):
         find_boundary([open_end], lambda point: point[1] > 0.0)

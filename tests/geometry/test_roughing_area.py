@@ -27,14 +27,14 @@ def test_passes_end_at_the_shoulder_and_at_the_face() -> None:
     assert area.find_spans(10.1) == []
 
 
-def test_nothing_left_is_the_contour_itself() -> None:
+def test_zero_allowance_follows_the_contour() -> None:
     area = RoughingArea(STEP, 0)
     assert area.path == STEP
     assert area.find_spans(5.9) == [(0, pytest.approx(20))]
     assert area.find_spans(7) == [(0, pytest.approx(1))]
 
 
-def test_a_rise_divides_a_pass_in_two() -> None:
+def test_protrusion_divides_a_pass_in_two() -> None:
     bump = [*polyline((6, 0), (6, 10)), arc((6, 10), (6, 14), 2, clockwise=True), *polyline((6, 14), (6, 30))]
     assert bump[1].get_point(bump[1].length / 2) == pytest.approx((4, 12))
     area = RoughingArea(bump, 1)
@@ -47,7 +47,7 @@ def test_a_rise_divides_a_pass_in_two() -> None:
     assert not area.reverses_in_z
 
 
-def test_no_stretch_reaches_under_an_edge() -> None:
+def test_span_does_not_reach_under_an_edge() -> None:
     """A hook: depth 6, up to depth 2 at way 20, back to way 12 at depth 3."""
     hook = polyline((6, 0), (6, 20), (2, 20), (2, 12), (1, 12))
     area = RoughingArea(hook, 0)
@@ -55,7 +55,7 @@ def test_no_stretch_reaches_under_an_edge() -> None:
     assert area.find_spans(4) == [(0, 12)]
 
 
-def test_the_way_along_goes_round_outside_corners_and_meets_in_inside_ones() -> None:
+def test_path_rounds_outside_corners_and_meets_in_inside_corners() -> None:
     path = trim_offset(STEP, 0.5)
     assert [type(element) for element in path] == [Line, Arc, Line, Line]
     assert path[0].start == pytest.approx((10, 0.5))
@@ -65,7 +65,7 @@ def test_the_way_along_goes_round_outside_corners_and_meets_in_inside_ones() -> 
     assert path[3].end == pytest.approx((2, 19.5))
 
 
-def test_a_fillet_smaller_than_what_is_left_is_passed_by() -> None:
+def test_fillet_smaller_than_the_allowance_is_skipped() -> None:
     fillet = [
         *polyline((6, 0), (6, 19.7)),
         arc((6, 19.7), (5.7, 20), 0.3, clockwise=False),
@@ -75,7 +75,7 @@ def test_a_fillet_smaller_than_what_is_left_is_passed_by() -> None:
     assert [element.end for element in path] == [pytest.approx((5.5, 19.5)), pytest.approx((2, 19.5))]
 
 
-def test_behind_a_fillet_that_is_passed_by_the_way_goes_round_the_corner() -> None:
+def test_path_rounds_the_corner_after_a_skipped_fillet() -> None:
     """A fillet of .4, less than the .5, up to a wall that is none: a corner outwards right behind it."""
     contour = [
         *polyline((4, 0), (4, 9.6)),
@@ -89,7 +89,7 @@ def test_behind_a_fillet_that_is_passed_by_the_way_goes_round_the_corner() -> No
     assert round_corner.center == (3.6, 10)
 
 
-def test_a_groove_too_narrow_is_passed_by() -> None:
+def test_groove_that_is_too_narrow_is_skipped() -> None:
     groove = polyline((6, 0), (6, 10), (9, 10), (9, 10.8), (6, 10.8), (6, 20))
     path = trim_offset(groove, 0.5)
     # The two round corners of radius .5 meet half way between the walls, .4 from each: depth 6 - .3.
@@ -104,13 +104,13 @@ def test_a_bottle_is_not_entered_through_a_narrow_neck() -> None:
     assert max(element.bounding_box[1] for element in trim_offset(bottle, 0.5)) < 6
 
 
-def test_a_step_lower_than_what_is_left_ends_the_way_before_it() -> None:
+def test_step_smaller_than_the_allowance_ends_the_path_before_it() -> None:
     """The step of .2 at way 20: at depth 5.5 its corner (5.8, 20) is .5 away at 20 - .4."""
     path = trim_offset(polyline((6, 0), (6, 20), (5.8, 20)), 0.5)
     assert [element.end for element in path] == [pytest.approx((5.5, 19.6), abs=1e-6)]
 
 
-def test_a_contour_that_runs_straight_back_is_refused() -> None:
+def test_contour_that_doubles_back_is_rejected() -> None:
     with pytest.raises(TrimError):
         trim_offset(polyline((6, 0), (6, 10), (3, 10), (6, 10), (6, 20)), 0.5)
 
@@ -160,7 +160,7 @@ def area_of(contour: list[Element], left: float) -> RoughingArea:
 
 @settings(max_examples=150, deadline=None)
 @given(PROFILES, LEFT)
-def test_the_way_along_is_unbroken_and_never_too_near(contour: list[Element], left: float) -> None:
+def test_path_is_continuous_and_never_too_close(contour: list[Element], left: float) -> None:
     path = area_of(contour, left).path
     for before, after in pairwise(path):
         assert dist(before.end, after.start) < 0.0051
@@ -171,7 +171,7 @@ def test_the_way_along_is_unbroken_and_never_too_near(contour: list[Element], le
 
 @settings(max_examples=150, deadline=None)
 @given(PROFILES, LEFT, st.floats(0.05, 14.0))
-def test_stretches_are_far_from_the_contour_and_reach_it(
+def test_spans_stay_clear_of_the_contour_and_reach_it(
     contour: list[Element], left: float, depth: float
 ) -> None:
     """No point of a stretch, nor above it, is too near; just past its ends there is a reason to stop."""
@@ -197,7 +197,7 @@ def test_stretches_are_far_from_the_contour_and_reach_it(
 
 @settings(max_examples=100, deadline=None)
 @given(PROFILES, LEFT, st.floats(0.05, 13.0), st.floats(0.01, 2.0))
-def test_deeper_stretches_lie_within_shallower_ones(
+def test_deeper_spans_are_within_shallower_ones(
     contour: list[Element], left: float, depth: float, more: float
 ) -> None:
     area = area_of(contour, left)

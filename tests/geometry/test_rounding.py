@@ -36,7 +36,7 @@ def check(before: Element, after: Element, radius: float) -> None:
             assert near(part.center, whole.center)
 
 
-def test_from_a_cylinder_into_a_ball_worked_out() -> None:
+def test_rounding_from_line_into_arc_matches_hand_calculation() -> None:
     """Along the axis onto a ball of 10, then out along it: the rounding's centre is 2 off the axis and 12 off
     the middle of the ball.
     """
@@ -49,12 +49,12 @@ def test_from_a_cylinder_into_a_ball_worked_out() -> None:
     check(line, ball, 2.0)
 
 
-def test_two_lines_are_rounded_as_ever() -> None:
+def test_rounding_of_two_lines_is_repeatable() -> None:
     one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
     assert make_rounding(one, other, 3.0) == make_rounding(one, other, 3.0)
 
 
-def test_random_pairs() -> None:
+def test_random_roundings_are_tangent() -> None:
     dice, made = random.Random(3), 0
     for _ in range(3000):
         corner = (dice.uniform(-5, 5), dice.uniform(-5, 5))
@@ -81,14 +81,14 @@ def _way(dice: random.Random, start: Point) -> Element:
     return make_arc(start, end, centre, is_clockwise=clockwise)
 
 
-def test_what_goes_on_smoothly_has_no_corner() -> None:
+def test_tangent_elements_have_no_corner() -> None:
     line = Line((10.0, 20.0), (10.0, 0.0))
     arc = make_arc((10.0, 0.0), (0.0, -10.0), (0.0, 0.0), is_clockwise=True)
     with pytest.raises(NoCornerError):
         make_rounding(line, arc, 1.0)
 
 
-def test_one_that_is_longer_than_the_line() -> None:
+def test_rounding_longer_than_the_line_is_rejected() -> None:
     """r 45 would touch the axis at sqrt(55² - 45²) = 31.6; the line begins at 30, where r 40 does."""
     line = Line((0.0, 30.0), (0.0, 10.0))
     ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), is_clockwise=True)
@@ -98,7 +98,7 @@ def test_one_that_is_longer_than_the_line() -> None:
 
 
 @pytest.mark.parametrize("radius", [2.6, 5.0, 6.0])
-def test_one_that_is_too_large_for_the_inside_of_an_arc(radius: float) -> None:
+def test_rounding_too_large_for_the_inside_of_an_arc_is_rejected(radius: float) -> None:
     """From the middle of a bowl of 5 out to its rim: r 2.5 is the largest that lies between both."""
     spoke = Line((0.0, 0.0), (0.0, 5.0))
     bowl = make_arc((0.0, 5.0), (5.0, 0.0), (0.0, 0.0), is_clockwise=True)
@@ -107,7 +107,7 @@ def test_one_that_is_too_large_for_the_inside_of_an_arc(radius: float) -> None:
         make_rounding(spoke, bowl, radius)
 
 
-def test_a_rounding_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
+def test_rounding_that_consumes_a_whole_arc_is_rejected() -> None:
     """The rounding of 2 touches the ball where it is asked to end: nothing of it would be left."""
     line = Line((0.0, 30.0), (0.0, 10.0))
     touch = 10.0 / 12.0 * 2.0, 10.0 / 12.0 * math.sqrt(140.0)

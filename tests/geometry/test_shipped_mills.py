@@ -78,7 +78,7 @@ def some_place(
 
 
 @pytest.mark.parametrize("name", MILLS)
-def test_points_and_tool_lie_where_the_matrices_have_them(name: str) -> None:
+def test_points_and_tool_axis_match_the_rotation_matrices(name: str) -> None:
     machine, dice = shipped(name), random.Random(name)
     for _ in range(200):
         (angles, slides), length = some_place(machine, dice), dice.uniform(0, 150)
@@ -91,7 +91,7 @@ def test_points_and_tool_lie_where_the_matrices_have_them(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", MILLS)
-def test_another_angle_or_length_is_another_place(name: str) -> None:
+def test_other_angle_or_length_gives_another_position(name: str) -> None:
     machine = shipped(name)
     angles = {axis.name: 10.0 for axis in machine.rotary_axes}
     tip, _ = on_workpiece(name, angles, (0.0, 0.0, 0.0), 80.0)

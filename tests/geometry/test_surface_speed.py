@@ -9,7 +9,7 @@ import pytest
 from core.geometry.surface_speed import find_surface_rpm
 
 
-def test_the_trades_formula() -> None:
+def test_rpm_follows_the_surface_speed_formula() -> None:
     """250 ft/min at r .25 in: 250·12/(2·pi·.25) = 1909.86 rpm."""
     assert find_surface_rpm(250 * 304.8 / 60, 0.25 * 25.4, 0.0, 9999.0) == pytest.approx(
         3000 / (0.5 * math.pi)
@@ -17,7 +17,7 @@ def test_the_trades_formula() -> None:
 
 
 @pytest.mark.parametrize(("radius", "rpm"), [(0.0, 2500.0), (0.001, 2500.0), (1e6, 80.0)])
-def test_the_clamp_holds(radius: float, rpm: float) -> None:
+def test_rpm_is_clamped_to_its_limits(radius: float, rpm: float) -> None:
     assert find_surface_rpm(1270.0, radius, 80.0, 2500.0) == rpm
 
 

@@ -12,7 +12,7 @@ CENTRE, POINT, RADIUS = (1.0, 2.0), (1.0, 7.0), 3.0  # 5 apart: 3, 4 and 5 are t
 
 
 @pytest.mark.parametrize("clockwise", [True, False])
-def test_the_way_goes_on_round_the_circle_without_a_corner(clockwise: bool) -> None:
+def test_tangent_line_continues_into_the_circle_without_a_corner(clockwise: bool) -> None:
     touch = find_tangent_point(POINT, CENTRE, RADIUS, is_clockwise=clockwise)
     assert dist(touch, CENTRE) == pytest.approx(3.0)
     assert dist(touch, POINT) == pytest.approx(4.0)
@@ -22,10 +22,10 @@ def test_the_way_goes_on_round_the_circle_without_a_corner(clockwise: bool) -> N
     )
 
 
-def test_a_point_on_the_circle_is_where_it_is_touched() -> None:
+def test_point_on_the_circle_is_its_own_tangent_point() -> None:
     assert find_tangent_point((4.0, 2.0), CENTRE, RADIUS, is_clockwise=True) == pytest.approx((4.0, 2.0))
 
 
-def test_the_centre_itself_has_no_such_line() -> None:
+def test_center_has_no_tangent_line() -> None:
     with pytest.raises(ZeroDivisionError):
         find_tangent_point(CENTRE, CENTRE, RADIUS, is_clockwise=True)

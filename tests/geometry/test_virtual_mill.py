@@ -24,14 +24,14 @@ def at(move: PlaneMove, share: float) -> list[float]:
     return row
 
 
-def test_a_point_up_on_the_face_comes_under_the_tool_when_c_turns_back() -> None:
+def test_face_point_above_center_is_reached_by_negative_c_rotation() -> None:
     """Seen by the tool C+ is counter-clockwise; what is up has to turn clockwise to come to the right."""
     move = PlaneMove(FacePlane(c_start_deg=10.0), (3.0, 0.0, -1.0), (0.0, 4.0, -2.0))
     assert at(move, 0.0) == pytest.approx([-3.0, -1.0, 10.0])
     assert at(move, 1.0) == pytest.approx([-4.0, -2.0, 10.0 - 90.0])
 
 
-def test_a_tool_above_the_axis_stands_at_its_height_at_the_entry() -> None:
+def test_tool_above_the_axis_retains_its_entry_height() -> None:
     """H 3 and X 4: rho 5, machine x -4, and C where it was; (0, 5) is 53.13 degrees further round."""
     theta = math.atan2(3.0, 4.0)
     move = PlaneMove(FacePlane(c_start_deg=0.0, tool_height_mm=3.0), (4.0, 3.0, 0.0), (0.0, 5.0, 0.0), theta)
@@ -39,7 +39,7 @@ def test_a_tool_above_the_axis_stands_at_its_height_at_the_entry() -> None:
     assert at(move, 1.0) == pytest.approx([-4.0, 0.0, -math.degrees(math.pi / 2 - theta)])
 
 
-def test_the_side_is_unrolled_at_its_diameter() -> None:
+def test_side_plane_is_unrolled_at_its_diameter() -> None:
     """Half the circumference up is 180 degrees back; right is towards the spindle; Z counts outwards."""
     move = PlaneMove(
         SidePlane(c_start_deg=5.0, z_start_mm=-2.0, diameter_mm=20.0),
@@ -50,7 +50,7 @@ def test_the_side_is_unrolled_at_its_diameter() -> None:
     assert at(move, 1.0) == pytest.approx([-9.0, -9.0, 5.0 - 180.0])
 
 
-def test_clockwise_is_clockwise_with_y_up() -> None:
+def test_clockwise_arc_is_clockwise_with_y_up() -> None:
     quarter = PlaneMove(FacePlane(0.0), (-2.0, 0.0, 0.0), (0.0, 2.0, 0.0), center=(0.0, 0.0), clockwise=True)
     assert quarter.compute_mill_points(np.array([0.5]))[0].tolist() == pytest.approx(
         [-math.sqrt(2), math.sqrt(2), 0.0]
@@ -60,7 +60,7 @@ def test_clockwise_is_clockwise_with_y_up() -> None:
     assert other.length == pytest.approx(3.0 * math.pi)
 
 
-def test_an_arc_that_ends_where_it_starts_is_a_full_circle() -> None:
+def test_arc_that_ends_at_its_start_is_a_full_circle() -> None:
     move = PlaneMove(FacePlane(0.0), (5.0, 0.0, 0.0), (5.0, 0.0, 0.0), center=(2.0, 0.0))
     assert move.length == pytest.approx(6.0 * math.pi)
     # round the axis C turns once; beside it C comes back
@@ -69,12 +69,12 @@ def test_an_arc_that_ends_where_it_starts_is_a_full_circle() -> None:
     assert at(beside, 1.0)[2] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_rounded_centre_is_moved_so_that_the_arc_meets_its_end() -> None:
+def test_rounded_center_is_adjusted_so_the_arc_meets_its_end() -> None:
     move = PlaneMove(SidePlane(0.0, 0.0, 20.0), (0.0, 0.0, 1.0), (3.0, 3.0, 1.0), center=(3.0, 0.01))
     assert move.compute_mill_points(ENDS)[1].tolist() == pytest.approx([3.0, 3.0, 1.0])
 
 
-def test_nearest_to_the_axis() -> None:
+def test_minimum_distance_from_the_axis_is_found() -> None:
     line = PlaneMove(FacePlane(0.0), (8.0, -6.0, 0.0), (8.0, 2.0, 0.0))
     assert line.get_critical_fraction() == pytest.approx(0.75)
     assert line.compute_distance_from_axis(line.get_critical_fraction()) == pytest.approx(8.0)
@@ -88,7 +88,7 @@ def test_nearest_to_the_axis() -> None:
     )
 
 
-def test_reach_of_a_chord_holds_its_nearest_point() -> None:
+def test_travel_range_of_a_chord_includes_its_nearest_point() -> None:
     low, high = PlaneMove(FacePlane(0.0), (8.0, -6.0, 1.0), (8.0, 6.0, -1.0)).find_travel_range()
     assert low.tolist() == pytest.approx([-10.0, -1.0, -2 * math.degrees(math.atan2(6.0, 8.0))])
     assert high.tolist() == pytest.approx([-8.0, 1.0, 0.0])
@@ -96,7 +96,7 @@ def test_reach_of_a_chord_holds_its_nearest_point() -> None:
 
 @settings(max_examples=150, deadline=None)
 @given(size, size, size, angle, st.floats(-3.0, 3.0))
-def test_the_face_and_back(x: float, y: float, z: float, c0: float, h: float) -> None:
+def test_face_plane_conversion_is_reversible(x: float, y: float, z: float, c0: float, h: float) -> None:
     face, rho = FacePlane(c0, h), math.hypot(x, y)
     if rho < abs(h) + 0.01:
         return
@@ -107,7 +107,9 @@ def test_the_face_and_back(x: float, y: float, z: float, c0: float, h: float) ->
 
 @settings(max_examples=100, deadline=None)
 @given(size, size, size, angle, st.floats(0.5, 100.0))
-def test_the_side_and_back(x: float, y: float, z: float, c0: float, diameter: float) -> None:
+def test_side_plane_conversion_is_reversible(
+    x: float, y: float, z: float, c0: float, diameter: float
+) -> None:
     side = SidePlane(c0, 3.0, diameter)
     back = side.convert_to_mill(side.convert_to_lathe(np.array([[x, y, z]])))
     assert back[0].tolist() == pytest.approx([x, y, z], abs=1e-9)
@@ -115,7 +117,7 @@ def test_the_side_and_back(x: float, y: float, z: float, c0: float, diameter: fl
 
 @settings(max_examples=150, deadline=None)
 @given(size, size, size, size, st.booleans(), st.booleans())
-def test_c_goes_on_without_a_jump(
+def test_c_is_continuous_along_a_move(
     x: float, y: float, i: float, j: float, round_: bool, clockwise: bool
 ) -> None:
     """No two of 2001 points lie further apart in C than their distance and their nearness to the axis say."""

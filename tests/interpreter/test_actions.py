@@ -24,7 +24,7 @@ from core.plain_value import PlainValue
         (FeedHold("key", 3), FeedHold("panel", 4)),
     ],
 )
-def test_equal_values_have_one_hash(one: PlainValue, other: PlainValue) -> None:
+def test_equal_values_have_the_same_hash(one: PlainValue, other: PlainValue) -> None:
     assert one == other
     assert len({one, other}) == 1
 
@@ -45,22 +45,22 @@ def test_values_of_other_classes_or_with_other_attributes_differ(one: PlainValue
     assert one != other
 
 
-def test_a_value_shows_its_attributes() -> None:
+def test_repr_shows_the_attributes() -> None:
     assert repr(actions.OutputSwitch("m25", True)) == "OutputSwitch(name='m25', on=True)"
 
 
-def test_a_pattern_finds_the_attributes_in_the_order_of_the_arguments() -> None:
+def test_match_pattern_follows_the_argument_order() -> None:
     match actions.InputWait("TB2-9", False):
         case actions.InputWait(terminal, closed):
             assert (terminal, closed) == ("TB2-9", False)
 
 
-def test_a_copy_is_equal() -> None:
+def test_copy_equals_the_original() -> None:
     step = JogByStep("Z", -0.5, 3.0, (0.0, 0.0, 1.0))
     assert copy.deepcopy(step) == step == pickle.loads(pickle.dumps(step))
 
 
-def test_a_value_has_no_other_attributes_and_no_other_arguments() -> None:
+def test_unknown_attributes_and_arguments_are_rejected() -> None:
     with pytest.raises(AttributeError):
         CoolantSwitch(True).off = False  # type: ignore[attr-defined]
     with pytest.raises(TypeError):

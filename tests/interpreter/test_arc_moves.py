@@ -27,7 +27,9 @@ QUARTER = ("X.1Z0F20", "G02X.25Z-.15R.15")
         (("X0Z0F20", "G02Z-1R.4998"), (0, -0.5), True),  # .0004 short of the chord
     ],
 )
-def test_centres(program: tuple[str, ...], centre: tuple[float, float], clockwise: bool) -> None:
+def test_arc_center_is_calculated(
+    program: tuple[str, ...], centre: tuple[float, float], clockwise: bool
+) -> None:
     result = passed(body(*program))
     assert result.errors == []
     arc = result.moves[-1]
@@ -35,19 +37,19 @@ def test_centres(program: tuple[str, ...], centre: tuple[float, float], clockwis
     assert (arc.cx / INCH, arc.cz / INCH) == pytest.approx(centre, abs=6e-6)
 
 
-def test_the_end_stays_as_programmed_where_the_radii_differ_a_little() -> None:
+def test_arc_end_stays_as_programmed_if_the_radii_differ_slightly() -> None:
     result = passed(body("X.1Z0F20", "G02X.2504Z-.15I.1K-.15"))
     assert result.errors == []
     assert result.ends[-1] == (0.2504, -0.15)
     assert (result.moves[-1].cx / INCH, result.moves[-1].cz / INCH) == pytest.approx((0.1, -0.15))
 
 
-def test_an_arc_is_one_shot() -> None:
+def test_arc_word_applies_to_one_block() -> None:
     result = passed(body(*QUARTER, "X.5Z-.3"))
     assert [block.kind for block in result.moves] == [BlockKind.FEED, BlockKind.ARC, BlockKind.FEED]
 
 
-def test_a_constant_secondary_offset_carries_the_centre_along() -> None:
+def test_constant_secondary_offset_shifts_the_center() -> None:
     program = ("X.1Z0D1F20", "G02X.25Z-.15I.1K-.15")
     result = passed(body(*program), setup(secondary={1: (-0.01, 0.02)}))
     arc = result.moves[-1]
@@ -56,25 +58,25 @@ def test_a_constant_secondary_offset_carries_the_centre_along() -> None:
     assert result.ends[-1] == (0.24, -0.13)
 
 
-def test_an_arc_is_fed_and_rapid_as_a_line_is() -> None:
+def test_arc_uses_feed_and_rapid_like_a_line() -> None:
     assert passed(body("G95F.003X.1Z0", "G02X.25Z-.15R.15")).feeds[-1] == ("arc", 0.003)
     assert passed(body("F20X.1Z0", "G00G02X.25Z-.15R.15")).feeds[-1] == ("arc", 300)
 
 
-def test_a_slow_arc_is_told_by_its_length() -> None:
+def test_slow_arc_warning_uses_its_length() -> None:
     # a full circle of radius 1 in is 6.28 in: 37.7 s at 10 in/min
     assert passed(body("X0Z0F10", "G02I1K0")).warnings == [(4, 0, "feed-low")]
     assert passed(body("X0Z0F10", "G02Z-1R.5")).warnings == []
 
 
-def test_a_wrong_arc_says_both_radii() -> None:
+def test_invalid_arc_message_shows_both_radii() -> None:
     (error,) = passed(body("X.1Z0F20", "G02X.3Z-.15I.1K-.15")).interpreter.diagnostics
     assert error.code == "arc-radius"
     assert "0.15000 in" in error.message
     assert "0.20000 in" in error.message
 
 
-def test_a_wrong_metric_arc_says_both_radii_in_millimetres() -> None:
+def test_invalid_metric_arc_message_shows_both_radii_in_millimeters() -> None:
     (error,) = passed(body("G71X10Z0F500", "G02X30Z-15I10K-15")).interpreter.diagnostics
     assert "15.0000 mm" in error.message
     assert "20.0000 mm" in error.message
@@ -89,6 +91,6 @@ def test_a_wrong_metric_arc_says_both_radii_in_millimetres() -> None:
         ("G02X.1Z0I.1K-.15", []),  # a whole one is meant
     ],
 )
-def test_an_arc_over_half_a_circle_is_questioned(arc: str, expected: list[tuple[int, int, str]]) -> None:
+def test_arc_over_half_a_circle_raises_a_warning(arc: str, expected: list[tuple[int, int, str]]) -> None:
     result = passed(body("X.1Z0F20", arc))
     assert [each for each in result.warnings if each[2] == "arc-over-half"] == expected

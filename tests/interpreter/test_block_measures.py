@@ -33,11 +33,11 @@ from tests.motion.moves import arc, line
         (line((2.0, 2.0), (2.0, 2.0)), 0.0),
     ],
 )
-def test_the_feed_counts_the_way_and_degrees_where_only_c_turns(block: Block, length: float) -> None:
+def test_feed_length_is_path_length_or_degrees_for_c_alone(block: Block, length: float) -> None:
     assert block.length == pytest.approx(length)
 
 
-def test_the_reach_of_a_line_is_its_end_and_of_an_arc_all_of_it() -> None:
+def test_extent_of_a_line_is_its_end_and_of_an_arc_its_bounds() -> None:
     assert line((1.0, 2.0), (3.0, -4.0)).reach() == (3.0, 3.0, -4.0, -4.0)
     half = arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0))
     assert half.reach() == pytest.approx((0.0, 3.0, -3.0, 3.0))
@@ -45,7 +45,7 @@ def test_the_reach_of_a_line_is_its_end_and_of_an_arc_all_of_it() -> None:
     assert moved.compute_machine_bounds()[:2] == (pytest.approx((10.0, 13.0)), pytest.approx((-4.0, 2.0)))
 
 
-def test_a_secondary_offset_moves_all_that_a_milled_way_reaches() -> None:
+def test_secondary_offset_shifts_the_extent_of_a_milled_path() -> None:
     text = lines("G90G94F300", "M19", "X-.5Z-.1F5", "(~PLXC)", "(X0Y.4)", "(END)", "M30")
     (way,) = (block for block in passed(text).moves if block.kind is BlockKind.PLANE_LINE)
     low_x, high_x, low_z, high_z = way.reach()
@@ -54,7 +54,7 @@ def test_a_secondary_offset_moves_all_that_a_milled_way_reaches() -> None:
     assert moved.reach() == pytest.approx((low_x + 1.5, high_x + 1.5, low_z - 2.0, high_z - 2.0))
 
 
-def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once() -> None:
+def test_css_is_required_only_with_a_turning_spindle_and_listed_once() -> None:
     still = replace(line((0, 0), (0, 1)), line=1, css=2000.0)
     turns = replace(still, line=2, rpm=500.0)
     thread = replace(turns, line=3, kind=BlockKind.THREAD, per_rev=True)
@@ -81,12 +81,12 @@ def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once(
         ProgrammedFrame().add_scaling(3.0, 1.5).add_rotation(40.0),
     ],
 )
-def test_what_is_turned_into_the_machine_turns_back(frame: ProgrammedFrame) -> None:
+def test_frame_transform_is_invertible(frame: ProgrammedFrame) -> None:
     for x, z in ((1.0, 0.0), (0.0, 1.0), (-3.5, 7.25)):
         assert frame.invert_distance(*frame.transform_distance(x, z)) == pytest.approx((x, z), abs=1e-12)
 
 
-def test_a_frame_turns_from_z_towards_x() -> None:
+def test_frame_rotation_is_from_z_toward_x() -> None:
     """By 90 degrees Z of the program is X of the machine, and X its -Z."""
     frame = ProgrammedFrame().add_rotation(90.0)
     assert frame.transform_distance(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
@@ -103,7 +103,7 @@ def test_a_frame_turns_from_z_towards_x() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "(NOTHING)\n", "\n\n(A)\n", "/G90X1\n"])
-def test_of_a_program_without_a_line_to_execute_no_unit_is_asked(text: str) -> None:
+def test_program_without_executed_lines_needs_no_unit(text: str) -> None:
     """The control counts in mm, and the program names no unit: there is nothing that would run in it."""
     given = setup(metric=True, block_delete=True)
     assert "units-unnamed" not in [code for _, _, code in passed(text, given).warnings]

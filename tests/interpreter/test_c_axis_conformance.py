@@ -32,7 +32,7 @@ def milled(result: Pass) -> list[Block]:
     return [b for b in result.moves if b.plane is not None]
 
 
-def test_cross_drill() -> None:
+def test_cross_drill_example_runs_as_documented() -> None:
     result = good("caxis-cross-drill")
     holes = [b.c for b in result.moves if b.kind is BlockKind.FEED and b.x < b.x0]
     assert holes == pytest.approx([27.5, 117.5, 207.5, 297.5])
@@ -40,7 +40,7 @@ def test_cross_drill() -> None:
     assert result.warnings == [(7, 1, "dwell-too-short")]
 
 
-def test_slot_lead() -> None:
+def test_slot_lead_example_runs_as_documented() -> None:
     (slot,) = [b for b in good("caxis-slot-lead").moves if b.per_rev]
     assert (slot.z - slot.z0) / INCH == pytest.approx(-0.1)
     assert slot.feed / INCH == pytest.approx(0.8)
@@ -48,13 +48,13 @@ def test_slot_lead() -> None:
     assert abs(slot.z - slot.z0) / slot.feed * 360 == pytest.approx(45.0)
 
 
-def test_too_little_turn() -> None:
+def test_too_little_c_rotation_is_rejected() -> None:
     result = example("caxis-too-little-turn")
     assert result.errors == [(9, 1, "c-too-little")]
     assert any("432" in d.message for d in result.interpreter.diagnostics)
 
 
-def test_rectangle() -> None:
+def test_rectangle_example_runs_as_documented() -> None:
     result = good("plane-xc-rectangle")
     corners = milled(result)[1:]
     programmed = [(0.313, -0.25), (0.313, 0.25), (-0.313, 0.25), (-0.313, -0.25), (0.313, -0.25)]
@@ -64,7 +64,7 @@ def test_rectangle() -> None:
     assert corners[-1].c - corners[0].c == pytest.approx(-360.0)
 
 
-def test_oval() -> None:
+def test_oval_is_milled_at_a_constant_distance() -> None:
     """Everywhere .1875 in from the middle line of the oval, which runs from X -.1875 to .1875."""
     way = milled(good("plane-xc-oval"))
     assert way[-1].c - way[0].c == pytest.approx(-360.0)
@@ -75,13 +75,13 @@ def test_oval() -> None:
         assert off == pytest.approx(np.full(50, 0.1875))
 
 
-def test_six_flats() -> None:
+def test_six_flats_turn_c_in_60_degree_steps() -> None:
     ends = [b.c for b in milled(good("plane-xc-six-flats")) if b.line == 14]
     assert np.diff(ends) == pytest.approx([-60.0] * 5, abs=1e-3)
     assert ends[-1] == pytest.approx(-360.0, abs=6e-3)  # as near as the five decimals of the program
 
 
-def test_square_and_circle() -> None:
+def test_square_and_circle_example_runs_as_documented() -> None:
     way = milled(good("plane-zc-square-circle"))
     (up,) = [b for b in way if b.line == 12]
     assert up.c == pytest.approx(-360 * 0.5625 / (pi * 0.875))
@@ -91,13 +91,13 @@ def test_square_and_circle() -> None:
         assert block.z / INCH == pytest.approx(-0.1187 - block.plane.end[0] / INCH)
 
 
-def test_figure_eight() -> None:
+def test_figure_eight_example_ends_at_its_start() -> None:
     way = milled(good("plane-zc-figure-eight"))
     start, end = way[1], way[-2]
     assert (end.x, end.z, end.c) == pytest.approx((start.x, start.z, start.c))
     assert start.x / INCH == pytest.approx(-0.775 / 2)
 
 
-def test_j_slot() -> None:
+def test_j_slot_example_runs_as_documented() -> None:
     (up,) = [b for b in milled(good("plane-zc-j-slot")) if b.line == 12]
     assert up.c == pytest.approx(39.289, abs=5e-4)

@@ -30,13 +30,13 @@ def pecks(result: Pass, line: int) -> list[float]:
     return [round(b.z / INCH, 5) for b in on_line(result, line) if b.kind is BlockKind.FEED]
 
 
-def test_a_drill() -> None:
+def test_g81_drills_at_feed_and_retracts_in_rapid() -> None:
     way_in, way_out = on_line(example("drill-g81"), 6)
     assert (str(way_in.kind), way_in.z / INCH, in_feed(way_in)) == ("feed", pytest.approx(-0.1), 0.005)
     assert (str(way_out.kind), way_out.z / INCH) == ("rapid", pytest.approx(0.01))
 
 
-def test_pecks() -> None:
+def test_g83_peck_feeds_match_the_example() -> None:
     result = example("drill-peck-g83")
     assert pecks(result, 6) == [-0.09, -0.19, -0.29, -0.39, -0.49, -0.5]
     rapids = [b for b in on_line(result, 6) if b.kind is BlockKind.RAPID]
@@ -47,14 +47,14 @@ def test_pecks() -> None:
     assert {round(in_feed(b), 6) for b in on_line(result, 6) if b.kind is BlockKind.FEED} == {0.003}
 
 
-def test_two_drills() -> None:
+def test_second_drill_pecks_from_the_depth_of_the_first() -> None:
     result = example("drill-peck-two-drills")
     assert pecks(result, 6) == [-0.19, -0.39, -0.5]
     assert pecks(result, 11) == [-0.5, -0.6, -0.7, -0.8]
     assert on_line(result, 11)[0].z0 / INCH == pytest.approx(-0.4)
 
 
-def test_rings() -> None:
+def test_loop_shifts_each_ring() -> None:
     result = example("loop-rings")
     assert pecks(result, 8) == [-0.2, -0.5, -0.8, -1]
     drilled = on_line(result, 8)
@@ -71,7 +71,7 @@ def test_rings() -> None:
     assert [round((b.mz - b.z) / INCH, 5) for b in rings] == [round(-0.15 * k, 5) for k in range(6)]
 
 
-def test_a_box() -> None:
+def test_g74_box_roughing_matches_the_example() -> None:
     result = example("rough-box-g74")
     moves = on_line(result, 7)
     passes = [b for b in moves if b.kind is BlockKind.FEED and b.z != b.z0]
@@ -96,7 +96,7 @@ def contour(name: str) -> list[Element]:
     ("name", "start", "x"),
     [("rough-contour-g75-diameter", (0.4, 0.1), -1), ("rough-contour-g75-internal", (0.2, 0.1), 1)],
 )
-def test_contours(name: str, start: tuple[float, float], x: int) -> None:
+def test_contour_roughing_never_cuts_too_deep(name: str, start: tuple[float, float], x: int) -> None:
     result = example(name)
     line = next(block.line for block in result.moves if block.text and block.line > 5)
     moves = on_line(result, line)
@@ -115,7 +115,7 @@ def test_the_contour_in_a_subroutine_gives_the_same_motions() -> None:
     assert here.warnings == there.warnings == [(7, 1, "cycle-plunge")]
 
 
-def test_rough_and_finish_with_two_tools() -> None:
+def test_roughing_and_finishing_use_two_tools() -> None:
     result = example("rough-finish-g75-g78-two-tools")
     finish = contour_of([block for block in result.moves if block.line > 22])
     assert nearest(on_line(result, 7), finish, 0.05) == pytest.approx(0.04 * INCH, abs=0.002)

@@ -59,14 +59,14 @@ FAMILIES = sorted(
 )
 
 
-def test_no_code_has_two_entries() -> None:
+def test_codes_have_a_single_entry() -> None:
     written = [code.name for code in CODES]
     assert sorted(written) == sorted(set(written))
     assert len(G_CODES) + len(M_CODES) + len(FLOW_CODES) + len(LETTER_ENTRIES) == len(CODES)
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
-def test_an_entry_is_whole(code: CodeEntry) -> None:
+def test_code_entry_is_complete(code: CodeEntry) -> None:
     assert code.syntax
     assert code.description.endswith(".")
     assert code.name.strip("()") in code.example + code.subroutine
@@ -77,7 +77,7 @@ def test_an_entry_is_whole(code: CodeEntry) -> None:
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
-def test_the_example_proves(code: CodeEntry) -> None:
+def test_code_example_proves_without_errors(code: CodeEntry) -> None:
     machine = load_machine(None)
     secondary = {
         1: SecondaryOffset(-NOSE, -NOSE, NOSE),
@@ -93,12 +93,12 @@ def test_the_example_proves(code: CodeEntry) -> None:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_each_refusal_of_a_family_stands_in_an_entry(family: str) -> None:
+def test_every_refusal_of_a_family_is_in_an_entry(family: str) -> None:
     told = set(REFUSAL.findall((ROOM / f"{family}.py").read_text(encoding="utf-8")))
     assert told - OF_NO_CODE - frozenset().union(*(code.diagnostic_codes for code in CODES)) == set()
 
 
-def test_no_entry_names_a_refusal_that_is_none() -> None:
+def test_entries_list_only_existing_refusals() -> None:
     tables = {"move_codes.py", "cycle_codes.py", "flow_codes.py"}
     files = [*(file for file in ROOM.rglob("*.py") if file.name not in tables), SHARED]
     text = "".join(file.read_text(encoding="utf-8") for file in files)
@@ -133,7 +133,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("code", "letter", "number", "refusal"), REFUSED)
-def test_a_rule_refuses_what_it_says(
+def test_rule_rejects_a_missing_or_invalid_word(
     code: CodeEntry, letter: str, number: str | None, refusal: ErrorTemplate
 ) -> None:
     """The example, its word left out or written with a number that the rule does not take."""
@@ -149,14 +149,14 @@ def test_a_rule_refuses_what_it_says(
     assert refusal.diagnostic_code in [found for _, _, found in passed(text).errors], text
 
 
-def test_a_rule_in_the_entry_is_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rule_in_the_entry_is_applied(monkeypatch: pytest.MonkeyPatch) -> None:
     strict = replace(G_CODES[4], word_rules={"F": replace(G_CODES[4].word_rules["F"], maximum=1.0)})
     assert passed(program("G04F2")).errors == []
     monkeypatch.setitem(G_CODES, 4, strict)
     assert [code for _, _, code in passed(program("G04F2")).errors] == ["dwell-range"]
 
 
-def test_the_page_is_written_from_the_table() -> None:
+def test_reference_page_matches_the_code_table() -> None:
     assert PAGE.read_text(encoding="utf-8") == render_language_reference(), (
         "python -m core.interpreter.omniturn.codes.language_page > docs/language.md"
     )
@@ -189,11 +189,11 @@ def program(*lines: str) -> str:
     return EXAMPLE_HEAD + "\n".join(lines) + "\nM30\n"
 
 
-def test_a_code_without_an_entry_does_not_exist() -> None:
+def test_code_without_an_entry_is_rejected() -> None:
     assert [code for _, _, code in passed(program("G05F2")).errors] == ["g-unknown"]
 
 
-def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_single_entry_defines_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(G_CODES, 5, TRIAL)
     monkeypatch.setattr(spindle_and_dwell, "wait_in_turns", wait_in_turns, raising=False)
     result = passed(program("Z0", "G05F2", "Z-.1"))
@@ -205,7 +205,7 @@ def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
         assert passed(program(refused)).errors != []
 
 
-def test_a_code_whose_f_means_nothing_is_none() -> None:
+def test_invalid_code_entry_is_rejected() -> None:
     with raises_code(CodeEntryError, "f-word", "G05"):
         replace(TRIAL, f_meaning=FMeaning.NONE)
     with raises_code(CodeEntryError, "f-word", "G05"):
@@ -225,6 +225,6 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
         replace(TRIAL, action_kind=ActionKind.MODE)
 
 
-def test_a_handler_that_is_nowhere_is_an_error() -> None:
+def test_unknown_handler_raises_an_error() -> None:
     with pytest.raises(AttributeError):
         load_handler(replace(TRIAL, handler="setup.spindle_and_dwell:nowhere"))

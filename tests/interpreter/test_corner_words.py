@@ -31,7 +31,7 @@ def cuts(result: Pass) -> list[Cut]:
 HEAD = "X.2Z0F9"
 
 
-def test_a_chamfer_in_radius_mode() -> None:
+def test_chamfer_size_is_per_side_in_radius_mode() -> None:
     assert cuts(passed(body(HEAD, "X.5C.03", "Z-.4"))) == [
         Cut(3, "X.2Z0F9", 0.2, 0),
         Cut(4, "X.47", 0.47, 0),
@@ -40,7 +40,7 @@ def test_a_chamfer_in_radius_mode() -> None:
     ]
 
 
-def test_a_size_is_never_a_diameter() -> None:
+def test_chamfer_size_is_per_side_in_diameter_mode() -> None:
     assert cuts(passed(body("G72", HEAD, "X.5C.03", "Z-.4")))[1:] == [
         Cut(5, "X.44", 0.22, 0),
         Cut(5, "X.5Z-.03", 0.25, -0.03),
@@ -48,7 +48,7 @@ def test_a_size_is_never_a_diameter() -> None:
     ]
 
 
-def test_a_radius_in_diameter_mode() -> None:
+def test_corner_radius_in_diameter_mode() -> None:
     result = passed(body("G72", "X.2Z-.35F9", "X.5R.025", "Z-.45"))
     assert cuts(result)[1:] == [
         Cut(5, "X.45", 0.225, -0.35),
@@ -60,7 +60,7 @@ def test_a_radius_in_diameter_mode() -> None:
     assert (arc.cx / INCH, arc.cz / INCH) == pytest.approx((0.225, -0.375))
 
 
-def test_the_turn_decides_the_direction_of_the_radius() -> None:
+def test_corner_radius_direction_follows_turn_of_contour() -> None:
     result = passed(body("X.5Z0F9", "Z-.4R.1", "X.9"))
     assert cuts(result)[1:] == [
         Cut(4, "Z-.3", 0.5, -0.3),
@@ -69,7 +69,7 @@ def test_the_turn_decides_the_direction_of_the_radius() -> None:
     ]
 
 
-def test_a_corner_in_distances() -> None:
+def test_corner_words_in_incremental_mode() -> None:
     result = passed(body(HEAD, "G91", "X.3C.03", "Z-.4", "X.1"))
     assert cuts(result)[1:] == [
         Cut(5, "X.27", 0.47, 0),
@@ -79,12 +79,12 @@ def test_a_corner_in_distances() -> None:
     ]
 
 
-def test_a_corner_in_metric() -> None:
+def test_corner_radius_in_metric_mode() -> None:
     result = passed(body("G71", "X10Z0F200", "X20R2.5", "Z-10"))
     assert [cut.text for cut in cuts(result)] == ["X10Z0F200", "X17.5", "G02X20Z-2.5R2.5", "Z-10"]
 
 
-def test_a_radius_at_half_a_right_angle() -> None:
+def test_corner_radius_between_lines_at_45_degrees() -> None:
     back = 0.1 * tan(0.39269908169872414)  # half of 45 degrees
     result = cuts(passed(body("X.5Z0F9", "Z-.5R.1", "X1Z-1")))
     assert (result[1].x, result[1].z) == pytest.approx((0.5, -0.5 + back), abs=6e-6)
@@ -92,14 +92,14 @@ def test_a_radius_at_half_a_right_angle() -> None:
     assert (result[2].x, result[2].z) == pytest.approx(end, abs=6e-6)
 
 
-def test_corners_one_after_the_other_share_their_line() -> None:
+def test_consecutive_corners_share_their_line() -> None:
     result = cuts(passed(body(HEAD, "X.5C.1", "Z-.3R.2", "X.9")))
     assert [(cut.line, cut.x, cut.z) for cut in result[1:]] == [
         (4, 0.4, 0), (4, 0.5, -0.1), (5, 0.5, -0.1), (5, 0.7, -0.3), (6, 0.9, -0.3),
     ]  # fmt: skip
 
 
-def test_words_between_the_moves_do_not_matter() -> None:
+def test_modal_words_between_moves_do_not_affect_corner() -> None:
     result = cuts(passed(body(HEAD, "X.5C.03", "G72", "G91", "(NOTE)", "S900", "G94F5", "Z-.4")))
     assert [(cut.line, cut.text) for cut in result[1:]] == [(4, "X.47"), (4, "X.5Z-.03"), (10, "Z-.37")]
 
@@ -117,7 +117,7 @@ def test_an_action_between_the_moves_happens_after_the_corner() -> None:
     assert result.actions[1:3] == [CoolantSwitch(on=False), CoolantSwitch(on=True)]
 
 
-def test_rapids_and_feeds_keep_what_they_are() -> None:
+def test_rapids_and_feeds_at_corner_are_preserved() -> None:
     result = passed(body("F9", "G00X.5Z0", "Z-.3C.05", "G01X.9", "G00Z0"))
     assert [(b.kind, b.text) for b in result.moves] == [
         (BlockKind.RAPID, "G00X.5Z0"),
@@ -128,7 +128,7 @@ def test_rapids_and_feeds_keep_what_they_are() -> None:
     ]
 
 
-def test_an_offset_that_changes_at_the_corner() -> None:
+def test_corner_is_correct_when_offset_changes_at_corner() -> None:
     given = setup(secondary={4: (-0.01, 0)})
     result = cuts(passed(body("X.1Z0F9", "X.2C.02", "Z-.75D4", "X.4D0"), given))
     assert [(cut.x, cut.z) for cut in result] == [
@@ -140,36 +140,36 @@ def test_an_offset_that_changes_at_the_corner() -> None:
     ]
 
 
-def test_a_corner_may_wait_for_a_subroutine() -> None:
+def test_corner_continues_into_subroutine() -> None:
     text = lines("G90G94F300", HEAD, "X.5C.03", "M98P1", "M30", "}1", "Z-.4", "M99")
     assert [cut.line for cut in cuts(passed(text))] == [2, 3, 3, 7]
 
 
-def test_a_corner_across_the_end_of_a_loop() -> None:
+def test_corner_continues_across_end_of_loop() -> None:
     text = lines("G90G94F300", HEAD, "LS2", "G91", "X.3C.03", "Z-.4", "LF", "M30")
     assert [cut.line for cut in cuts(passed(text))] == [2, 5, 5, 6, 5, 5, 6]
 
 
-def test_blocks_are_counted_without_a_gap() -> None:
+def test_blocks_are_numbered_without_gap_when_corners_add_blocks() -> None:
     result = passed(body(HEAD, "X.5C.03", "Z-.4C.02", "X.9", "X1", "X1.1"))
     assert [block.n for block in result.blocks] == list(range(1, 11))
     assert result.interpreter._state.blocks == 10
 
 
-def test_a_machine_speed_follows_the_new_end() -> None:
+def test_css_speed_follows_end_point_shortened_by_corner() -> None:
     result = passed(body("G96S300", "G77S3000", "X.5Z0F9", "X1R.1", "Z-1"))
     cut = next(block for block in result.moves if block.line == 6)
     assert cut.x / INCH == pytest.approx(0.9)
     assert cut.rpm == pytest.approx(300 * 12 / (2 * 3.141592653589793 * 0.9))
 
 
-def test_lines_in_one_direction_have_nothing_to_cut() -> None:
+def test_corner_between_collinear_lines_is_ignored_with_warning() -> None:
     result = passed(body(HEAD, "X.5C.03", "X.9"))
     assert result.warnings == [(4, 4, "corner-straight")]
     assert [cut.text for cut in cuts(result)] == [HEAD, "X.5C.03", "X.9"]
 
 
-def test_a_corner_may_use_up_its_line() -> None:
+def test_corner_may_use_whole_length_of_line() -> None:
     result = passed(body(HEAD, "X.5C.3", "Z-.3"))
     assert result.errors == []
     assert result.ends == [(0.2, 0), (0.2, 0), (0.5, -0.3), (0.5, -0.3)]
@@ -210,13 +210,13 @@ REFUSED: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), REFUSED, ids=[" ".join(program) for program, _ in REFUSED])
-def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_corner_word_is_rejected(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     result = passed(body(HEAD, *program))
     assert error in result.errors
     assert all(block.line < error[0] for block in result.moves)
 
 
-def test_the_message_says_what_is_left_of_the_line() -> None:
+def test_corner_impossible_message_states_remaining_line_length() -> None:
     found = passed(body(HEAD, "X.5C.2", "Z-.3C.11", "X.9")).interpreter.diagnostics
     assert [each.message for each in found] == [
         text(
@@ -231,7 +231,7 @@ def kinds(blocks: list[Block]) -> list[str]:
     return [str(block.kind) for block in blocks]
 
 
-def test_under_an_arc_the_radius_stays_the_arcs() -> None:
+def test_r_word_on_arc_is_arc_radius_not_corner() -> None:
     result = passed(body(HEAD, "G02X.5Z-.3R.3", "Z-.5"))
     assert kinds(result.moves) == ["feed", "arc", "feed"]
     assert result.errors == []

@@ -11,10 +11,10 @@ from tests.interpreter.programs import body, passed
     ("dwell", "expected"),
     [("G04F500", [(4, 4, "dwell-long")]), ("G04F60", []), ("G04F.5", [])],
 )
-def test_a_long_dwell_with_a_tool(dwell: str, expected: list[tuple[int, int, str]]) -> None:
+def test_long_dwell_with_tool_causes_warning(dwell: str, expected: list[tuple[int, int, str]]) -> None:
     result = passed(body("T1", dwell))
     assert [each for each in result.warnings if each[2] == "dwell-long"] == expected
 
 
-def test_a_spindle_warms_up_without_a_tool() -> None:
+def test_long_dwell_without_tool_causes_no_warning() -> None:
     assert passed(body("M03S500", "G04F300", "M05")).warnings == []

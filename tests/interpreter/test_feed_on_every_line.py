@@ -63,20 +63,20 @@ def program(chance: random.Random, between: Sequence[str], feeds: Sequence[str])
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_every_finding_is_that_of_the_statements(seed: int) -> None:
+def test_findings_with_feed_on_every_line_match_statement_findings(seed: int) -> None:
     text = program(random.Random(seed), [*MEANT, *ODD], ["", "F.003", "F.0031", "F.004", *STRANGE])
     assert gone_through(text) == by_statements(text)
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_every_block_is_that_of_the_statements(seed: int) -> None:
+def test_blocks_with_feed_on_every_line_match_statement_blocks(seed: int) -> None:
     text = program(random.Random(seed), MEANT, ["", "F.003", "F.0031", "F.004", "F.05"])
     blocks, found = gone_through(text)
     assert len(blocks) > 60
     assert (blocks, found) == by_statements(text)
 
 
-def test_the_feed_in_force_is_that_of_the_line_and_no_statement_is_made() -> None:
+def test_feed_on_line_sets_modal_feed_without_statement() -> None:
     moves = [f"X.{5 + k % 2}Z-.{k + 1}F.00{k + 3}" for k in range(4)]
     with patch("core.interpreter.omniturn.omniturn_interpreter.make_statement") as made:
         interpreter = Interpreter(
@@ -97,13 +97,13 @@ def test_the_feed_in_force_is_that_of_the_line_and_no_statement_is_made() -> Non
     ("feed", "code"),
     [("F.3", "feed-range"), ("F.06", "feed-high"), ("F301", "feed-range"), ("F.00001", "feed-range")],
 )
-def test_what_is_no_feed_or_a_strange_one_is_told_of_its_line(feed: str, code: str) -> None:
+def test_invalid_or_unusual_feed_is_reported_on_its_line(feed: str, code: str) -> None:
     text = "\n".join([*HEAD, "X.5Z0", "Z-.1F.004", f"Z-.2{feed}", "M30"])
     found = [(each.line, each.code) for each in gone_through(text)[1]]
     assert (len(HEAD) + 3, code) in found
 
 
-def test_the_feed_over_what_the_slides_reach_at_that_speed_is_refused() -> None:
+def test_feed_above_axis_limit_at_spindle_speed_is_rejected() -> None:
     """.05 in a turn at 2000 rpm are 100 in/min, where the slides reach 90."""
     slow = replace(SETUP, limits=ControlLimits(max_feed_mm_s=90 * 25.4 / 60))
     text = "\n".join(["G90G94F80G72", *HEAD[1:], "X.5Z0", "Z-.1F.004", "Z-.2F.045", "Z-.3F.05", "M30"])

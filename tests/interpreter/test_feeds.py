@@ -27,7 +27,7 @@ from tests.interpreter.programs import INCH, body, lines, passed, setup
         (("G95", "G94F30X1"), [("feed", 30)]),
     ],
 )  # fmt: skip
-def test_feed_in_force(program: tuple[str, ...], feeds: list[tuple[str, float]]) -> None:
+def test_feed_and_feed_mode_in_force(program: tuple[str, ...], feeds: list[tuple[str, float]]) -> None:
     result = passed(body(*program))
     assert result.errors == []
     assert result.feeds == feeds
@@ -37,24 +37,24 @@ def test_feed_in_force(program: tuple[str, ...], feeds: list[tuple[str, float]])
     ("first", "rate"),
     [("G90G94F200", 200.0), ("G90F150", 150.0), ("G90", 80.0), ("G90G95F.003", 80.0), ("G90G00F120", 120.0)],
 )
-def test_the_rapid_rate_is_the_first_lines_feed_or_the_last_rapid(first: str, rate: float) -> None:
+def test_rapid_rate_is_feed_of_first_line_or_last_rapid(first: str, rate: float) -> None:
     result = passed(lines(first, "G00X1", "M30"), setup(last_rapid=80))
     assert result.feeds == [("rapid", rate)]
 
 
-def test_metric_feeds() -> None:
+def test_metric_feeds_are_in_millimeters() -> None:
     result = passed(lines("G90G94G71F7620", "M03S1000", "X10", "F254X20", "G95F.0762X30", "M30"))
     assert result.feeds == [("rapid", 300), ("feed", 10), ("feed", 0.003)]
 
 
-def test_a_feed_carries_its_size_inside() -> None:
+def test_feed_is_stored_in_mm_with_spindle_speed() -> None:
     block = passed(body("G95F.003X1")).moves[0]
     assert block.per_rev
     assert block.feed == pytest.approx(0.003 * INCH)
     assert block.rpm == 1000
 
 
-def test_feed_over_revolutions_at_its_limit() -> None:
+def test_feed_per_rev_at_speed_limit_is_accepted() -> None:
     # .1 in/rev at 3000 rpm is 300 in/min, the most the slide does
     assert passed(body("S3000", "G95F.1X1")).errors == []
 
@@ -75,7 +75,9 @@ def test_feed_over_revolutions_at_its_limit() -> None:
         (("F1X.1", "X.2", "Z9"), [(5, 0, "feed-low")]),
     ],
 )
-def test_feeds_that_look_like_slips(program: tuple[str, ...], warnings: list[tuple[int, int, str]]) -> None:
+def test_suspicious_feeds_cause_warnings(
+    program: tuple[str, ...], warnings: list[tuple[int, int, str]]
+) -> None:
     result = passed(body(*program))
     assert result.errors == []
     assert result.warnings == warnings
@@ -94,13 +96,13 @@ def test_feeds_that_look_like_slips(program: tuple[str, ...], warnings: list[tup
         (("G00 (DRILL)", "X2"), []),  # the feed before was the rapid too
     ],
 )
-def test_a_title_beside_g00_turns_cuts_into_rapids(
+def test_g00_with_title_only_warns_of_cuts_made_as_rapids(
     program: tuple[str, ...], warnings: list[tuple[int, int, str]]
 ) -> None:
     assert passed(body(*program)).warnings == warnings
 
 
-def test_the_state_is_that_of_power_up() -> None:
+def test_program_starts_with_power_up_state() -> None:
     modal = passed(lines("G90", "G00X1", "M30")).moves[0].modal
     assert (modal.per_rev, modal.metric, modal.diameter, modal.css) == (False, False, False, False)
     assert (modal.compensation_code, modal.coarse, modal.tool, modal.secondary, modal.spindle) == (
@@ -113,7 +115,7 @@ def test_the_state_is_that_of_power_up() -> None:
 
 
 @pytest.mark.parametrize(("text", "warned"), [("G90F10", True), ("G90G70F10", False), ("G90G71F250", False)])
-def test_a_program_after_a_metric_job_should_name_its_units(text: str, warned: bool) -> None:
+def test_program_without_units_after_metric_job_causes_warning(text: str, warned: bool) -> None:
     result = passed(lines(text, "X1", "M30"), setup(metric=True))
     assert (1, 0, "units-unnamed") in result.warnings or not warned
     assert result.moves[0].modal.metric is not text.startswith("G90G70")

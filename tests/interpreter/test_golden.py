@@ -117,7 +117,7 @@ def shown(words: list[str | float]) -> str:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_program_does_what_its_table_says(name: str) -> None:
+def test_program_produces_blocks_of_its_table(name: str) -> None:
     table = [text.split() for text in (PROGRAMS / f"{name}.expected").read_text("utf-8").splitlines()]
     header = [words[1:] for words in table if words[:1] == ["#"]]
     findings = [words for words in table if words and words[0] in set(Severity)]
@@ -140,6 +140,6 @@ def test_a_program_does_what_its_table_says(name: str) -> None:
     assert len(found) == len(blocks)
 
 
-def test_there_are_programs_and_each_has_its_table() -> None:
+def test_every_golden_program_has_its_table() -> None:
     assert NAMES
     assert sorted(path.stem for path in PROGRAMS.glob("*.expected")) == NAMES

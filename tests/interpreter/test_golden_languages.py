@@ -32,7 +32,7 @@ MACHINE = {Dialect.KLARTEXT: "ac-table-mill", Dialect.SINUMERIK: "sinumerik-modu
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_a_program_does_what_its_table_says(path: Path) -> None:
+def test_program_produces_blocks_of_its_table(path: Path) -> None:
     table = path.with_suffix(".expected").read_text("utf-8").splitlines()
     axes = "# axes" in table
     findings = [text for text in table if text.split()[0] in set(Severity)]
@@ -54,6 +54,6 @@ def test_a_program_does_what_its_table_says(path: Path) -> None:
     assert len(found) == len(blocks)
 
 
-def test_each_language_has_programs_and_each_program_its_table() -> None:
+def test_every_language_has_programs_with_tables() -> None:
     assert {path.parent.name for path in FILES} == {"klartext", "sinumerik"}
     assert sorted(path.stem for path in PROGRAMS.glob("*/*.expected")) == sorted(path.stem for path in FILES)

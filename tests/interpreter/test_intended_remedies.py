@@ -53,7 +53,7 @@ def findings(text: str) -> list[Diagnostic]:
         ("G90G03X1.2Z-.1(ARC)\nI0K.05(CENTER)", 4, "arc-centre-missing", "I0K.05"),
     ],
 )
-def test_a_line_gets_one_error_with_the_code_that_was_meant(
+def test_line_gets_one_error_with_code_of_intended_word(
     line: str, column: int, code: str, remedy: str
 ) -> None:
     errors = [each for each in findings(f"{HEAD}{line}\nM30\n") if each.severity == "error"]
@@ -69,7 +69,7 @@ def test_a_line_gets_one_error_with_the_code_that_was_meant(
         ("M30\nX.7", ["after-end"]),
     ],
 )
-def test_a_second_mistake_is_not_taken_for_a_consequence(lines: str, codes: list[str]) -> None:
+def test_second_error_is_not_suppressed_as_consequential(lines: str, codes: list[str]) -> None:
     found = findings(f"{HEAD}{lines}\nM30\n")
     errors = [each.code for each in found if each.severity == "error"]
     assert sorted(errors) == codes
@@ -102,14 +102,14 @@ def test_the_codes_of_this_control_are_not_mistaken_for_others(line: str) -> Non
         (("T1", "X.5Z1", "G02X.6Z.8", "R.1"), (4, 1, "arc-centre-missing")),
     ],
 )
-def test_what_follows_from_a_refused_line_is_not_reported(
+def test_consequences_of_rejected_line_are_not_reported(
     lines: tuple[str, ...], error: tuple[int, int, str]
 ) -> None:
     found = findings("\n".join(("G90G94F300", *lines, "M30", "")))
     assert [(each.line, each.column, each.code) for each in found if each.severity == "error"] == [error]
 
 
-def test_an_error_of_another_kind_is_reported_behind_a_refused_line() -> None:
+def test_unrelated_error_after_rejected_line_is_reported() -> None:
     found = findings(HEAD + "MO3S500\nX.5R\nS9000\nM30\n")
     assert [(each.line, each.code) for each in found if each.severity == "error"] == [
         (4, "letter-o"), (5, "number-missing"), (6, "speed-range"),
@@ -117,12 +117,12 @@ def test_an_error_of_another_kind_is_reported_behind_a_refused_line() -> None:
 
 
 @pytest.mark.parametrize("end", ["M2", "M99"])
-def test_a_program_end_written_for_another_control_is_one_error(end: str) -> None:
+def test_program_end_of_another_control_is_one_error(end: str) -> None:
     found = findings(f"{HEAD}{end}\n")
     assert [each.line for each in found if each.severity == "error"] == [4]
 
 
-def test_diameters_without_g72_are_named_where_an_arc_does_not_fit() -> None:
+def test_arc_mismatch_in_diameters_suggests_g72() -> None:
     arc = "X.25F5\nZ-.3\nG03X.35Z-.35R.05\nM30\n"
     radii = findings(HEAD + arc)
     assert [(each.line, each.code, "G72" in each.hint) for each in radii if each.severity == "error"] == [
@@ -143,7 +143,7 @@ def test_diameters_without_g72_are_named_where_an_arc_does_not_fit() -> None:
         (("G90G94F300", "T0101", "X1Z1"), ""),
     ],
 )
-def test_a_program_of_another_control_is_named_once(lines: tuple[str, ...], control: str) -> None:
+def test_other_control_is_named_once_in_findings(lines: tuple[str, ...], control: str) -> None:
     found = findings("\n".join((*lines, "M30", "")))
     named = [each for each in found if each.code == "other-control-program"]
     assert len(named) == bool(control)
@@ -163,6 +163,6 @@ def test_a_program_of_another_control_is_named_once(lines: tuple[str, ...], cont
         ("G33X.2936Z-.5I.01K.05", ["thread-passes"]),  # 1001.1
     ],
 )
-def test_the_depth_and_the_lead_of_a_thread_have_bounds(line: str, errors: list[str]) -> None:
+def test_thread_depth_and_lead_outside_limits_are_rejected(line: str, errors: list[str]) -> None:
     found = findings(f"{HEAD}M03S500\n{line}\nM30\n")
     assert [each.code for each in found if each.severity == "error"] == errors

@@ -36,7 +36,7 @@ def path(*program: str) -> list[int]:
         (("M30", "}1", "X1", "M99"), []),
     ],
 )
-def test_order(program: tuple[str, ...], order: list[int]) -> None:
+def test_loops_and_subroutines_run_lines_in_order(program: tuple[str, ...], order: list[int]) -> None:
     assert path(*program) == order
 
 
@@ -51,7 +51,7 @@ def test_order(program: tuple[str, ...], order: list[int]) -> None:
         ("M97I3C0P1", "3", True, False),
     ],
 )
-def test_conditional_calls(call: str, terminal: str, on: bool, taken: bool) -> None:
+def test_conditional_call_follows_its_input(call: str, terminal: str, on: bool, taken: bool) -> None:
     text = lines("G90F300", call, "M30", "}1", "X1", "M99")
     result = passed(text, setup(inputs=lambda asked: on if asked == terminal else not on))
     assert result.errors == []
@@ -59,7 +59,7 @@ def test_conditional_calls(call: str, terminal: str, on: bool, taken: bool) -> N
     assert [block.line for block in result.moves] == ([5] if taken else [])
 
 
-def test_an_input_is_asked_only_after_its_block_was_taken() -> None:
+def test_input_is_read_only_after_its_block_is_run() -> None:
     state = {"TB2-9": False}
     program = passed(lines("G90F300", "M95", "M30", "}1", "X1", "M99")).program
     blocks = Interpreter(program, setup(inputs=lambda terminal: state[terminal])).generate_blocks()
@@ -69,18 +69,18 @@ def test_an_input_is_asked_only_after_its_block_was_taken() -> None:
 
 
 @pytest.mark.parametrize(("delete", "order"), [(False, [2, 3, 4]), (True, [3])])
-def test_block_delete(delete: bool, order: list[int]) -> None:
+def test_block_delete_skips_lines_with_slash(delete: bool, order: list[int]) -> None:
     text = lines("G90F300", "/X1", "X2", " / Z1", "M30")
     assert [block.line for block in passed(text, setup(block_delete=delete)).moves] == order
 
 
-def test_the_first_line_is_the_first_that_runs() -> None:
+def test_first_line_check_applies_to_first_line_that_runs() -> None:
     text = lines("(title)", "/X1", "G90F300", "X2", "M30")
     assert passed(text, setup(block_delete=True)).errors == []
     assert passed(text).errors == [(2, 1, "first-line"), (2, 0, "feed-missing")]
 
 
-def test_a_comment_in_a_loop_is_warned_of() -> None:
+def test_comment_in_loop_causes_one_warning() -> None:
     result = passed(body("LS2", "X1(a)", "LS2", "X2(b)", "LF", "LF(c)", "X3(d)"))
     assert result.warnings == [(4, 0, "comment-in-loop")]
     assert [found.occurrence_count for found in result.interpreter.diagnostics] == [2]  # lines 4 and 6
@@ -91,7 +91,7 @@ def test_calls_may_nest_sixteen_deep() -> None:
     assert path("M98P1", "M30", *subs) == [3 + 15 * 3 + 2]
 
 
-def test_calls_nested_deeper_are_refused() -> None:
+def test_calls_nested_more_than_16_deep_are_rejected() -> None:
     subs = [line for n in range(1, 18) for line in (f"}}{n}", f"M98P{n + 1}" if n < 17 else "X1", "M99")]
     result = passed(lines("G90F300", "M98P1", "M30", *subs))
     assert result.errors == [(3 + 15 * 3 + 2, 4, "recursion")]

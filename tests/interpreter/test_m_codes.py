@@ -43,14 +43,14 @@ from tests.interpreter.programs import body, lines, passed, setup
         ("G04F.1", Dwell(0.1)),
     ],
 )
-def test_what_a_code_does(line: str, action: Action) -> None:
+def test_m_code_produces_its_action(line: str, action: Action) -> None:
     result = passed(lines("G90G94F300", line, "M30"))
     assert result.errors == []
     assert result.actions[0] == action
 
 
 @pytest.mark.parametrize(("line", "reset"), [("M30", True), ("M02", False), ("X1M30", True)])
-def test_the_ends(line: str, reset: bool) -> None:
+def test_m02_and_m30_end_the_program(line: str, reset: bool) -> None:
     result = passed(lines("G90G94F300", line))
     assert result.errors == []
     assert result.actions == [ProgramEnd(reset)]
@@ -62,20 +62,20 @@ def test_the_ends(line: str, reset: bool) -> None:
     ("M05", False), ("M09", False), ("M26", False), ("M16", False), ("M00", False), ("M01", False),
     ("M31", False),
 ])  # fmt: skip
-def test_on_comes_before_the_motion_and_off_after_it(code: str, before: bool) -> None:
+def test_on_codes_run_before_motion_and_off_codes_after_it(code: str, before: bool) -> None:
     result = passed(body(f"X1{code}"))
     on_line = [block.moves for block in result.blocks if block.line == 3]
     assert on_line == ([False, True] if before else [True, False])
 
 
-def test_the_state_follows() -> None:
+def test_modal_state_follows_m_codes() -> None:
     result = passed(body("M08", "M13", "M25", "X1", "M09", "M12", "M26", "X2"))
     first, last = (block.modal for block in result.moves)
     assert (first.coolant, first.collet_closed, first.outputs) == (True, False, frozenset({"catcher"}))
     assert (last.coolant, last.collet_closed, last.outputs) == (False, True, frozenset())
 
 
-def test_m30_turns_everything_off_and_m02_leaves_it() -> None:
+def test_m30_resets_modal_state_and_m02_leaves_it() -> None:
     on = lines("G90G72G95F.003", "M03S800", "M08", "M25", "T1", "X1Z1")
     reset, left = passed(on + "M30\n").interpreter.modal, passed(on + "M02\n").interpreter.modal
     assert (reset.spindle, reset.coolant, reset.outputs) == (0, False, frozenset())
@@ -90,7 +90,7 @@ def test_nothing_runs_after_the_end() -> None:
     assert [block.line for block in result.blocks] == [3, 4]
 
 
-def test_metric_stays_after_the_end() -> None:
+def test_metric_mode_remains_after_program_end() -> None:
     assert passed(lines("G90G71F300", "X1", "M30")).interpreter.modal.metric
 
 

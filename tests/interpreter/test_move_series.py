@@ -111,13 +111,13 @@ LINES = st.lists(st.one_of(RUN, RUN, RUN, LOOP, ODD), max_size=9).map(
 
 @settings(max_examples=400, deadline=None)
 @given(LINES, st.integers(2, 30))
-def test_any_lines(moves: list[str], most: int) -> None:
+def test_series_matches_single_lines_for_any_moves(moves: list[str], most: int) -> None:
     assert_same(body("G95F.003", "X1Z1", *moves), most=most)
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(MOVE, min_size=1, max_size=30))
-def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
+def test_column_reader_matches_single_line_reader(moves: list[str]) -> None:
     read, alone = LineColumns.make_empty(len(moves)), LineColumns.make_empty(len(moves))
     with patch("core.interpreter.omniturn.motion.plain_moves._FEW", 1):
         parse_columns("\n".join(moves), read)
@@ -132,13 +132,13 @@ def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
 
 
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
-def test_programs(path: Path) -> None:
+def test_series_matches_single_lines_for_sample_programs(path: Path) -> None:
     secondary = dict.fromkeys(range(1, 5), (-0.015, -0.015, 0.015))
     assert_same(path.read_text("latin-1"), setup(secondary=secondary), most=5)
 
 
 @pytest.mark.parametrize("seed", range(200))
-def test_spoilt_programs(seed: int) -> None:
+def test_series_matches_single_lines_for_corrupted_programs(seed: int) -> None:
     chance = random.Random(seed)
     text = mutated(chance).split("\n")
     at = chance.randrange(len(text))
@@ -153,7 +153,7 @@ def reported(text: str) -> str:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_reports(seed: int) -> None:
+def test_report_of_series_matches_report_of_single_lines(seed: int) -> None:
     """Lengths, times, reach and findings of whole programs, soft limits among them."""
     chance = random.Random(seed)
     moves = [f"X{chance.uniform(0, 3):.4f}Z{chance.uniform(-9, 1):.4f}" for _ in range(60)]
@@ -165,17 +165,17 @@ def test_reports(seed: int) -> None:
         assert reported(text) == alone
 
 
-def test_a_long_program_comes_in_series() -> None:
+def test_long_program_runs_in_series() -> None:
     moves = [f"X{1 + k % 7 / 100:.4f}Z{-k / 10000:.4f}" for k in range(20)]
     assert assert_same(body("G95F.003", "X1Z1", *moves, "M08", *moves)) == 2
 
 
-def test_passes_of_a_loop_come_in_series() -> None:
+def test_loop_passes_run_in_one_series() -> None:
     assert assert_same(body("G95F.003", "X1Z1", "G91", "X.01", "LS1000", "X.001", "Z-.001F.003", "LF")) == 1
 
 
 @pytest.mark.parametrize("feeds", [("F.004", "F.003"), ("F.004", "F.00300"), ("", "F.05")])
-def test_a_loop_that_changes_the_feed_comes_in_a_series(feeds: tuple[str, str]) -> None:
+def test_loop_with_feed_changes_runs_in_one_series(feeds: tuple[str, str]) -> None:
     first, last = feeds
     assert assert_same(body("G95F.003", "X1Z1", "LS100", f"X1.1{first}", f"X1{last}", "LF")) == 1
 
@@ -190,17 +190,17 @@ def test_a_loop_that_changes_the_feed_comes_in_a_series(feeds: tuple[str, str]) 
         ("G00X2", "F20"),  # after a rapid
     ],
 )
-def test_a_feed_that_needs_its_statement_is_taken_line_by_line(before: str, feed: str) -> None:
+def test_line_whose_feed_needs_statement_runs_outside_series(before: str, feed: str) -> None:
     assert assert_same(body(before, "X1Z1", "LS100", f"X1.1{feed}", "LF")) == 0
 
 
-def test_lines_with_an_f_each_come_in_one_series() -> None:
+def test_lines_with_feed_on_each_line_run_in_one_series() -> None:
     moves = [f"X{1 + k % 7 / 100:.4f}Z{-k / 100:.4f}F.00{1 + k % 5}" for k in range(200)]
     assert assert_same(body("G95F.003", "X1Z1", *moves)) == 1
     assert assert_same(body("G94F20", "X1Z1", *[f"Z-{k}F{1 + k % 9}" for k in range(50)])) == 1
 
 
-def test_slow_moves_are_told_with_their_own_feed() -> None:
+def test_low_feed_warnings_name_line_of_each_slow_move() -> None:
     feeds = [3, 0.1, 3, 0.2, 3]
     text = body("G94F3", "X1Z1", *[f"Z-{k}F{feed}" for k, feed in enumerate(feeds, 1)])
     with at_once(2):
@@ -209,12 +209,12 @@ def test_slow_moves_are_told_with_their_own_feed() -> None:
     assert assert_same(text) == 1
 
 
-def test_words_off_the_step_are_told_until_there_are_too_many() -> None:
+def test_rounded_words_are_reported_up_to_limit() -> None:
     moves = [f"X1.{k:05d}Z-{k / 7:.5f}" for k in range(300)]
     assert assert_same(body("G95F.003", "X1Z1", *moves)) == 1
 
 
-def test_the_bounds_of_a_run_are_those_of_single_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_limits_match_those_of_single_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_BLOCK_COUNT", 77)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
@@ -223,7 +223,7 @@ def test_the_bounds_of_a_run_are_those_of_single_lines(monkeypatch: pytest.Monke
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
 
 
-def test_a_series_is_a_sequence_of_its_blocks() -> None:
+def test_series_behaves_as_sequence_of_blocks() -> None:
     """X and Z alternate, so that the ends can be said without counting: 1, 1 → 2, 1 → 2, 0 → 1, 0."""
     with at_once(2):
         text = lines("G90G94F300", "F20", "X1Z1", "X2", "Z0", "X1", "M30")
@@ -238,7 +238,7 @@ def test_a_series_is_a_sequence_of_its_blocks() -> None:
         row[3]
 
 
-def test_lines_of_a_long_program_are_those_of_a_short_one() -> None:
+def test_lines_of_long_program_match_those_of_short_program() -> None:
     texts = ["X1.5Z-2", "", "G01X1F.003", "X1.23456", "M08", "Z3"] * 500
     with at_once(2):
         steps = read_program(ProgramSource("A", lines(*texts))).executable_lines

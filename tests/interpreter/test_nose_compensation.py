@@ -34,7 +34,7 @@ def way(result: Pass) -> list[tuple[str, float, float]]:
     return [(str(b.kind), round(b.x / INCH, 5), round(b.z / INCH, 5)) for b in result.moves]
 
 
-def test_a_shaft_from_its_face() -> None:
+def test_shaft_is_compensated_from_face() -> None:
     result = run(*SHAFT)
     assert way(result) == [
         ("feed", 0, 0.05),
@@ -52,7 +52,7 @@ def test_a_shaft_from_its_face() -> None:
     assert result.warnings == []
 
 
-def test_the_same_shaft_from_its_back() -> None:
+def test_shaft_is_compensated_from_back() -> None:
     result = run("X.4Z-.3F9", "G42", "X.3D2", "X.2", "Z0", "X0", "Z.5", "G40")
     assert way(result)[1:] == [
         ("feed", 0.3, -0.28),
@@ -65,7 +65,7 @@ def test_the_same_shaft_from_its_back() -> None:
     assert not result.moves[4].clockwise
 
 
-def test_a_bore() -> None:
+def test_bore_is_compensated() -> None:
     # On the way in the material lies at the left, towards X+, so the nose is at the right.
     result = run("X.3Z.1F9", "G42", "X.3Z0D2", "Z-.3", "X.2", "Z-.5", "X.1", "G40")
     assert way(result)[1:] == [
@@ -78,19 +78,19 @@ def test_a_bore() -> None:
     ]
 
 
-def test_diameters_and_radii_alike() -> None:
+def test_diameter_and_radius_mode_give_same_compensated_path() -> None:
     doubled = ("G72", "X0Z.05F9", "G41", "X0Z0D2", "X.4", "Z-.3", "X.6", "Z1", "G40")
     assert way(run(*doubled)) == way(run(*SHAFT))
 
 
-def test_distances_and_coordinates_alike() -> None:
+def test_incremental_and_absolute_mode_give_same_compensated_path() -> None:
     by_distance = ("X0Z.05F9", "G91", "G41", "X0Z-.05D2", "X.2", "Z-.3", "X.1", "Z1.3", "G40")
     result = run(*by_distance)
     assert way(result) == way(run(*SHAFT))
     assert [b.text for b in result.moves][2:5] == ["X.2", "G02X.02Z-.02R.02", "Z-.28"]
 
 
-def test_words_between_the_moves_do_not_matter() -> None:
+def test_modal_words_between_moves_do_not_affect_compensation() -> None:
     mixed = (
         "X0Z.05F9",
         "G41",
@@ -109,18 +109,18 @@ def test_words_between_the_moves_do_not_matter() -> None:
     assert way(run(*mixed)) == way(run(*SHAFT))
 
 
-def test_the_pair_of_the_offset_is_added() -> None:
+def test_x_and_z_of_secondary_offset_are_added_to_path() -> None:
     moved = [(x, z) for _, x, z in way(run("X0Z.05F9", "G41", "X0Z0D1", *SHAFT[3:]))]
     assert moved[1:] == [(-0.015, 0), (0.185, 0), (0.2, -0.015), (0.2, -0.3), (0.285, -0.3), (0.285, 0.985)]
 
 
-def test_feeds_and_rapids_stay_with_their_moves() -> None:
+def test_compensated_moves_retain_their_feeds_and_rapids() -> None:
     result = run(*FACING, "X.2F5", "Z-.3F7", "X.3", "G00Z1", "G40")
     told = [(str(b.kind), round(b.feed * 60 / INCH, 6)) for b in result.moves]
     assert told[2:] == [("feed", 5), ("arc", 5), ("feed", 7), ("feed", 7), ("rapid", 300)]
 
 
-def test_what_stands_still_stands_on_the_path() -> None:
+def test_actions_and_dwells_are_at_points_of_compensated_path() -> None:
     result = run(*FACING, "M08", "X.2M09", "M00(LOOK)", "Z-.3", "G04F1", "X.3", "Z1M09", "G40")
     still = [(b.line, round(b.x / INCH, 5), round(b.z / INCH, 5)) for b in result.blocks if not b.moves][1:-1]
     assert still == [(6, 0, 0.02), (7, 0.22, 0), (8, 0.22, 0), (10, 0.22, -0.28), (12, 0.3, 1)]
@@ -131,19 +131,19 @@ def test_what_stands_still_stands_on_the_path() -> None:
     assert [block.n for block in result.blocks] == list(range(1, len(result.blocks) + 1))
 
 
-def test_a_move_of_no_length_changes_nothing() -> None:
+def test_zero_length_move_does_not_change_compensated_path() -> None:
     result = run(*FACING, "X.2", "X.2", "Z-.3", "X.3", "Z1", "G40")
     assert way(result) == [*way(run(*SHAFT))[:4], ("feed", 0.22, 0), *way(run(*SHAFT))[4:]]
 
 
-def test_blocks_know_that_they_are_compensated() -> None:
+def test_compensated_blocks_carry_compensation_state() -> None:
     result = run(*SHAFT)
     assert [b.modal.compensation_code for b in result.moves] == [40, 41, 41, 41, 41, 41, 41]
     assert result.interpreter.modal.compensation_code == 40
     assert not any("G4" in b.text for b in result.blocks)
 
 
-def test_arcs_stay_arcs() -> None:
+def test_arcs_remain_arcs_under_compensation() -> None:
     result = run(*FACING, "X.1", "G02X.2Z-.1R.1", "Z-.3", "G03X.25Z-.35R.05", "X.4", "Z1", "G40")
     assert way(result)[2:] == [
         ("feed", 0.1, 0.02),
@@ -160,43 +160,43 @@ def test_arcs_stay_arcs() -> None:
     assert (result.moves[3].cx / INCH, result.moves[3].cz / INCH) == pytest.approx((0.1, -0.1))
 
 
-def test_a_line_into_a_ball() -> None:
+def test_line_into_concave_arc_ends_at_offset_intersection() -> None:
     # Along a cylinder of .2 into a ball of radius .2 about (.2, -.5): the offsets are x .22 and radius .22.
     result = run(*FACING, "X.2", "Z-.3", "G02X.4Z-.5I.2K-.5", "Z-.7", "X.6", "Z1", "G40")
     assert way(result)[4] == ("feed", 0.22, round(-0.5 + sqrt(0.22**2 - 0.02**2), 5))
 
 
-def test_corners_are_cut_before_the_path_is_moved() -> None:
+def test_corner_words_are_applied_before_compensation() -> None:
     cut = run(*FACING, "X.2C.05", "Z-.3R.05", "X.4", "Z1", "G40")
     written = run(*FACING, "X.15", "X.2Z-.05", "Z-.25", "G03X.25Z-.3R.05", "X.4", "Z1", "G40")
     assert way(cut) == way(written)
     assert [b.line for b in cut.moves] == [3, 5, 6, 6, 6, 6, 7, 7, 8, 9]
 
 
-def test_a_corner_before_and_at_the_approach() -> None:
+def test_corner_before_and_at_approach_move() -> None:
     result = run("X0Z.2F9", "Z.1C.03", "G42", "X.1Z.1D2", "Z0", "X.3", "Z-1", "G40")
     assert [b.line for b in result.moves[:4]] == [3, 4, 4, 6]
     assert (result.moves[2].x / INCH, result.moves[2].z / INCH) == pytest.approx((0.03, 0.1))
     assert result.errors == []
 
 
-def test_a_tool_ends_it() -> None:
+def test_tool_change_ends_compensation() -> None:
     result = run(*FACING, "X.2", "Z-.3", "X.3", "Z1", "T2", "X1Z1", "X0", "M08")
     assert way(result)[:7] == way(run(*SHAFT))
     assert way(result)[7:] == [("feed", 1, 1), ("feed", 0, 1)]
 
 
-def test_on_again_right_after_it_was_off() -> None:
+def test_compensation_restarts_directly_after_g40() -> None:
     result = run(*SHAFT, "G42", "X.3Z.5D2", "X.2", "Z.8", "G40")
     assert [(x, z) for _, x, z in way(result)[7:]] == [(0.3, 0.52), (0.2, 0.52), (0.2, 0.8)]
 
 
-def test_a_tool_before_the_approach_leaves_nothing_behind() -> None:
+def test_tool_change_before_approach_cancels_compensation() -> None:
     result = run("X1Z1F9", "G41", "T2", "X0Z0", "X.5C.03", "Z-1")
     assert way(result)[1:] == [("feed", 0, 0), ("feed", 0.47, 0), ("feed", 0.5, -0.03), ("feed", 0.5, -1)]
 
 
-def test_the_same_offset_may_be_named_again() -> None:
+def test_repeated_offset_number_does_not_change_path() -> None:
     assert way(run(*FACING, "X.2D2", "Z-.3D2", "X.3", "Z1D2", "G40")) == way(run(*SHAFT))
 
 
@@ -210,9 +210,7 @@ STEPS = ("X0Z.05F9", "G41", "X0Z-.1D1", "X.2", "Z-.25M08", "X.1Z-.1", "Z-.3C.03"
     [("G90", CUT, 0.015), ("G91", STEPS, 0.015), ("G90G72", WIDE, 0.015), ("G90G71", CUT, 0.015 / INCH)],
     ids=["coordinates", "distances", "diameters", "millimetres"],
 )
-def test_the_generated_lines_are_a_program_of_the_same_path(
-    mode: str, source: tuple[str, ...], nose: float
-) -> None:
+def test_generated_lines_reproduce_compensated_path(mode: str, source: tuple[str, ...], nose: float) -> None:
     offsets = setup(secondary={1: (-nose, -nose, nose)})
     head = f"{mode}G94F300"
     first = passed(lines(head, "M03S1000", *source, "G00Z3", "G40", "M30"), offsets)
@@ -226,15 +224,15 @@ def test_the_generated_lines_are_a_program_of_the_same_path(
         assert (a.x, a.z) == pytest.approx((b.x, b.z), abs=0.001)  # last places add up under G91
 
 
-def test_off_while_it_is_off_is_nothing() -> None:
+def test_g40_without_compensation_has_no_effect() -> None:
     assert way(run("G40", "X1F9", "G90G40", "Z1")) == [("feed", 1, 0), ("feed", 1, 1)]
 
 
-def test_on_and_off_without_a_move() -> None:
+def test_compensation_on_and_off_without_move_has_no_effect() -> None:
     assert way(run("X1F9", "G41", "M08", "G40", "Z1")) == [("feed", 1, 0), ("feed", 1, 1)]
 
 
-def test_no_radius_gives_the_contour_and_a_warning() -> None:
+def test_zero_nose_radius_follows_contour_with_warning() -> None:
     result = run("X0Z.05F9", "G41", "X0Z0D4", *SHAFT[3:])
     assert result.warnings == [(5, 0, "comp-no-radius")]
     assert [(x, z) for _, x, z in way(result)][1:] == [
@@ -249,7 +247,7 @@ def test_no_radius_gives_the_contour_and_a_warning() -> None:
         ((*SHAFT[:5], "X.3", "Z-.261", "G40"), (9, 0, "comp-departure-near")),
     ],
 )
-def test_near_the_part_is_warned_of(program: tuple[str, ...], warning: tuple[int, int, str]) -> None:
+def test_rapid_close_to_part_causes_warning(program: tuple[str, ...], warning: tuple[int, int, str]) -> None:
     result = run(*program)
     assert (result.errors, result.warnings) == ([], [warning])
 
@@ -260,7 +258,7 @@ def test_near_the_part_is_warned_of(program: tuple[str, ...], warning: tuple[int
     (*FACING, "X.2", "G03X.221Z-.021R.021", "X.4", "Z1", "G40"),
     (*FACING, "X.2", "Z-.1", "X.15", "Z-.141", "X.2", "Z-.3", "X.3", "Z1", "G40"),
 ])  # fmt: skip
-def test_next_to_a_refusal_but_good(program: tuple[str, ...]) -> None:
+def test_contour_close_to_limit_of_compensation_is_accepted(program: tuple[str, ...]) -> None:
     result = run(*program)
     assert (result.errors, result.warnings) == ([], [])
 
@@ -324,35 +322,35 @@ REFUSED: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), REFUSED, ids=[" ".join(program) for program, _ in REFUSED])
-def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_impossible_compensation_is_rejected(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     result = run(*program)
     assert error in result.errors
     assert all(block.line < error[0] for block in result.moves)
 
 
-def test_an_error_inside_takes_back_what_was_held() -> None:
+def test_error_inside_contour_discards_buffered_moves() -> None:
     result = run(*FACING, "X.2", "Z-.3", "G05", "X.3", "Z1", "G40", "X2")
     assert [error[2] for error in result.errors] == ["g-unknown"]
     assert [b.line for b in result.moves] == [3]
 
 
-def test_after_an_unreadable_line_nothing_is_judged_by_a_contour_with_a_gap() -> None:
+def test_contour_with_unreadable_line_is_not_checked_further() -> None:
     assert [error[2] for error in run(*FACING, "X.2", "X.1ZO", *SHAFT[4:]).errors] == ["letter-o"]
     assert [error[2] for error in run("X0Z0F9", "X.5C.1", "X.1ZO", "X.9").errors] == ["letter-o"]
 
 
-def test_a_bad_departure_is_known_before_the_contour_is_run() -> None:
+def test_invalid_departure_is_found_before_contour_runs() -> None:
     result = run(*SHAFT[:5], "X.3", "Z-.281", "G40")
     assert result.errors == [(9, 0, "comp-departure-short")]
     assert [b.line for b in result.moves] == [3]
 
 
-def test_the_message_says_the_radius() -> None:
+def test_gouge_message_states_nose_radius() -> None:
     found = run(*FACING, "X.2", "G03X.21Z-.01R.01", "X.4", "Z1", "G40").interpreter.diagnostics
     assert found[0].message.startswith("G41 with a nose radius of 0.02000 in cannot compensate this move: ")
 
 
-def test_a_long_contour_is_never_held_whole() -> None:
+def test_long_contour_is_not_buffered_completely() -> None:
     loop = ("LS2000", "G91", "Z-.05", "X.03", "LF", "G90")
     text = lines("G90G94F300", "M03S1000", *FACING, "X.2", *loop, "X61F300", "Z200", "G40", "M30")
     interpreter = Interpreter(read_program(ProgramSource("LONG", text)), given())

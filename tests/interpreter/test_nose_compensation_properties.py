@@ -99,7 +99,7 @@ def path_of(result: Pass) -> list[Element]:
 
 @settings(max_examples=250, deadline=None)
 @given(_STEPS, st.booleans(), st.sampled_from([0.004, 0.0155, 0.03125]), st.booleans())
-def test_the_path_keeps_the_nose_off_the_contour(
+def test_nose_does_not_cut_into_contour(
     steps: list[tuple[float, float, str, float]], left: bool, nose: float, diameter: bool
 ) -> None:
     text = program(steps, left=left, nose=nose, diameter=diameter)
@@ -124,7 +124,7 @@ def test_the_path_keeps_the_nose_off_the_contour(
 
 @settings(max_examples=100, deadline=None)
 @given(_STEPS, st.booleans(), st.floats(-0.05, 0.05).map(lambda v: round(v, 4)))
-def test_the_pair_of_the_offset_moves_the_whole_path(
+def test_secondary_offset_shifts_whole_path(
     steps: list[tuple[float, float, str, float]], left: bool, moved: float
 ) -> None:
     text = program(steps, left=left, nose=0.0155, diameter=False)
@@ -159,7 +159,7 @@ _STRETCH = st.builds(
 
 @settings(max_examples=500, deadline=None)
 @given(st.lists(_LINE.map(lambda line: [line]) | _STRETCH, max_size=6))
-def test_blocks_follow_each_other_whatever_stands_in_the_program(parts: list[list[str]]) -> None:
+def test_blocks_are_continuous_for_any_program(parts: list[list[str]]) -> None:
     text = lines("G90G94F300", "M03S500", "F20", *(line for part in parts for line in part), "M30")
     offsets = {1: (-0.01, -0.01, 0.01), 2: (0.0, 0.0, 0.002)}
     result = passed(text, setup(secondary=offsets))

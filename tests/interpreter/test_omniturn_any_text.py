@@ -48,7 +48,7 @@ def check(block: Block) -> None:
 
 @settings(max_examples=400, deadline=None)
 @given(TEXT, st.booleans(), st.booleans())
-def test_likely_programs(text: str, on: bool, strict: bool) -> None:
+def test_likely_programs_run_or_give_valid_findings(text: str, on: bool, strict: bool) -> None:
     result = passed(text, setup(inputs=lambda _terminal: on), strict=strict)
     assert [block.n for block in result.blocks] == list(range(1, len(result.blocks) + 1))
     for block in result.blocks:
@@ -63,14 +63,14 @@ def test_likely_programs(text: str, on: bool, strict: bool) -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(st.text(max_size=200))
-def test_any_text(text: str) -> None:
+def test_any_text_gives_blocks_or_errors(text: str) -> None:
     result = passed(text)
     assert result.interpreter.has_errors or result.blocks
 
 
 @settings(max_examples=100, deadline=None)
 @given(st.text(alphabet="XZGM0123456789.-\n}LSFP()", max_size=200))
-def test_text_of_the_languages_letters(text: str) -> None:
+def test_any_text_of_language_characters_gives_valid_blocks(text: str) -> None:
     for block in passed(text).blocks:
         check(block)
 
@@ -91,7 +91,7 @@ def figures(block: Block) -> tuple[object, ...]:
 
 @settings(max_examples=400, deadline=None)
 @given(st.lists(MOVE | MODE, max_size=25))
-def test_moves_read_as_numbers_do_what_they_do_as_words(program: list[str]) -> None:
+def test_moves_read_as_numbers_match_moves_read_as_words(program: list[str]) -> None:
     """A blank makes a line one that is read word by word; nothing else may come of it."""
     numbers = passed(lines("G90G94F300", "M03S500", *program, "M30"), setup(secondary={1: (0.1, -0.2)}))
     words = passed(
@@ -107,7 +107,7 @@ WRITTEN = st.text(alphabet="XZGMTFO0123456789.- ABCDERUN(),;%\u2212\u201c/", max
 
 @settings(max_examples=400, deadline=None)
 @given(WRITTEN)
-def test_a_line_of_code_and_prose_has_each_fault_once_and_in_its_place(text: str) -> None:
+def test_line_of_code_and_prose_reports_each_error_once_in_place(text: str) -> None:
     line = lex_line(1, text)
     places = [(error.column, error.code) for error in line.errors]
     assert len(places) == len(set(places))

@@ -56,7 +56,7 @@ def test_diameter_and_radius_programs_move_alike() -> None:
     ]  # fmt: skip
 
 
-def test_rapid_and_back_to_feed() -> None:
+def test_g00_switches_to_rapid_and_g01_back_to_feed() -> None:
     result = example("rapid-g00-g01")
     assert [(block.text, *feed) for block, feed in zip(result.moves, result.feeds, strict=True)][3:] == [
         ("X.5", "feed", 0.003),
@@ -78,7 +78,7 @@ def test_rapid_and_back_to_feed() -> None:
         ("arc-ik-diameter", 14, (0.2, -0.4), (0.2, -0.3), False),
     ],
 )
-def test_arcs(
+def test_arcs_match_manual_examples(
     name: str, line: int, end: tuple[float, float], middle: tuple[float, float], clockwise: bool
 ) -> None:
     arc = on_line(example(name), line)
@@ -88,13 +88,13 @@ def test_arcs(
     assert centre(arc) == pytest.approx(middle, abs=1e-9)
 
 
-def test_the_barrel_bulges_outwards() -> None:
+def test_barrel_arc_bulges_outward() -> None:
     arc = on_line(example("arc-r-diameter-barrel"), 10)
     assert centre(arc)[0] == pytest.approx(-0.41703, abs=5e-6)
     assert centre(arc)[0] + 0.635 == pytest.approx(0.21797, abs=5e-6)
 
 
-def test_the_dry_run_is_three_inches_away() -> None:
+def test_dry_run_work_shift_is_three_inches() -> None:
     result = example("workshift-dry-run")
     assert all(block.mz - block.z == pytest.approx(3 * INCH) for block in result.moves)
     assert all(block.mx == pytest.approx(block.x) for block in result.moves)
@@ -102,7 +102,7 @@ def test_the_dry_run_is_three_inches_away() -> None:
     assert result.blocks[-1].mz == pytest.approx(result.blocks[-1].z)
 
 
-def test_three_parts_from_one_bar() -> None:
+def test_work_shift_loop_makes_three_parts_from_bar() -> None:
     result = example("workshift-bar-loop")
     loop = [block for block in result.moves if block.line >= 11]
     parts = [loop[i : i + len(loop) // 3] for i in range(0, len(loop), len(loop) // 3)]
@@ -113,13 +113,13 @@ def test_three_parts_from_one_bar() -> None:
         assert all(block.mx == pytest.approx(block.x, abs=1e-9) for block in part)
 
 
-def test_taper_correction() -> None:
+def test_secondary_offset_corrects_taper() -> None:
     result = example("secondary-taper", {4: (-0.0005, 0)})
     assert result.ends[4:6] == [(0.1245, -0.75), (0.2, -0.75)]
     assert on_line(result, 8).x0 == pytest.approx(0.125 * INCH)
 
 
-def test_three_bores_each_with_its_own_offset() -> None:
+def test_each_of_three_bores_has_its_own_offset() -> None:
     plain = example("secondary-three-bores").ends
     for number, lines in ((1, (6, 7)), (2, (8, 9)), (3, (10, 13))):
         moved = example("secondary-three-bores", {number: (0.001, 0)})
@@ -128,7 +128,7 @@ def test_three_bores_each_with_its_own_offset() -> None:
             assert block.x / INCH == pytest.approx(before[0] + (0.001 if inside else 0))
 
 
-def test_sixteen_notches() -> None:
+def test_loop_cuts_sixteen_notches() -> None:
     result = example("loop-notches")
     cuts = [block for block in result.moves if block.kind is BlockKind.FEED]
     assert [round(block.z / INCH, 5) for block in cuts] == [round(-0.035 - 0.085 * k, 5) for k in range(16)]
@@ -138,7 +138,7 @@ def test_sixteen_notches() -> None:
     assert result.ends[-1] == (0.25, 1)
 
 
-def test_tapping_turns_the_spindle_back_on_the_way_out() -> None:
+def test_tapping_reverses_spindle_during_retract() -> None:
     result = example("tapping")
     way_in, way_out = (block for block in result.moves if block.kind is BlockKind.FEED)
     assert (in_feed(way_in), way_in.rpm, way_in.z / INCH) == pytest.approx((0.05, 1000, -0.4))
@@ -146,7 +146,7 @@ def test_tapping_turns_the_spindle_back_on_the_way_out() -> None:
     assert SpindleRun(-1000) in result.actions
 
 
-def test_facing_at_constant_surface_speed() -> None:
+def test_facing_at_constant_surface_speed_is_limited_by_g77() -> None:
     result = example("css-facing")
     at = {block.line: block for block in result.blocks}
     assert at[5].rpm == pytest.approx(250 * 12 / (2 * pi * 0.25))
@@ -161,7 +161,7 @@ def test_facing_at_constant_surface_speed() -> None:
 NOSE: dict[int, tuple[float, ...]] = {1: (-0.015, -0.015, 0.015)}  # X -.03 as a diameter, Z -.015, R .015
 
 
-def test_corners_of_a_contour_with_compensation() -> None:
+def test_contour_corners_are_compensated() -> None:
     source = load_source(FOLDER / "corners-with-g41.nc").text.replace("G41\n", "").replace("G40\n", "")
     result = passed(source)
     assert (result.errors, result.warnings) == ([], [])
@@ -177,7 +177,7 @@ def test_corners_of_a_contour_with_compensation() -> None:
     assert {(0.135, -0.045), (0.21, -0.35), (0.25, -0.39), (0.25, -0.45), (0.255, -0.45)} <= set(moved.ends)
 
 
-def test_the_nose_beside_a_contour() -> None:
+def test_nose_compensation_matches_manual_example() -> None:
     result = example("nose-comp-g41", NOSE)
     path = [(str(block.kind), *end) for block, end in zip(result.moves, result.ends, strict=True)]
     assert path[2:] == [
@@ -199,6 +199,6 @@ def test_the_nose_beside_a_contour() -> None:
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.nc")), ids=lambda path: path.stem)
-def test_nothing_is_refused_but_what_must_be(path: Path) -> None:
+def test_manual_examples_have_only_expected_errors(path: Path) -> None:
     errors = [error for error in passed(load_source(path).text).errors if error[2] not in SAID]
     assert errors == []

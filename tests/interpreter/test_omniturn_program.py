@@ -10,7 +10,7 @@ from core.language.source import ProgramSource
 from tests.interpreter.programs import lines
 
 
-def test_any_line_can_be_had_as_words_and_as_a_statement() -> None:
+def test_any_line_is_available_as_words_and_as_statement() -> None:
     program = read_program(ProgramSource("A", lines("G90F300", "X1Z2", "", "M30")))
     assert [word.text for word in program.get_line(2).words] == ["X1", "Z2"]
     made = program.get_statement(2)
@@ -38,7 +38,7 @@ def test_any_line_can_be_had_as_words_and_as_a_statement() -> None:
         ("X1Z2F3", (1.0, 2.0, 3.0, -1, False)),
     ],
 )
-def test_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:
+def test_plain_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:
     assert parse_plain_move(text) == move
 
 
@@ -46,11 +46,11 @@ def test_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:
     "text",
     ["", "G00", "F20", "G01F2", "Z1X1", "X 1", "X1.000001", "X12345", "X1F0", "G02X1", "X1.2.3", "X", "X1X1"],
 )
-def test_everything_else_is_read_word_by_word(text: str) -> None:
+def test_other_lines_are_not_read_as_plain_moves(text: str) -> None:
     assert parse_plain_move(text) is None
 
 
-def test_a_flood_of_warnings_hides_no_error() -> None:
+def test_errors_are_reported_despite_flood_of_warnings() -> None:
     inside = ["(PLXC)"] * 150
     program = read_program(ProgramSource("A", lines("G90F300", *inside, "X1N5", "M30")))
     weighty = [found for found in program.diagnostics if found.severity != "note"]
@@ -58,18 +58,18 @@ def test_a_flood_of_warnings_hides_no_error() -> None:
     assert weighty[-1].code == "n-word"
 
 
-def test_a_flood_of_errors_is_cut_too() -> None:
+def test_errors_are_limited_to_100() -> None:
     program = read_program(ProgramSource("A", lines("G90F300", *["X1Z"] * 300, "M30")))
     assert [found.code for found in program.diagnostics] == ["number-missing"] * 100
 
 
 @pytest.mark.parametrize(("times", "found"), [(4, [1, 1, 1, 1]), (5, [5]), (300, [300])])
-def test_a_habit_that_repeats_is_one_error_with_its_count(times: int, found: list[int]) -> None:
+def test_repeated_g_digit_errors_are_one_error_with_count(times: int, found: list[int]) -> None:
     program = read_program(ProgramSource("A", lines("G90F300", *["G2X1"] * times, "M30")))
     assert [each.occurrence_count for each in program.diagnostics if each.code == "g-digits"] == found
 
 
-def test_what_repeats_in_every_line_is_told_once_with_its_count() -> None:
+def test_finding_repeated_on_every_line_is_reported_once_with_count() -> None:
     program = read_program(ProgramSource("A", lines("G90F300", *["N5X1"] * 300, "M30")))
     assert [(found.line, found.code, found.occurrence_count) for found in program.diagnostics] == [
         (2, "n-word", 300)
@@ -82,7 +82,7 @@ def test_what_repeats_in_every_line_is_told_once_with_its_count() -> None:
     assert told == [("blank-line", 2, 3), ("line-ends", 1, 6)]
 
 
-def test_reading_raises_nothing_for_a_program_of_faults() -> None:
+def test_reading_invalid_program_raises_no_exception() -> None:
     program = read_program(ProgramSource("A", "G2\n}1\nLF\n(\n)\nM99\nLS0\n"))
     codes = {found.code for found in program.diagnostics}
     assert {"g-digits", "no-end", "loop-unopened", "comment-open", "comment-close", "loop-count"} <= codes

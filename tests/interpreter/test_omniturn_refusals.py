@@ -121,7 +121,7 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), IN_BODY, ids=[" ".join(program) for program, _ in IN_BODY])
-def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_program_is_rejected(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     result = passed(body(*program))
     assert error in result.errors
     assert all(block.line < error[0] or not block.moves for block in result.blocks if block.line <= error[0])
@@ -138,7 +138,7 @@ def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     ("T1", "G92X0", "Z1"),
     ("G90G90X1",),
 ])  # fmt: skip
-def test_next_to_a_refusal_but_good(program: tuple[str, ...]) -> None:
+def test_valid_program_close_to_invalid_one_is_accepted(program: tuple[str, ...]) -> None:
     assert passed(body(*program)).errors == []
 
 
@@ -165,7 +165,7 @@ WHOLE: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), WHOLE, ids=[" ".join(program) for program, _ in WHOLE])
-def test_refused_as_a_whole(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_program_is_rejected_as_whole(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     result = passed(lines(*program))
     assert error in result.errors
 
@@ -180,40 +180,40 @@ def test_unclamping_while_turning_can_be_refused() -> None:
     assert passed(body("M05", "M13"), strict).errors == []
 
 
-def test_no_block_comes_after_an_error_and_all_errors_are_told() -> None:
+def test_no_block_follows_an_error_and_all_errors_are_reported() -> None:
     result = passed(body("X1", "X2F999", "X3", "S9000", "G02X1", "X4"))
     assert [block.line for block in result.moves] == [3]
     assert result.errors == [(4, 3, "feed-range"), (6, 1, "speed-range"), (7, 1, "arc-centre-missing")]
 
 
-def test_what_runs_a_program_gets_no_more_after_the_first_error() -> None:
+def test_run_gets_no_blocks_after_first_error() -> None:
     program = passed(body("X1", "X2F999", "S9000")).program
     from_run = list(Interpreter(program, setup()).generate_blocks(stops_at_first_error=True))
     assert [block.line for block in from_run] == [2, 3]
 
 
-def test_one_fault_of_the_spindle_is_told_once() -> None:
+def test_stopped_spindle_is_reported_once_per_stop() -> None:
     result = passed(body("M05", "G95F.003X1", "X2", "X3", "M03", "X4", "M05", "X5"))
     assert result.errors == [(4, 0, "spindle-stopped"), (10, 0, "spindle-stopped")]
 
 
-def test_after_an_error_lines_are_judged_from_where_it_would_have_ended() -> None:
+def test_lines_after_error_are_checked_from_intended_end_point() -> None:
     result = passed(body("X.1Z0F999", "G02X.25Z-.15I.1K-.15"))
     assert result.errors == [(3, 6, "feed-range")]
 
 
-def test_a_flood_of_errors_is_cut() -> None:
+def test_error_list_is_limited_to_100() -> None:
     result = passed(body(*["X1F999"] * 500))
     assert len(result.errors) == 100
 
 
-def test_errors_are_never_crowded_out_by_warnings() -> None:
+def test_warnings_do_not_displace_errors() -> None:
     result = passed(body("F.05", *["X9", "X0"] * 150, "S9000"))
     assert result.errors == [(304, 1, "speed-range")]
     assert len(result.warnings) == 100
 
 
-def test_a_warning_that_repeats_takes_the_room_of_one() -> None:
+def test_repeated_warning_counts_as_one_finding() -> None:
     result = passed(body(*["X.00001"] * 300, "F.05X9"))
     assert [(d.line, d.code, d.occurrence_count) for d in result.interpreter.diagnostics] == [
         (3, "finer-than-step", 300),
@@ -231,7 +231,7 @@ def test_a_warning_that_repeats_takes_the_room_of_one() -> None:
         ("P1", END, "}1", "X1", "M99", "}1", "X2", "M99"),
     ],
 )
-def test_what_follows_from_a_mistake_is_no_second_one(body: tuple[str, ...]) -> None:
+def test_mistake_is_reported_without_consequential_errors(body: tuple[str, ...]) -> None:
     text = "\n".join(("G90F300", *body, *(() if END in body else (END,))))
     found = [d.code for d in read_program(ProgramSource("A", text)).diagnostics if d.severity == "error"]
     assert len(found) == 1, found

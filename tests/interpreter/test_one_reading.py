@@ -27,7 +27,7 @@ def told(reading: SharedProgram) -> list[str]:
     return [repr(block) for block in reading.start_pass(SETUP).generate_blocks()]
 
 
-def test_two_passes_side_by_side_are_as_one_alone() -> None:
+def test_two_interleaved_passes_match_single_pass() -> None:
     alone = told(SharedProgram(ProgramSource("part", TEXT)))
     reading = SharedProgram(ProgramSource("part", TEXT))
     first, second = reading.start_pass(SETUP).generate_blocks(), reading.start_pass(SETUP).generate_blocks()
@@ -37,7 +37,7 @@ def test_two_passes_side_by_side_are_as_one_alone() -> None:
     assert [repr(b) for _, b in pairs] == alone
 
 
-def test_a_pass_that_was_given_up_leaves_nothing() -> None:
+def test_abandoned_pass_does_not_affect_next_pass() -> None:
     reading = SharedProgram(ProgramSource("part", TEXT))
     given_up = reading.start_pass(SETUP).generate_blocks()
     for _ in range(LONG_PROGRAM_LINE_COUNT):
@@ -60,14 +60,14 @@ def test_the_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
     assert read == ["part"]
 
 
-def test_what_is_wrong_with_the_text_is_told_by_every_pass() -> None:
+def test_every_pass_reports_errors_of_program_text() -> None:
     reading = SharedProgram(ProgramSource("part", "G90\nG1X\nM30\n"))
     first, second = ([d.code for d in reading.start_pass(SETUP).diagnostics] for _ in range(2))
     assert first
     assert first == second
 
 
-def test_what_a_pass_notes_of_a_line_is_its_own() -> None:
+def test_pass_replaces_its_line_without_changing_shared_lines() -> None:
     steps = parse_lines(
         ["X1Z0", "X1Z-1", "X1Z-2"], lambda _, text: parse_plain_move(text), reads_every_line=False
     )

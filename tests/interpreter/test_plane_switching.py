@@ -31,7 +31,7 @@ def stand(block: Block) -> tuple[float, float, float]:
     return block.x / INCH, block.z / INCH, block.c
 
 
-def test_the_face_frame() -> None:
+def test_face_plane_moves_map_to_x_and_c() -> None:
     up, deeper = milled(face("(X0Y.4)", "(Z-.2F2)"))
     assert stand(up) == pytest.approx((-0.4, -0.1, -90.0))
     assert up.kind is BlockKind.PLANE_LINE
@@ -41,24 +41,24 @@ def test_the_face_frame() -> None:
     assert up.text == "(X0Y.4)"
 
 
-def test_x_is_no_diameter_under_g72() -> None:
+def test_x_in_face_plane_is_not_diameter_under_g72() -> None:
     result = face("(X.3Y.4)", head=("G90G94G72F300", "M19", "X-1.Z-.1F5"))
     assert stand(milled(result)[0]) == pytest.approx((-0.5, -0.1, -degrees(atan2(0.4, 0.3))))
 
 
-def test_metric_planes() -> None:
+def test_face_plane_in_metric_mode() -> None:
     result = passed(lines("G90G94G71F3000", "M19", "X-12Z-1F100", "(~PLXC)", "(X0Y8)", "(END)", "M30"))
     (move,) = milled(result)
     assert (move.x, move.c) == pytest.approx((-8.0, -90.0))
 
 
-def test_words_in_any_case_and_blanks_mean_the_same() -> None:
+def test_plane_words_ignore_case_and_spaces() -> None:
     result = passed(lines(*LATHE, " ( ~plxc ) ", "( x .3 y0 f 4 )", "  (end)", "M30"))
     assert result.errors == []
     assert stand(milled(result)[0]) == pytest.approx((-0.3, -0.1, 0.0))
 
 
-def test_the_height_of_the_tool() -> None:
+def test_h_word_sets_tool_height_above_center() -> None:
     """H .3: the tool stands at (.5, .3) and goes to (0, .5): machine x -.4."""
     (move,) = milled(face("(H.3)", "(X0Y.5)"))
     assert move.plane is not None
@@ -67,7 +67,7 @@ def test_the_height_of_the_tool() -> None:
     assert stand(move) == pytest.approx((-0.4, -0.1, degrees(atan2(3, 4)) - 90.0))
 
 
-def test_the_side_frame() -> None:
+def test_side_plane_moves_map_to_x_z_and_c() -> None:
     in_, across, along = milled(side("(Z.8)", "(Y.2)", "(X.1)"))
     assert stand(in_) == pytest.approx((-0.4, -0.1, 0.0))
     turned = -360.0 * 0.2 / (pi * 1.0)  # D is the mill's Z at the entry: 1 in
@@ -75,12 +75,12 @@ def test_the_side_frame() -> None:
     assert stand(along) == pytest.approx((-0.4, -0.2, turned))
 
 
-def test_d_scales_y() -> None:
+def test_d_word_scales_y_in_side_plane() -> None:
     move = milled(side("(D.8)", "(Y.2)"))[-1]
     assert move.c == pytest.approx(-360.0 * 0.2 / (pi * 0.8))
 
 
-def test_arcs_are_one_shot() -> None:
+def test_arc_code_applies_to_one_plane_line() -> None:
     result = side("(Y.1)", "(G02X.1Y.2I.1J.1)", "(X.2Y.2)")
     assert [b.kind for b in milled(result)] == [
         BlockKind.PLANE_LINE,
@@ -90,7 +90,7 @@ def test_arcs_are_one_shot() -> None:
     assert milled(result)[1].clockwise
 
 
-def test_leaving_turns_nothing_and_the_next_plane_starts_from_there() -> None:
+def test_next_plane_starts_at_c_where_last_plane_ended() -> None:
     result = passed(
         lines(*LATHE, "(~PLXC)", "(X0Y.5)", "(END)", "X-.6", "(~PLXC)", "(X0Y.6)", "(END)", "X-.7", "M30")
     )
@@ -99,13 +99,13 @@ def test_leaving_turns_nothing_and_the_next_plane_starts_from_there() -> None:
     assert result.blocks[-2].modal.mill is None
 
 
-def test_the_frame_is_in_the_state_between() -> None:
+def test_modal_state_includes_plane_position_between_moves() -> None:
     first = milled(face("(X.3Y.4)", "(X0)"))[0]
     assert first.modal.mill is not None
     assert (first.modal.mill.x, first.modal.mill.y) == pytest.approx((0.3 * INCH, 0.4 * INCH))
 
 
-def test_the_tools_own_frame_and_d_are_added() -> None:
+def test_secondary_offset_is_added_in_plane() -> None:
     given = setup(secondary={1: (0.01, 0.02)})
     (move,) = passed(
         lines("G90G94F300", "M19", "X-.5Z0D1", "(~PLXC)", "(X.3F5)", "(END)", "M30"), given
@@ -116,7 +116,7 @@ def test_the_tools_own_frame_and_d_are_added() -> None:
 # --- through the axis ---------------------------------------------------------------------------------------
 
 
-def test_straight_through_the_axis_c_turns_half_round_there() -> None:
+def test_line_through_axis_turns_c_by_180_degrees() -> None:
     result = face("(X-.3Y0)")
     assert [(b.kind, round(b.x / INCH, 9), round(b.c, 9)) for b in milled(result)] == [
         (BlockKind.PLANE_LINE, 0.0, 0.0),
@@ -127,7 +127,7 @@ def test_straight_through_the_axis_c_turns_half_round_there() -> None:
     assert "180" in result.interpreter.diagnostics[-1].message
 
 
-def test_to_the_axis_and_out_another_way() -> None:
+def test_line_to_axis_and_out_in_another_direction_turns_c() -> None:
     result = face("(X0Y0)", "(X0Y.4)")
     assert [(b.kind, round(b.c, 9)) for b in milled(result)] == [
         (BlockKind.PLANE_LINE, 0.0),
@@ -137,7 +137,7 @@ def test_to_the_axis_and_out_another_way() -> None:
     assert result.warnings == [(6, 1, "plane-centre")]
 
 
-def test_an_arc_through_the_axis() -> None:
+def test_arc_through_axis_turns_c() -> None:
     """From (.4, 0) round (.2, 0) counter-clockwise: into the centre from above, out of it downwards."""
     result = face("(X.4)", "(G03X.4Y0I.2J0)")
     assert [(b.kind, round(b.x / INCH, 6), round(b.c, 6)) for b in milled(result)] == [
@@ -148,7 +148,7 @@ def test_an_arc_through_the_axis() -> None:
     ]
 
 
-def test_beside_the_axis_nothing_is_told() -> None:
+def test_line_past_axis_causes_no_warning() -> None:
     result = face("(Y.01)", "(X-.3)")
     assert result.warnings == []
     last = milled(result)[-1]
@@ -202,7 +202,9 @@ FACE: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), FACE, ids=[" ".join(program) for program, _ in FACE])
-def test_refused_on_the_face(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_face_plane_statement_is_rejected(
+    program: tuple[str, ...], error: tuple[int, int, str]
+) -> None:
     assert error in face(*program).errors
 
 
@@ -216,7 +218,9 @@ SIDE: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), SIDE, ids=[" ".join(program) for program, _ in SIDE])
-def test_refused_on_the_side(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_side_plane_statement_is_rejected(
+    program: tuple[str, ...], error: tuple[int, int, str]
+) -> None:
     assert error in side(*program).errors
 
 
@@ -234,16 +238,16 @@ ENTRY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), ENTRY, ids=[" ".join(program) for program, _ in ENTRY])
-def test_refused_at_the_entry(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_plane_entry_is_rejected(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     assert error in passed(lines("G90G94F300", *program, "M30")).errors
 
 
-def test_a_plane_that_the_file_ends_in() -> None:
+def test_plane_open_at_end_of_file_is_rejected() -> None:
     result = passed(lines(*LATHE, "(~PLXC)", "(X.4)"))
     assert (4, 1, "plane-open") in result.errors
 
 
-def test_no_block_comes_after_a_refused_statement() -> None:
+def test_no_block_follows_rejected_plane_statement() -> None:
     result = face("(X.4)", "(K1)", "(X.3)")
     assert [b.text for b in result.moves] == ["X-.5Z-.1F5", "(X.4)"]
 

@@ -26,26 +26,28 @@ from tests.interpreter.programs import body, lines, passed, setup
         (("LS2",) * 20000 + ("X1",) + ("LF",) * 20000, (19981, 0, "too-many-blocks"), "about 10^6020 blocks"),
     ],
 )
-def test_too_large(program: tuple[str, ...], error: tuple[int, int, str], count: str) -> None:
+def test_program_with_too_many_blocks_is_rejected(
+    program: tuple[str, ...], error: tuple[int, int, str], count: str
+) -> None:
     result = passed(body(*program))
     assert result.errors == [error]
     assert count in result.interpreter.diagnostics[0].message
     assert result.blocks == []
 
 
-def test_subroutines_count_where_they_are_called() -> None:
+def test_blocks_of_subroutine_count_for_each_call() -> None:
     text = lines("G90F300", "LS3000", "M98P1", "LF", "M30", "}1", "LS2000", "X1", "LF", "M99")
     assert passed(text).errors == [(2, 0, "too-many-blocks")]
 
 
 @pytest.mark.parametrize(("on", "refused"), [(True, True), (False, False)])
-def test_conditional_calls_count_as_the_inputs_stand(on: bool, refused: bool) -> None:
+def test_conditional_calls_count_according_to_inputs(on: bool, refused: bool) -> None:
     text = lines("G90F300", "LS30", "M95", "LF", "M30", "}1", "LS200000", "X1", "LF", "M99")
     interpreter = Interpreter(read_program(ProgramSource("A", text)), setup(inputs=lambda _terminal: on))
     assert interpreter.has_errors is refused
 
 
-def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_block_limit_applies_while_program_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     answers = iter([False])  # when counted; afterwards the input is on
     text = lines("G90F300", "M95", "M30", "}1", "LS200", "X1", "LF", "M99")
     given = setup(inputs=lambda _terminal: next(answers, True))
@@ -56,13 +58,13 @@ def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) ->
     assert interpreter.diagnostics[-1].code == "too-many-blocks"
 
 
-def test_lines_without_blocks_are_bounded_while_running(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_line_limit_applies_to_loop_without_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(omniturn_interpreter, "MAX_LINE_COUNT", 50)
     result = passed(lines("G90F300", "LS100", "F20", "LF", "M30"))
     assert [code for _, _, code in result.errors] == ["too-many-blocks"]
 
 
-def test_a_million_passes_start_at_once_and_keep_no_memory() -> None:
+def test_million_loop_passes_start_at_once_without_memory_growth() -> None:
     program = read_program(ProgramSource("A", body("LS1000000", "G91X.001", "X-.001", "LF")))
     blocks = Interpreter(program, setup()).generate_blocks()
     assert [block.line for block in islice(blocks, 3)] == [2, 4, 5]

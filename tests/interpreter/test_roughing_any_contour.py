@@ -91,7 +91,7 @@ def check(steps: list[tuple[float, float, str, float]], side: Side, cut: float, 
 
 @settings(max_examples=100, deadline=None)
 @given(FALLING, SIDES, st.sampled_from([0.3, 1.0, 2.5]), st.sampled_from([0.0, 0.2, 0.8]))
-def test_contours_that_only_fall(
+def test_roughing_of_any_falling_contour_is_valid(
     steps: list[tuple[float, float, str, float]], side: Side, cut: float, left: float
 ) -> None:
     check(steps, side, cut, left)
@@ -99,7 +99,7 @@ def test_contours_that_only_fall(
 
 @settings(max_examples=150, deadline=None)
 @given(STEPS, SIDES, st.sampled_from([0.5, 1.0, 2.5]), st.sampled_from([0.0, 0.2, 0.8, 1.5]))
-def test_contours_that_rise_and_fall(
+def test_roughing_of_any_rising_and_falling_contour_is_valid(
     steps: list[tuple[float, float, str, float]], side: Side, cut: float, left: float
 ) -> None:
     check(steps, side, cut, left)
@@ -107,7 +107,7 @@ def test_contours_that_rise_and_fall(
 
 @settings(max_examples=60, deadline=None)
 @given(STEPS, SIDES, st.sampled_from([0.0, 0.2, 0.8]))
-def test_one_pass_along_the_contour(
+def test_g78_makes_one_pass_along_any_contour(
     steps: list[tuple[float, float, str, float]], side: Side, left: float
 ) -> None:
     result, cycle = run(program(steps, side, f"G78U{left}"), side)

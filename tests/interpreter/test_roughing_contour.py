@@ -23,7 +23,7 @@ def rough(*contour: str, start: str = "X.4Z.1", code: str = "G75I.1U.02F4") -> P
     return passed(body(start, code, *contour, "RF"))
 
 
-def test_a_shaft_move_by_move() -> None:
+def test_g75_roughs_shaft_move_by_move() -> None:
     """Offset radius .22, shoulder offset Z-.48: depth .18 in two passes of .09, then along the contour."""
     result = rough(*SHAFT)
     assert result.errors == []
@@ -36,7 +36,7 @@ def test_a_shaft_move_by_move() -> None:
     assert result.warnings == []
 
 
-def test_the_same_from_a_subroutine_and_in_diameters() -> None:
+def test_contour_in_subroutine_or_diameters_gives_same_moves() -> None:
     here = [b.text for b in rough(*SHAFT).moves]
     text = body("X.4Z.1", "G75I.1U.02F4P7") + "}7\n" + "\n".join(SHAFT) + "\nM99\n"
     assert [b.text for b in passed(text).moves] == here
@@ -44,7 +44,7 @@ def test_the_same_from_a_subroutine_and_in_diameters() -> None:
     assert [(b.x, b.z) for b in wide.moves] == [(b.x, b.z) for b in rough(*SHAFT).moves]
 
 
-def test_one_pass_along_the_contour() -> None:
+def test_g78_makes_one_pass_along_contour() -> None:
     result = rough(*SHAFT, code="G78U.02F4")
     assert cycle(result) == [
         ("G00X.24", "rapid"), ("X.22", "feed"), ("Z0", "feed"), ("Z-.48", "feed"), ("X.4", "feed"),
@@ -52,12 +52,12 @@ def test_one_pass_along_the_contour() -> None:
     ]  # fmt: skip
 
 
-def test_the_first_line_may_give_x_alone() -> None:
+def test_first_line_of_contour_may_have_x_only() -> None:
     result = rough("X.2", "Z-.5", "X.4", code="G78U.02F4")
     assert cycle(result)[1:3] == [("X.22", "feed"), ("Z-.48", "feed")]
 
 
-def test_u_is_measured_square_to_a_taper() -> None:
+def test_allowance_u_is_perpendicular_to_taper() -> None:
     """45 degrees from (.2, 0) to (.3, -.1), U .02: moved by .02/sqrt 2 in X and Z."""
     result = rough("X.2Z0", "X.3Z-.1", code="G78U.02F4")
     shift = 0.02 / sqrt(2)
@@ -66,7 +66,7 @@ def test_u_is_measured_square_to_a_taper() -> None:
     assert any(point == pytest.approx((0.3 + shift, -0.1 + shift)) for point in points)
 
 
-def test_corners_count_in_the_contour() -> None:
+def test_corner_words_apply_in_contour() -> None:
     """C.1 between face and cylinder; the way round its two corners in arcs of radius U."""
     result = rough("X0Z0", "X.2C.1", "Z-.5", "X.4", start="X.4Z.1", code="G78U.02F4")
     assert result.errors == []
@@ -77,7 +77,7 @@ def test_corners_count_in_the_contour() -> None:
     assert [(b.x / INCH, b.z / INCH) for b in arcs][1] == pytest.approx((0.22, -0.1))
 
 
-def test_a_radius_between_two_lines_of_the_contour() -> None:
+def test_corner_radius_in_contour_is_offset_by_allowance() -> None:
     """R.05 in the inside corner at (.2, -.5): its offset has the radius .03 about (.25, -.45)."""
     result = rough("X.2Z0", "Z-.5R.05", "X.4", code="G78U.02F4")
     (fillet,) = [b for b in result.moves if b.kind is BlockKind.ARC]
@@ -86,20 +86,20 @@ def test_a_radius_between_two_lines_of_the_contour() -> None:
     assert fillet.clockwise is False
 
 
-def test_distances_count_in_the_contour_and_end_with_it() -> None:
+def test_g91_in_contour_applies_until_contour_ends() -> None:
     result = rough("G91X-.2Z-.1", "Z-.5", "X.2", code="G78U.02F4")
     assert [(b.x, b.z) for b in result.moves] == [(b.x, b.z) for b in rough(*SHAFT, code="G78U.02F4").moves]
     assert result.warnings == [(4, 1, "cycle-modes")]
     assert result.moves[-1].modal.absolute is True
 
 
-def test_a_preset_counts_in_the_contour_and_ends_with_it() -> None:
+def test_g92_in_contour_applies_until_contour_ends() -> None:
     result = rough("X.2Z0", "G92X1.2Z1", "X1.2Z.5", "X1.4", code="G78U.02F4")
     assert result.ends == rough(*SHAFT, code="G78U.02F4").ends
     assert result.moves[-1].modal.preset_x == 0
 
 
-def test_what_is_no_geometry_does_not_count_and_is_told_once() -> None:
+def test_other_words_in_contour_are_ignored_with_one_warning() -> None:
     result = rough("X.2Z0F9", "Z-.5M08", "X.4S500", "T5", code="G78U.02F4")
     plain = rough(*SHAFT, code="G78U.02F4")
     assert cycle(result) == cycle(plain)
@@ -109,12 +109,12 @@ def test_what_is_no_geometry_does_not_count_and_is_told_once() -> None:
     assert {b.rpm for b in result.moves} == {1000}
 
 
-def test_lines_of_the_contour_make_no_blocks_of_their_own() -> None:
+def test_contour_lines_produce_no_blocks_of_their_own() -> None:
     result = rough(*SHAFT)
     assert {block.line for block in result.blocks} == {1, 2, 3, 4, 9} - {1}
 
 
-def test_a_bore_from_inside() -> None:
+def test_bore_is_roughed_from_inside_outward() -> None:
     """Bore of radius .4 to Z-.5, then .3: from radius .25 outwards."""
     result = rough("X.4Z0", "Z-.5", "X.25", start="X.25Z.1")
     assert [text for text, _ in cycle(result)][:4] == ["X.315", "Z-.48", "G00X.295", "G00Z.1"]
@@ -122,13 +122,13 @@ def test_a_bore_from_inside() -> None:
     assert result.ends[-1] == (0.25, 0.1)
 
 
-def test_from_the_back_all_of_x_is_the_other_way() -> None:
+def test_roughing_from_back_mirrors_x() -> None:
     front = rough(*SHAFT)
     back = rough("X-.2Z0", "Z-.5", "X-.4", start="X-.4Z.1")
     assert back.ends == [(-x, z) for x, z in front.ends]
 
 
-def test_a_contour_from_its_back_end() -> None:
+def test_contour_may_start_at_its_back_end() -> None:
     """The same area; the pass along the contour runs as the contour does, entered from above."""
     result = rough("X.4Z-.5", "X.2", "Z0", code="G78U.02F4")
     assert result.errors == []
@@ -139,7 +139,7 @@ GROOVE = ("X.3Z0", "Z-.2", "X.2", "Z-.5", "X.4")
 """Radius .3 to Z-.2, then .2 down to Z-.5."""
 
 
-def test_behind_a_rise_the_tool_plunges() -> None:
+def test_tool_plunges_into_groove_with_warning() -> None:
     """Depth .22 to radius .21 in four passes of .055; at .265 and .21 only from Z-.21 on, by a plunge."""
     result = rough(*GROOVE, code="G75I.06U.01F4", start="X.43Z.1")
     assert result.errors == []
@@ -154,26 +154,26 @@ def test_behind_a_rise_the_tool_plunges() -> None:
     ]  # fmt: skip
 
 
-def test_what_small_radii_cannot_hold_is_passed_by() -> None:
+def test_inside_radius_smaller_than_allowance_becomes_sharp_corner() -> None:
     """A fillet of .01 with U .02: the offsets of its two lines meet."""
     result = rough("X.2Z0", "Z-.5R.01", "X.4", code="G78U.02F4")
     assert result.errors == []
     assert (0.22, -0.48) in result.ends
 
 
-def test_the_feed_is_that_of_the_moment() -> None:
+def test_roughing_cycle_uses_its_feed_and_feed_mode() -> None:
     result = rough(*SHAFT, code="G95G75I.1U.02F.003")
     cuts = [b for b in result.moves if b.line == 4 and b.kind is not BlockKind.RAPID]
     assert {(round(b.feed / INCH, 6), b.per_rev) for b in cuts} == {(0.003, True)}
 
 
-def test_a_deleted_cycle_takes_its_contour_with_it() -> None:
+def test_block_delete_of_cycle_skips_its_contour() -> None:
     text = body("X.4Z.1", "/G75I.1U.02F4", *SHAFT, "RF", "Z1")
     result = passed(text, setup(block_delete=True))
     assert result.ends == [(0.4, 0.1), (0.4, 1)]
 
 
-def test_a_cycle_in_a_loop_and_again_in_a_subroutine() -> None:
+def test_cycle_runs_in_loop_and_in_subroutine() -> None:
     once = len(cycle(rough(*SHAFT)))
     text = body("X.4Z.1", "LS3", "G75I.1U.02F4", *SHAFT, "RF", "LF")
     assert len(cycle(passed(text), 5)) == 3 * once
@@ -183,14 +183,14 @@ def test_a_cycle_in_a_loop_and_again_in_a_subroutine() -> None:
     assert len(cycle(result, 7)) == once
 
 
-def test_both_ends_on_the_edges_of_the_quadrant_are_good() -> None:
+def test_contour_ends_on_edges_of_quadrant_are_accepted() -> None:
     """A at the start's Z, B at the start's X."""
     result = rough("X.2", "Z-.5", "X.4", start="X.4Z.1")
     assert result.errors == []
     assert result.ends[-1] == (0.4, 0.1)
 
 
-def test_an_edge_that_runs_back_is_told() -> None:
+def test_undercut_edge_causes_warning() -> None:
     result = rough("X.2Z0", "Z-.5", "X.3Z-.4", "X.4", code="G75I.1U.01F4")
     assert result.errors == []
     assert (4, 1, "cycle-undercut") in result.warnings
@@ -242,13 +242,13 @@ def test_an_edge_that_runs_back_is_told() -> None:
     ],
     ids=lambda value: " ".join(value) if isinstance(value[0], str) else value[2],
 )
-def test_refused(lines: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_roughing_cycle_is_rejected(lines: tuple[str, ...], error: tuple[int, int, str]) -> None:
     result = passed(body("X.4Z.1", *lines))
     assert error in result.errors
     assert all(block.line < 4 for block in result.moves)
 
 
-def test_a_contour_that_falls_at_once_is_told_how_it_begins() -> None:
+def test_hint_of_immediately_falling_contour_explains_its_start() -> None:
     """From .4 at Z0 to .2 at Z-.5; .4 at Z0 reached up the face from .2 is roughed."""
     fall = ("X.4Z0", "X.2Z-.5", "Z-.6", "RF")
     result = passed(body("X.5Z.1", "G75I.05U.01F4", *fall))
@@ -257,30 +257,30 @@ def test_a_contour_that_falls_at_once_is_told_how_it_begins() -> None:
     assert not passed(body("X.5Z.1", "G75I.05U.01F4", "X.2Z0", "X.4", *fall[1:])).errors
 
 
-def test_a_first_point_under_a_later_line_is_refused_without_an_allowance_too() -> None:
+def test_contour_start_under_later_line_is_rejected_without_allowance() -> None:
     """X.3 at Z-.2 lies under the line at X.45 from Z-.4 back to Z-.1: the way down to it goes through."""
     lip = ("X.3Z-.2", "X.2Z-.3", "Z-.4", "X.45", "Z-.1", "X.4Z0", "RF")
     found = passed(body("X.5Z.1", "G75I.05F4", *lip)).errors
     assert [code for *_, code in found] == ["cycle-start-near"]
 
 
-def test_refused_per_revolution_of_a_spindle_that_stands() -> None:
+def test_feed_per_rev_with_stopped_spindle_is_rejected() -> None:
     result = passed(body("M05", "X.4Z.1", "G95G75I.1F.003", *SHAFT, "RF"))
     assert result.errors == [(5, 0, "spindle-stopped")]
     assert all(block.line < 5 for block in result.blocks)
 
 
-def test_a_cycle_that_cannot_be_read_makes_no_second_mistake_of_its_rf() -> None:
+def test_unreadable_cycle_line_causes_no_error_at_rf() -> None:
     result = passed(body("X.4Z.1", "G75I,1F4", *SHAFT, "RF"))
     assert [error for error in result.errors if error[0] != 4] == []
 
 
-def test_refused_where_it_would_take_too_long_to_work_out() -> None:
+def test_cycle_with_too_many_passes_is_rejected() -> None:
     teeth = [f"X{0.2 + 0.0005 * (k % 2):.4f}Z{-0.001 * k:.3f}" for k in range(400)]
     result = passed(body("X.4Z.1", "G75I.0003F4", *teeth, "RF"))
     assert result.errors == [(4, 4, "cycle-passes")]
 
 
-def test_lines_after_a_refused_cycle_are_judged_from_its_start() -> None:
+def test_lines_after_rejected_cycle_are_checked_from_cycle_start() -> None:
     result = passed(body("X.4Z.1", "G75F4", *SHAFT, "RF", "G81Z-.1F4"))
     assert result.errors == [(4, 1, "word-missing")]

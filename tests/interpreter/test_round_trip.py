@@ -62,7 +62,7 @@ def _line(block: Block) -> str:
 @pytest.mark.parametrize(
     ("name", "source"), programs(), ids=lambda value: value if isinstance(value, str) else ""
 )
-def test_plain_lines_make_the_same_path(name: str, source: ProgramSource) -> None:
+def test_plain_lines_reproduce_the_path(name: str, source: ProgramSource) -> None:
     tools, *_ = read_offsets(SAMPLES / "offsets.toml")
     path = [b for b in moves(source, {n: ToolOffset() for n in range(1, 9)} | dict(tools)) if _long_enough(b)]
     if not path or not PLAIN.issuperset(block.kind for block in path):

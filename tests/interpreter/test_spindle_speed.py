@@ -33,11 +33,11 @@ def rpms(*program: str) -> list[float]:
         (("M03S3500", "X1"), [3500]),
     ],
 )
-def test_speed(program: tuple[str, ...], expected: list[float]) -> None:
+def test_spindle_speed_in_force(program: tuple[str, ...], expected: list[float]) -> None:
     assert rpms(*program) == expected
 
 
-def test_which_words_make_a_block() -> None:
+def test_speed_and_m_codes_that_produce_spindle_blocks() -> None:
     result = passed(lines(HEAD, "S400", "M03", "S800", "M03S900", "M05S950", "S100", "M04", "M30"))
     assert result.actions[:-1] == [
         SpindleRun(400),
@@ -67,11 +67,11 @@ CSS_250 = 250 * 12 / (2 * pi)  # rpm at a radius of 1 in
         (("M03S1000", "G71G96S76.2", "X25.4"), [CSS_250]),  # 250 ft/min in m/min
     ],
 )
-def test_surface_speed(program: tuple[str, ...], expected: list[float]) -> None:
+def test_surface_speed_sets_rpm_from_diameter(program: tuple[str, ...], expected: list[float]) -> None:
     assert rpms(*program) == [pytest.approx(rpm, abs=0.01) for rpm in expected]
 
 
-def test_surface_speed_in_blocks() -> None:
+def test_surface_speed_is_marked_in_blocks() -> None:
     result = passed(body("X1", "G96S250", "Z1"))
     run = result.actions[1]
     assert isinstance(run, SpindleRun)
@@ -80,16 +80,16 @@ def test_surface_speed_in_blocks() -> None:
     assert [block.css is None for block in result.moves] == [True, False]
 
 
-def test_the_machines_own_limit_holds_under_surface_speed() -> None:
+def test_machine_speed_limit_applies_to_surface_speed() -> None:
     result = passed(body("G96S250", "X0"), setup(limits=ControlLimits(max_rpm=2000)))
     assert result.moves[-1].rpm == 2000
 
 
-def test_a_stopped_spindle_is_no_error_for_feeds_per_minute() -> None:
+def test_stopped_spindle_is_accepted_for_feed_per_minute() -> None:
     assert passed(lines(HEAD, "F5X1", "M30")).errors == []
 
 
-def test_the_stop_of_the_spindle_comes_after_the_move_of_its_line() -> None:
+def test_spindle_stops_after_move_of_its_line() -> None:
     result = passed(body("X1M05"))
     assert [block.rpm for block in result.blocks[1:3]] == [1000, 0]
     assert isinstance(result.blocks[2].action, SpindleStop)

@@ -27,7 +27,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("dialect", "seed"), CASES)
-def test_a_spoilt_program_is_proved_or_refused(dialect: Dialect, seed: int) -> None:
+def test_corrupted_program_is_proved_or_rejected(dialect: Dialect, seed: int) -> None:
     name, source = MACHINES[dialect]
     machine = load_shipped_machine(name)
     text = mutated(random.Random(seed), dialect)

@@ -24,13 +24,13 @@ from tests.interpreter.programs import INCH, body, lines, passed, setup
         (("X+1.Z 0", "Z . 5"), [(1, 0), (1, 0.5)]),
     ],
 )
-def test_where_moves_end(program: tuple[str, ...], ends: list[tuple[float, float]]) -> None:
+def test_moves_end_at_programmed_points(program: tuple[str, ...], ends: list[tuple[float, float]]) -> None:
     result = passed(body(*program))
     assert result.errors == []
     assert result.ends == ends
 
 
-def test_a_move_starts_where_the_one_before_it_ended() -> None:
+def test_move_starts_at_end_of_previous_move() -> None:
     moves = passed(body("X1Z2", "G91X.5", "G90Z0", "G72X1")).moves
     assert [(b.x0, b.z0) for b in moves[1:]] == [(b.x, b.z) for b in moves[:-1]]
 
@@ -40,7 +40,7 @@ def test_the_first_move_starts_at_the_machine_point() -> None:
     assert (first.x0, first.z0, first.x, first.z) == pytest.approx((2 * INCH, 3 * INCH, 2 * INCH, INCH))
 
 
-def test_blocks_count_from_one_and_know_their_line_and_text() -> None:
+def test_blocks_have_number_line_and_text() -> None:
     blocks = passed(lines("G90G94F300", "M03 S1000", "X1 z1(go)", "G00X2Z1.00001", "M30")).blocks
     assert [(b.n, b.line, b.text) for b in blocks] == [
         (1, 2, "M03S1000"),
@@ -63,7 +63,7 @@ def test_blocks_count_from_one_and_know_their_line_and_text() -> None:
         ("M08G04F2", ["M08", "G04F2"]),
     ],
 )
-def test_a_line_of_several_blocks_gives_each_its_part(line: str, texts: list[str]) -> None:
+def test_each_block_of_a_line_has_its_part_of_the_text(line: str, texts: list[str]) -> None:
     assert [b.text for b in passed(body(line)).blocks[1:-1]] == texts
 
 
@@ -89,7 +89,7 @@ def test_the_modal_state_is_shared_until_a_word_changes_it() -> None:
         (("G71", "X1.23456Z0"), (round(1.2346 / INCH, 5), 0), (4, 1, "finer-than-step")),
     ],
 )
-def test_words_finer_than_the_step_are_rounded_with_a_warning(
+def test_words_finer_than_resolution_are_rounded_with_warning(
     program: tuple[str, ...], end: tuple[float, float], warning: tuple[int, int, str] | None
 ) -> None:
     result = passed(body(*program))
@@ -97,24 +97,24 @@ def test_words_finer_than_the_step_are_rounded_with_a_warning(
     assert result.warnings == ([] if warning is None else [warning])
 
 
-def test_each_word_too_fine_is_told_once_even_in_a_loop() -> None:
+def test_word_finer_than_resolution_is_reported_once_in_loop() -> None:
     result = passed(body("LS3", "X.00001Z.00001", "X1", "LF"))
     assert result.warnings == [(4, 1, "finer-than-step")]
     assert [found.occurrence_count for found in result.interpreter.diagnostics] == [2]
 
 
-def test_the_rounding_message_speaks_the_programs_numbers() -> None:
+def test_rounding_message_uses_program_units() -> None:
     (found,) = passed(body("G72X.00013Z0")).interpreter.diagnostics
     assert "X.00013" in found.message
     assert ".0001 in" in found.message
 
 
-def test_a_move_to_where_the_tool_stands_is_a_block_of_no_length() -> None:
+def test_move_to_current_position_is_zero_length_block() -> None:
     move = passed(body("X0Z0")).moves[0]
     assert (move.x0, move.z0, move.x, move.z, move.kind) == (0, 0, 0, 0, BlockKind.RAPID)
 
 
-def test_a_dwell_is_a_block_and_its_f_no_feed() -> None:
+def test_dwell_is_a_block_and_its_f_is_not_a_feed() -> None:
     result = passed(body("F20X1", "G04F.5", "X2"))
     assert [b.kind for b in result.blocks[1:4]] == [BlockKind.FEED, BlockKind.DWELL, BlockKind.FEED]
     assert result.feeds == [("feed", 20), ("feed", 20)]

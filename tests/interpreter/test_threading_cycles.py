@@ -49,7 +49,7 @@ def unbroken(result: Pass) -> None:
 # --- the worked examples ------------------------------------------------------------------------------------
 
 
-def test_the_external_thread() -> None:
+def test_external_thread_matches_manual_example() -> None:
     result = example("thread-external")
     cuts = threads(result)
     radii = [0.237, 0.23203, 0.22822, 0.225, 0.22217, 0.21961, 0.21725, 0.21506, 0.213, 0.212]
@@ -67,7 +67,7 @@ def test_the_external_thread() -> None:
     unbroken(result)
 
 
-def test_the_internal_thread_stops_and_comes_straight_out() -> None:
+def test_internal_thread_stops_and_retracts_straight() -> None:
     result = example("thread-internal")
     cuts = threads(result)
     assert len(cuts) == 14
@@ -78,14 +78,14 @@ def test_the_internal_thread_stops_and_comes_straight_out() -> None:
     assert end(result.moves[-3]) == (0.4425, 0.2)
 
 
-def test_the_clean_up_pass_is_single() -> None:
+def test_clean_up_pass_is_single_pass() -> None:
     result = example("thread-cleanup")
     (cut,), (out,) = threads(result), pull_outs(result)
     assert end(cut) == (0.212, -0.5)
     assert end(out)[0] == 0.261
 
 
-def test_three_starts() -> None:
+def test_three_start_thread_shifts_start_by_lead_thirds() -> None:
     result = example("thread-three-start")
     cuts = threads(result)
     starts = [begin(block)[1] for block in cuts]
@@ -93,7 +93,7 @@ def test_three_starts() -> None:
     assert {round(in_feed(block), 9) for block in cuts} == {0.15}  # a third of the lead apart: 120 degrees
 
 
-def test_the_taper() -> None:
+def test_tapered_thread_matches_manual_example() -> None:
     result = example("thread-taper")
     cuts = threads(result)
     assert len(cuts) == 121
@@ -106,7 +106,7 @@ def test_the_taper() -> None:
     assert {end(block)[0] for block in back} == {0.2325}
 
 
-def test_four_coarse_starts() -> None:
+def test_four_start_coarse_thread_needs_g35() -> None:
     result = example("thread-coarse-four-start")
     assert sorted({begin(block)[1] for block in threads(result)}) == [0.2, 0.3, 0.4, 0.5]
     assert {round(in_feed(block), 9) for block in threads(result)} == {0.4}
@@ -118,7 +118,7 @@ def test_four_coarse_starts() -> None:
 # --- by hand ------------------------------------------------------------------------------------------------
 
 
-def test_chips_of_equal_area() -> None:
+def test_thread_passes_remove_equal_chip_area() -> None:
     # .3 in to .25 in in steps of .05 (sqrt k - 1): k = 4 lies .05 below S
     result = passed(body("X.3Z.1", "G33X.25Z-.5I.05K.05"))
     assert [end(block)[0] for block in threads(result)] == [
@@ -129,13 +129,13 @@ def test_chips_of_equal_area() -> None:
 @pytest.mark.parametrize(
     "head", [("G72", "X.6Z.1", "G33X.5Z-.5I.1K.05"), ("G73", "X.3Z.1", "G33X.25Z-.5I.05K.05")]
 )
-def test_i_is_a_diameter_where_x_is(head: tuple[str, ...]) -> None:
+def test_i_is_diameter_in_diameter_mode(head: tuple[str, ...]) -> None:
     result = passed(body(*head))
     assert len(threads(result)) == 4
     assert end(threads(result)[1])[0] == pytest.approx(0.27929, abs=1e-5)
 
 
-def test_millimetres() -> None:
+def test_thread_in_metric_mode() -> None:
     result = passed(lines("G90G94G71F5000", "M03S500", "X10Z2", "G33X9Z-20I.5K1.5PC", "M30"))
     assert result.errors == []
     first = threads(result)[0]
@@ -143,13 +143,13 @@ def test_millimetres() -> None:
     assert {round(block.x, 9) for block in pull_outs(result)} == {11.5}
 
 
-def test_distances() -> None:
+def test_thread_under_g91_matches_absolute_thread() -> None:
     absolute = passed(body("X.3Z.1", "G33X.25Z-.5I.05K.05"))
     relative = passed(body("X.3Z.1", "G91", "G33X-.05Z-.6I.05K.05"))
     assert [end(block) for block in threads(relative)] == [end(block) for block in threads(absolute)]
 
 
-def test_a_taper_keeps_its_slope_where_the_flank_shifts_the_start() -> None:
+def test_tapered_thread_retains_slope_when_flank_shifts_start() -> None:
     result = passed(body("X.3Z.1", "G33X.25Z-.5I.05K.05A.06C30"))
     for block in threads(result):
         assert (block.x - block.x0) / (block.z - block.z0) == pytest.approx(-0.1, rel=1e-9)
@@ -157,14 +157,14 @@ def test_a_taper_keeps_its_slope_where_the_flank_shifts_the_start() -> None:
     assert begin(threads(result)[-1])[1] == pytest.approx(0.1 - 0.05 * tan(radians(30)), abs=1e-5)
 
 
-def test_towards_the_tailstock() -> None:
+def test_thread_toward_tailstock() -> None:
     result = passed(body("X.3Z-.5", "G33X.25Z.1I.05K.05PC"))
     assert begin(threads(result)[-1])[1] == pytest.approx(-0.5 + 0.05 * tan(radians(29)), abs=1e-5)
     assert end(pull_outs(result)[0]) == (0.45, 0.25)
 
 
 @pytest.mark.parametrize(("i", "retract"), [("I.01", 0.33), ("I-.01", 0.27)])
-def test_a_single_pass_where_the_tool_stands(i: str, retract: float) -> None:
+def test_g34_makes_single_pass_at_current_diameter(i: str, retract: float) -> None:
     result = passed(body("X.3Z.1", f"G34Z-.5{i}K.05P"))
     (cut,), (out,) = threads(result), pull_outs(result)
     assert end(cut) == (0.3, -0.5)
@@ -172,7 +172,7 @@ def test_a_single_pass_where_the_tool_stands(i: str, retract: float) -> None:
     assert end(result.moves[-1]) == (0.3, 0.1)
 
 
-def test_the_lead_is_not_rounded_to_the_step() -> None:
+def test_lead_is_not_rounded_to_resolution() -> None:
     # 13 threads an inch: .07692 rounded to .0769 would be .0003 wrong on an inch
     result = passed(body("X.3Z.1", "G33X.29Z-.5I.01K.07692"))
     assert in_feed(threads(result)[0]) == pytest.approx(0.07692, rel=1e-12)
@@ -188,19 +188,19 @@ def test_short_run_up_warns() -> None:
     assert (5, 1, "thread-run-up") in passed(body(run, "X.3Z.11", "G33X.29Z-.5I.01K.1"), weak).warnings
 
 
-def test_the_flank_takes_from_the_run_up() -> None:
+def test_flank_infeed_shortens_run_up() -> None:
     result = passed(body("M03S3000", "X.3Z.11", "G33X.28Z-.5I.01K.1C"))
     assert (5, 1, "thread-run-up") in result.warnings  # .11 - .02 tan 29° = .099
 
 
-def test_coarse_steps() -> None:
+def test_g35_halves_resolution_until_g36() -> None:
     result = passed(body("X.5Z.2", "G35", "G92X.5Z.2", "X.3003", "X.5Z.2", "G36", "G92X.5Z.2", "X.3003"))
     assert result.errors == []
     assert (6, 1, "finer-than-step") in result.warnings
     assert result.ends == [(0.5, 0.2), (0.30025, 0.2), (0.5, 0.2), (0.3003, 0.2)]
 
 
-def test_a_lead_over_one_inch_under_g35f2() -> None:
+def test_g35f2_permits_lead_over_one_inch() -> None:
     result = passed(body("M03S100", "X.5Z.2", "G35F2", "G92X.5Z.2", "G33X.49Z-2.I.02K1.5"))
     assert result.errors == []
 
@@ -249,14 +249,14 @@ REFUSED: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
 
 
 @pytest.mark.parametrize(("program", "error"), REFUSED, ids=[" ".join(program) for program, _ in REFUSED])
-def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+def test_invalid_thread_is_rejected(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     assert error in passed(body(*program)).errors
 
 
-def test_a_feed_in_place_of_the_lead_asks() -> None:
+def test_feed_instead_of_lead_gets_k_suggestion() -> None:
     result = passed(body("X.3Z.1", "G33X.25Z-.5I.05F.05"))
     assert any("Did you mean K.05?" in found.hint for found in result.interpreter.diagnostics)
 
 
-def test_no_block_of_a_refused_thread() -> None:
+def test_rejected_thread_produces_no_blocks() -> None:
     assert threads(passed(body("X.3Z.1", "G33X.25Z-.5I.05K.05C40"))) == []

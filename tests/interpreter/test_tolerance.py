@@ -18,7 +18,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("text", "kind", "places"), CASES, ids=[kind for _, kind, _ in CASES])
-def test_one_note_a_kind(text: str, kind: str, places: list[tuple[int, int]]) -> None:
+def test_each_kind_of_deviation_gets_one_note(text: str, kind: str, places: list[tuple[int, int]]) -> None:
     result = passed(text)
     assert result.notes == [(*places[0], kind)]
     assert result.errors == []
@@ -26,18 +26,20 @@ def test_one_note_a_kind(text: str, kind: str, places: list[tuple[int, int]]) ->
 
 
 @pytest.mark.parametrize(("text", "kind", "places"), CASES, ids=[kind for _, kind, _ in CASES])
-def test_strict_makes_each_an_error(text: str, kind: str, places: list[tuple[int, int]]) -> None:
+def test_strict_mode_makes_each_deviation_an_error(
+    text: str, kind: str, places: list[tuple[int, int]]
+) -> None:
     result = passed(text, strict=True)
     assert result.errors == [(*place, kind) for place in places]
     assert result.notes == []
 
 
-def test_a_clean_program_has_nothing_to_note_even_strictly() -> None:
+def test_clean_program_has_no_notes_in_strict_mode() -> None:
     result = passed(lines("G90G94F300", "T1(LH TURN TOOL)", "X1Z1", "M30"), strict=True)
     assert result.interpreter.diagnostics == []
 
 
-def test_a_real_archive_file_runs_with_one_note_a_kind() -> None:
+def test_archive_file_runs_with_one_note_per_kind() -> None:
     text = "(PART-7.NC)\r\n\r\n\r\nG90G94F300\r\n(T1 = TURN)\r\nT01\r\nX1Z1\r\n\r\nM30"
     result = passed(text)
     assert result.errors == []
@@ -57,7 +59,7 @@ def test_a_real_archive_file_runs_with_one_note_a_kind() -> None:
     ("line", "column", "code"),
     [("N5X1", 1, "n-word"), ("X1,2", 3, "comma"), ("G2X1", 1, "g-digits"), ("(A", 1, "comment-open")],
 )
-def test_what_is_never_tolerated(line: str, column: int, code: str) -> None:
+def test_some_deviations_are_always_rejected(line: str, column: int, code: str) -> None:
     assert passed(lines("G90F300", line, "M30")).errors == [(2, column, code)]
 
 

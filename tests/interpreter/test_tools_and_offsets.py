@@ -38,7 +38,7 @@ def machine(result: Pass) -> list[tuple[float, float]]:
         (("G91X1Z1", "T1", "X1Z1"), [(1, 1), (2, 2)]),
     ],
 )
-def test_machine_points(program: tuple[str, ...], points: list[tuple[float, float]]) -> None:
+def test_machine_positions_with_offsets(program: tuple[str, ...], points: list[tuple[float, float]]) -> None:
     result = passed(body(*program), setup(tools=TOOLS))
     assert result.errors == []
     assert machine(result) == points
@@ -57,14 +57,16 @@ def test_machine_points(program: tuple[str, ...], points: list[tuple[float, floa
         (("X1Z1D32",), [(1, 1)]),
     ],
 )
-def test_secondary_offsets(program: tuple[str, ...], ends: list[tuple[float, float]]) -> None:
+def test_program_positions_with_secondary_offsets(
+    program: tuple[str, ...], ends: list[tuple[float, float]]
+) -> None:
     given = setup(tools=TOOLS, secondary={4: (-0.0005, 0), 3: (0.1, 0.2)})
     result = passed(body(*program), given)
     assert result.errors == []
     assert result.ends == ends
 
 
-def test_the_machine_stands_still_while_the_frame_changes() -> None:
+def test_machine_does_not_move_when_offsets_change() -> None:
     result = passed(body("X1Z1", "G10Z3", "T1", "G92X7Z8", "T2"), setup(tools=TOOLS))
     after = [(block.mx, block.mz) for block in result.blocks[1:]]
     assert after == [pytest.approx((INCH, INCH))] * len(after)
@@ -72,7 +74,7 @@ def test_the_machine_stands_still_while_the_frame_changes() -> None:
     assert [(b.x0, b.z0) == (b.x, b.z) for b in changes] == [True] * 3
 
 
-def test_actions_say_what_they_do() -> None:
+def test_actions_describe_tool_preset_and_shift() -> None:
     result = passed(body("T1D2", "G92X1Z2", "G72G10X.5Z-1", "T0"), setup(tools=TOOLS))
     tool, preset, shift, none = result.actions[1:5]
     assert tool == ToolChange(1)
@@ -90,7 +92,7 @@ def test_a_new_tool_clears_preset_and_secondary_offset() -> None:
 
 
 @pytest.mark.parametrize("end", ["M30", "M02"])
-def test_the_end_clears_the_work_shift(end: str) -> None:
+def test_program_end_clears_work_shift(end: str) -> None:
     result = passed(f"G90F300\nG10Z3\nT1\nX1Z1\nG10Z1\n{end}\n", setup(tools=TOOLS))
     final = result.interpreter.modal
     assert (final.shift_z, final.pending_shift_z, final.tool) == (0, 0, 1)
@@ -111,17 +113,19 @@ def test_the_end_clears_the_work_shift(end: str) -> None:
         (("T7", "X1Z1", "T7"), [(3, 1, "tool-offset-missing")]),
     ],
 )
-def test_warnings(program: tuple[str, ...], warnings: list[tuple[int, int, str]]) -> None:
+def test_questionable_offsets_cause_warnings(
+    program: tuple[str, ...], warnings: list[tuple[int, int, str]]
+) -> None:
     assert passed(body(*program), setup(tools=TOOLS)).warnings == warnings
 
 
-def test_tools_used_and_missing() -> None:
+def test_interpreter_lists_used_tools_and_missing_offsets() -> None:
     interpreter = passed(body("T2", "X0Z0", "T7", "X0Z0", "T2", "T9", "T0"), setup(tools=TOOLS)).interpreter
     assert interpreter.used_tools == [2, 7, 9]
     assert interpreter.tools_without_offset == [7, 9]
 
 
-def test_a_missing_tool_counts_as_zero() -> None:
+def test_missing_tool_offset_counts_as_zero() -> None:
     result = passed(body("T7", "X1Z1"), setup(tools=TOOLS))
     assert machine(result) == [(1, 1)]
     assert not result.interpreter.has_errors

@@ -77,20 +77,20 @@ def held(scene: Scene) -> Scene:
     return scene
 
 
-def test_a_held_key_renews_its_lease_before_it_ends(scene: Scene) -> None:
+def test_jog_key_renews_lease_before_it_ends(scene: Scene) -> None:
     held(scene)
     assert set(scene.jogs) == {Jog("Z", -SLOW, LEASE)}
     assert len(scene.jogs) >= 0.5 / (LEASE / 2)
     assert len(scene.jogs) <= 0.5 / (LEASE / 5)
 
 
-def test_the_release_ends_it(scene: Scene) -> None:
+def test_key_release_stops_jog(scene: Scene) -> None:
     held(scene).hold.release_key("Left")
     assert scene.stopped
     assert scene.nothing_more()
 
 
-def test_a_release_that_never_arrives_is_noticed_by_the_silence_of_the_key(scene: Scene) -> None:
+def test_silent_key_stops_jog_when_release_is_lost(scene: Scene) -> None:
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     for _ in range(20):
         scene.frames(0.032)
@@ -103,7 +103,7 @@ def test_a_release_that_never_arrives_is_noticed_by_the_silence_of_the_key(scene
     assert scene.nothing_more()
 
 
-def test_the_loss_of_the_keyboard_ends_it_and_the_key_counts_as_up(scene: Scene) -> None:
+def test_loss_of_keyboard_focus_stops_jog_and_releases_key(scene: Scene) -> None:
     held(scene).hold.release_all("THE KEYBOARD WENT ELSEWHERE")
     assert scene.stopped
     scene.hold.release_key("Left")  # the release arrives after all
@@ -111,7 +111,7 @@ def test_the_loss_of_the_keyboard_ends_it_and_the_key_counts_as_up(scene: Scene)
     held(scene)
 
 
-def test_a_screen_that_stood_still_does_not_go_on(scene: Scene) -> None:
+def test_jog_does_not_resume_after_screen_was_blocked(scene: Scene) -> None:
     held(scene)
     renewed = len(scene.jogs)
     scene.t += 0.3  # no frame: nothing is renewed, and the lease ends by itself
@@ -122,7 +122,7 @@ def test_a_screen_that_stood_still_does_not_go_on(scene: Scene) -> None:
     assert scene.nothing_more()
 
 
-def test_two_keys_at_once_move_nothing_until_both_are_up(scene: Scene) -> None:
+def test_two_jog_keys_stop_motion_until_both_are_released(scene: Scene) -> None:
     held(scene).hold.press_direction("Up", "X", -1, is_rapid=False)
     assert scene.stopped
     scene.hold.release_key("Left")
@@ -134,26 +134,26 @@ def test_two_keys_at_once_move_nothing_until_both_are_up(scene: Scene) -> None:
     held(scene)
 
 
-def test_the_other_direction_while_moving_stops_and_does_not_reverse(scene: Scene) -> None:
+def test_opposite_key_stops_jog_without_reversing(scene: Scene) -> None:
     held(scene).hold.press_direction("Right", "Z", 1, is_rapid=False)
     assert scene.stopped
     assert all(jog.velocity < 0 for jog in scene.jogs)
     assert scene.nothing_more()
 
 
-def test_a_finger_beside_a_key_moves_nothing(scene: Scene) -> None:
+def test_touch_button_and_key_together_stop_jog(scene: Scene) -> None:
     held(scene).hold.press_direction("finger Z-1", "Z", -1, is_rapid=False)
     assert scene.stopped
     assert scene.nothing_more()
 
 
-def test_any_other_key_ends_it(scene: Scene) -> None:
+def test_any_other_key_stops_jog(scene: Scene) -> None:
     held(scene).hold.stop_for_other_key()
     assert scene.stopped
     assert scene.nothing_more()
 
 
-def test_a_rapid_ends_with_its_shift_and_does_not_go_on_slowly(scene: Scene) -> None:
+def test_rapid_jog_stops_when_shift_is_released(scene: Scene) -> None:
     scene.hold.press_direction("Left", "Z", -1, is_rapid=True)
     scene.frames(0.1)
     assert scene.jogs[-1].velocity == pytest.approx(-100 * INCH / 60)
@@ -162,12 +162,12 @@ def test_a_rapid_ends_with_its_shift_and_does_not_go_on_slowly(scene: Scene) -> 
     assert scene.nothing_more()
 
 
-def test_shift_that_comes_up_means_nothing_to_a_slow_jog(scene: Scene) -> None:
+def test_shift_release_does_not_affect_slow_jog(scene: Scene) -> None:
     held(scene).hold.release_shift()
     assert scene.hold.active_jog is not None
 
 
-def test_the_pairs_that_a_repeating_key_makes_are_no_presses(scene: Scene) -> None:
+def test_auto_repeat_release_and_press_pairs_are_ignored(scene: Scene) -> None:
     held(scene)
     for _ in range(10):
         scene.hold.record_repeat("Left")
@@ -180,7 +180,7 @@ def test_the_pairs_that_a_repeating_key_makes_are_no_presses(scene: Scene) -> No
     "state",
     [MachineState.IDLE, MachineState.FAULT, MachineState.ESTOP, MachineState.DISABLED, MachineState.RUN],
 )
-def test_what_the_machine_has_ended_is_not_begun_again(scene: Scene, state: MachineState) -> None:
+def test_jog_ended_by_machine_is_not_restarted(scene: Scene, state: MachineState) -> None:
     held(scene)
     before = len(scene.jogs)
     scene.frames(FRAME, state)
@@ -189,14 +189,14 @@ def test_what_the_machine_has_ended_is_not_begun_again(scene: Scene, state: Mach
     assert len(scene.jogs) == before
 
 
-def test_a_machine_that_does_not_begin_is_not_asked_for_ever(scene: Scene) -> None:
+def test_jog_request_stops_when_machine_does_not_start(scene: Scene) -> None:
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     scene.frames(1.0, MachineState.IDLE)
     assert len(scene.jogs) == 1
     assert scene.stopped
 
 
-def test_what_is_barred_moves_nothing_and_says_why(scene: Scene) -> None:
+def test_blocked_jog_moves_nothing_and_shows_reason(scene: Scene) -> None:
     scene.why = "A PROGRAM IS UNDER WAY"
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     assert scene.posted == []
@@ -215,7 +215,7 @@ def test_what_is_barred_moves_nothing_and_says_why(scene: Scene) -> None:
         (2, False, False, "C", 0.1),
     ],
 )
-def test_a_step_changes_the_figure_by_its_length(
+def test_jog_step_changes_displayed_position_by_step_length(
     scene: Scene, step: int, metric: bool, diameter: bool, axis: str, length: float
 ) -> None:
     scene.modal = ModalState(metric=metric, diameter=diameter)
@@ -227,7 +227,7 @@ def test_a_step_changes_the_figure_by_its_length(
     assert command.distance == pytest.approx(-length, abs=1e-12)
 
 
-def test_a_step_is_not_repeated_by_holding_and_not_ended_by_the_release(scene: Scene) -> None:
+def test_key_hold_does_not_repeat_step_and_release_does_not_end_it(scene: Scene) -> None:
     scene.hold.jog_speeds.step_index = 1
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     for _ in range(30):
@@ -239,14 +239,14 @@ def test_a_step_is_not_repeated_by_holding_and_not_ended_by_the_release(scene: S
     assert len(scene.posted) == 2
 
 
-def test_shift_in_a_step_is_refused(scene: Scene) -> None:
+def test_rapid_step_is_rejected(scene: Scene) -> None:
     scene.hold.jog_speeds.step_index = 1
     scene.hold.press_direction("Left", "Z", -1, is_rapid=True)
     assert scene.posted == []
     assert shows(scene.said[-1], "jog.continuous-for-rapid")
 
 
-def test_steps_and_speeds_go_round(scene: Scene) -> None:
+def test_step_and_speed_selection_wraps_around(scene: Scene) -> None:
     speeds = scene.hold.jog_speeds
     seen = []
     for _ in range(6):

@@ -58,7 +58,7 @@ def moving_after(posted: list[Command]) -> set[tuple[str, float]]:
     st.sampled_from([MachineState.IDLE, MachineState.JOG, MachineState.RUN, MachineState.FAULT]),
 )
 @settings(max_examples=300, deadline=None)
-def test_one_direction_at_a_time_and_nothing_without_a_hand(
+def test_only_one_direction_moves_and_only_while_key_is_pressed(
     events: list[tuple[str, str | None, bool | None]], state: MachineState
 ) -> None:
     scene = Scene()

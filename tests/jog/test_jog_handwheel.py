@@ -81,7 +81,7 @@ def chosen(scene: Scene, axis: str = "X") -> Scene:
     return scene
 
 
-def test_the_key_goes_through_the_axes_and_lets_go_at_last() -> None:
+def test_handwheel_key_cycles_axes_and_then_deselects() -> None:
     scene, seen = Scene(), []
     for _ in range(4):
         scene.wheel.select_next_axis()
@@ -92,7 +92,7 @@ def test_the_key_goes_through_the_axes_and_lets_go_at_last() -> None:
     assert scene.nothing_more()
 
 
-def test_it_is_renewed_before_its_lease_ends() -> None:
+def test_handwheel_selection_is_renewed_before_lease_ends() -> None:
     scene = chosen(Scene())
     scene.frames(1.0)
     assert set(scene.wheels) == {SelectHandwheel("X", THOU, LEASE)}  # continuous: a thousandth
@@ -111,7 +111,7 @@ def test_it_is_renewed_before_its_lease_ends() -> None:
         (3, False, False, "C", 0.02),
     ],
 )
-def test_a_click_is_the_step_of_the_page(
+def test_handwheel_click_is_step_of_page(
     step: int, metric: bool, diameter: bool, axis: str, way: float
 ) -> None:
     scene = Scene(modal=ModalState(metric=metric, diameter=diameter))
@@ -120,7 +120,7 @@ def test_a_click_is_the_step_of_the_page(
     assert clicks(scene.wheels[-1], axis, way)
 
 
-def test_another_step_lets_go_first() -> None:
+def test_step_change_deselects_handwheel_first() -> None:
     scene = chosen(Scene())
     scene.hold.jog_speeds.step_index = 3
     scene.frames(0.1)
@@ -130,7 +130,7 @@ def test_another_step_lets_go_first() -> None:
 
 
 @pytest.mark.parametrize("step", [CONTINUOUS_STEP_INDEX, 0])
-def test_steps_that_are_none_for_a_wheel_let_it_go_for_good(step: int) -> None:
+def test_step_not_valid_for_handwheel_deselects_it_permanently(step: int) -> None:
     scene = chosen(Scene())
     scene.hold.jog_speeds.step_index = step
     scene.frames(0.1)
@@ -139,7 +139,7 @@ def test_steps_that_are_none_for_a_wheel_let_it_go_for_good(step: int) -> None:
     assert scene.nothing_more()
 
 
-def test_a_jog_that_is_held_ends_when_it_is_chosen() -> None:
+def test_handwheel_selection_stops_active_jog() -> None:
     scene = Scene()
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     assert isinstance(scene.posted[-1], Jog)
@@ -147,7 +147,7 @@ def test_a_jog_that_is_held_ends_when_it_is_chosen() -> None:
     assert StopJog() in scene.posted
 
 
-def test_what_bars_a_jog_bars_it_and_ends_it() -> None:
+def test_handwheel_is_blocked_and_ended_by_jog_interlock() -> None:
     scene = Scene(why="THE DRIVES ARE OFF")
     scene.wheel.select_axis("X")
     assert scene.said == ["THE DRIVES ARE OFF"]
@@ -161,7 +161,7 @@ def test_what_bars_a_jog_bars_it_and_ends_it() -> None:
     assert scene.nothing_more()
 
 
-def test_what_the_control_has_taken_away_is_not_asked_for_again() -> None:
+def test_handwheel_deselected_by_control_is_not_selected_again() -> None:
     scene = chosen(Scene())
     scene.frames(0.5)
     scene.taken = True
@@ -171,7 +171,7 @@ def test_what_the_control_has_taken_away_is_not_asked_for_again() -> None:
     assert scene.nothing_more()
 
 
-def test_a_screen_that_was_away_lets_it_go() -> None:
+def test_blocked_screen_deselects_handwheel() -> None:
     scene = chosen(Scene())
     scene.t += 0.3
     scene.frames(0.05)
@@ -180,7 +180,7 @@ def test_a_screen_that_was_away_lets_it_go() -> None:
     assert scene.nothing_more()
 
 
-def test_without_a_wheel_the_key_says_so() -> None:
+def test_handwheel_key_without_handwheel_shows_message() -> None:
     scene = Scene(there=False)
     scene.wheel.select_next_axis()
     assert scene.said == [text("jog.no-wheel")]
@@ -200,7 +200,7 @@ def switched(*on: str) -> Scene:
     return scene
 
 
-def test_switches_choose_axis_and_step() -> None:
+def test_switches_select_handwheel_axis_and_step() -> None:
     scene = switched("wheel_z", "wheel_x100")
     assert clicks(scene.wheels[-1], "Z", 10 * THOU)
     scene.on = frozenset({"wheel_x", "wheel_x1"})
@@ -212,7 +212,7 @@ def test_switches_choose_axis_and_step() -> None:
 @pytest.mark.parametrize(
     "on", [(), ("wheel_x",), ("wheel_x10",), ("wheel_x", "wheel_z", "wheel_x1"), ("wheel_x", *SWITCHES[2:])]
 )
-def test_switches_between_their_places_choose_nothing(on: tuple[str, ...]) -> None:
+def test_switches_between_positions_select_nothing(on: tuple[str, ...]) -> None:
     scene = switched(*on)
     assert scene.wheels == []
     scene.wheel.select_axis("X")
@@ -220,7 +220,7 @@ def test_switches_between_their_places_choose_nothing(on: tuple[str, ...]) -> No
     assert scene.nothing_more()
 
 
-def test_what_was_taken_away_needs_the_switch_moved() -> None:
+def test_handwheel_deselected_by_control_needs_switch_change() -> None:
     scene = switched("wheel_x", "wheel_x10")
     scene.frames(0.5)
     scene.taken = True
@@ -234,7 +234,7 @@ def test_what_was_taken_away_needs_the_switch_moved() -> None:
     assert scene.wheel.wheel_choice == ("X", 2)
 
 
-def test_a_switch_that_stood_there_waits_for_the_drives() -> None:
+def test_preset_switch_applies_after_drives_are_on() -> None:
     scene = Scene(SWITCHES, why="THE DRIVES ARE OFF")
     scene.on = frozenset({"wheel_x", "wheel_x10"})
     assert scene.nothing_more()

@@ -43,7 +43,7 @@ def held(rig: Rig, velocity: float, seconds: float, along: tuple[float, float, f
 # --- the machine ----------------------------------------------------------------------------------------
 
 
-def test_the_slides_stay_on_the_line_of_the_plane(rig: Rig) -> None:
+def test_axes_stay_on_line_of_tilted_plane(rig: Rig) -> None:
     shots: list[Snapshot] = []
     rig.watch.append(shots.append)
     held(rig, 25.0, 1.2)
@@ -60,7 +60,7 @@ def test_a_step_along_the_plane_is_exactly_its_length(rig: Rig) -> None:
     assert rig.shot.demand[:3] == pytest.approx([-share for share in ALONG], abs=1e-9)
 
 
-def test_the_first_axis_at_its_end_ends_the_way(rig: Rig) -> None:
+def test_first_axis_at_its_limit_ends_travel(rig: Rig) -> None:
     """At 45 degrees: Z has .51 mm to its end, of which .01 is kept; .5 of it is .5 √2 of way."""
     rig.post(JogByStep("Z", 1.0, 20.0))
     rig.until(MachineState.IDLE)
@@ -76,7 +76,7 @@ def test_the_first_axis_at_its_end_ends_the_way(rig: Rig) -> None:
     assert line.max_acceleration == pytest.approx(machine.axes[1].max_acceleration * sqrt(2.0))
 
 
-def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
+def test_no_axis_exceeds_its_travel(rig: Rig) -> None:
     for _ in range(40):
         held(rig, 1000.0, 0.9)
     y, z = rig.shot.demand[1:3]
@@ -91,14 +91,14 @@ def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("along", [(0.0, 0.0, 2.0), (float("nan"), 0.0, 1.0)])
-def test_what_is_no_direction_moves_nothing(rig: Rig, along: tuple[float, float, float]) -> None:
+def test_invalid_direction_moves_nothing(rig: Rig, along: tuple[float, float, float]) -> None:
     rig.post(Jog("Z", 25.0, LEASE, along=along))
     rig.run(0.1)
     assert text("jog.plane-needs-three") in rig.said("refused")[-1]
     assert rig.shot.demand == (0.0,) * 5
 
 
-def test_a_jog_does_not_go_on_along_another_line(rig: Rig) -> None:
+def test_jog_does_not_continue_along_another_line(rig: Rig) -> None:
     rig.post(Jog("Z", 25.0, LEASE, along=ALONG))
     rig.run(0.03)
     rig.post(Jog("Z", 25.0, LEASE))
@@ -108,7 +108,7 @@ def test_a_jog_does_not_go_on_along_another_line(rig: Rig) -> None:
     assert np.abs(at - (at @ np.array(ALONG)) * np.array(ALONG)).max() < 1e-9
 
 
-def test_a_lathe_has_no_plane_to_jog_in() -> None:
+def test_lathe_rejects_jog_in_plane() -> None:
     rig = Rig()
     rig.ready()
     rig.post(Jog("Z", 5.0, LEASE, along=ALONG))
@@ -136,7 +136,7 @@ def shot(machine: str, *at: float, tilted: bool = False) -> Snapshot:
     return dataclasses.replace(rig.shot, axes=chain.axis_names, actual=at, swivel=swivel)
 
 
-def test_once_the_table_has_turned_z_of_the_plane_is_z_of_the_machine() -> None:
+def test_plane_z_is_machine_z_after_table_turned() -> None:
     machine = build_kinematics(load_shipped_machine("ac-table-mill"))
     frame = make_jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True))
     assert isinstance(frame, JogFrame)
@@ -145,7 +145,7 @@ def test_once_the_table_has_turned_z_of_the_plane_is_z_of_the_machine() -> None:
     assert frame.frame_name == text("screen.tilted-plane", line=7)
 
 
-def test_a_head_that_stands_in_its_plane_leans_the_keys() -> None:
+def test_head_aligned_with_plane_tilts_jog_directions() -> None:
     machine = build_kinematics(load_shipped_machine("fork-head-mill"))
     assert machine is not None
     at = dict.fromkeys(machine.axis_names, 0.0) | {"A": 30.0}
@@ -157,14 +157,14 @@ def test_a_head_that_stands_in_its_plane_leans_the_keys() -> None:
     assert frame.find_direction("X") == pytest.approx((1.0, 0.0, 0.0))
 
 
-def test_a_table_that_stands_elsewhere_than_the_plane_asks_is_told() -> None:
+def test_table_not_aligned_with_plane_is_reported() -> None:
     machine = build_kinematics(load_shipped_machine("ac-table-mill"))
     told = make_jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 29.9, 0.02, tilted=True))
     assert isinstance(told, str)
     assert begins(told, "jog.plane-asks-turn", axes="A AND C")
 
 
-def test_without_a_plane_a_leaning_head_moves_along_its_tool() -> None:
+def test_tilted_head_without_plane_jogs_along_tool() -> None:
     """The fork head at A 40, C 0: the tool leans about X."""
     machine = build_kinematics(load_shipped_machine("fork-head-mill"))
     assert machine is not None
@@ -176,7 +176,7 @@ def test_without_a_plane_a_leaning_head_moves_along_its_tool() -> None:
     assert isinstance(upright, str)
 
 
-def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None:
+def test_tilted_jog_ends_with_plane_and_needs_a_plane() -> None:
     told: list[str] = []
     ended: list[str] = []
     tilt = TiltedJog(build_kinematics(load_shipped_machine("ac-table-mill")), ended.append, told.append)
@@ -196,6 +196,6 @@ def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None
     assert shows(ended[-1], "jog.plane-off")
 
 
-def test_a_frame_is_that_of_the_keys() -> None:
+def test_jog_frame_gives_directions_of_keys() -> None:
     frame = JogFrame(make_rotation(X_AXIS, 90.0), "")
     assert frame.find_direction("Y") == pytest.approx((0.0, 0.0, 1.0))

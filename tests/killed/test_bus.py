@@ -83,7 +83,7 @@ def moving(shop: Shop, control: Process) -> None:
 
 
 @pytest.mark.parametrize("command", [SCREEN, HEADLESS], ids=["screen", "headless"])
-def test_a_killed_control_stops_on_the_path_with_everything_off(
+def test_killed_control_stops_on_path_with_outputs_off(
     command: tuple[str, ...], shop: Shop, machine: Path, tmp_path: Path
 ) -> None:
     home = tmp_path / "home"

@@ -53,7 +53,7 @@ def report(machine: Path) -> str:
     return text[text.index("<") :]
 
 
-def test_a_killed_control_leaves_a_controller_that_ends_what_it_has(
+def test_controller_finishes_queued_motion_after_control_is_killed(
     controller: Process, machine: Path, tmp_path: Path
 ) -> None:
     program = tmp_path / "part.nc"

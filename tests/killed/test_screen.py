@@ -76,7 +76,7 @@ def between_start_and_end(home: Path) -> bool:
         ] == [""]
 
 
-def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
+def test_killed_screen_and_control_preserve_entries_and_leave_no_process(
     files: tuple[str, str], tmp_path: Path
 ) -> None:
     home = tmp_path / "home"
@@ -110,7 +110,7 @@ def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
         assert text("shopfloor.ended-in-run", program="part.nc") in told
 
 
-def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
+def test_unfinished_run_is_reported_at_next_start(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.runs.record_start("cut.nc")
         store.runs.record_start("whole.nc")
@@ -122,7 +122,7 @@ def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
     assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
 
 
-def test_a_killed_driver_host_stops_the_program_and_says_so(files: tuple[str, str], tmp_path: Path) -> None:
+def test_killed_driver_host_stops_program_with_alarm(files: tuple[str, str], tmp_path: Path) -> None:
     with process(tmp_path / "home", OPERATOR, *files) as desk:
         cutting(desk, 0)
         os.kill(desk.host(), signal.SIGKILL)
@@ -132,7 +132,9 @@ def test_a_killed_driver_host_stops_the_program_and_says_so(files: tuple[str, st
         until(lambda: desk.family() == {desk.popen.pid, desk.control()}, desk.family)
 
 
-def test_a_killed_screen_holds_its_program_and_finds_it_again(files: tuple[str, str], tmp_path: Path) -> None:
+def test_killed_screen_puts_program_in_feed_hold_and_reconnects(
+    files: tuple[str, str], tmp_path: Path
+) -> None:
     home = tmp_path / "home"
     with process(home, OPERATOR, *files) as desk:
         cutting(desk, 1)
@@ -152,7 +154,7 @@ def test_a_killed_screen_holds_its_program_and_finds_it_again(files: tuple[str, 
         assert [run.outcome for run in store.runs.read_records()] != ["CUT OFF"]
 
 
-def test_a_killed_control_is_an_alarm_and_the_screen_stays(files: tuple[str, str], tmp_path: Path) -> None:
+def test_killed_control_raises_alarm_and_screen_continues(files: tuple[str, str], tmp_path: Path) -> None:
     with process(tmp_path / "home", OPERATOR, *files) as desk:
         cutting(desk, 0)
         os.kill(desk.control(), signal.SIGKILL)
@@ -161,7 +163,7 @@ def test_a_killed_control_is_an_alarm_and_the_screen_stays(files: tuple[str, str
         until(lambda: desk.family() == {desk.popen.pid}, desk.family)  # its driver host stops what is left
 
 
-def test_reset_starts_another_control_from_the_window(files: tuple[str, str], tmp_path: Path) -> None:
+def test_reset_restarts_killed_control_from_window(files: tuple[str, str], tmp_path: Path) -> None:
     home = tmp_path / "home"
     with process(home, OPERATOR, *files, "--reset") as desk:
         cutting(desk, 1)
@@ -179,7 +181,7 @@ def test_reset_starts_another_control_from_the_window(files: tuple[str, str], tm
         assert kinds.count("part") == store.runs.read_part_count("part.nc") >= 2
 
 
-def test_a_killed_screen_that_does_not_come_back_is_closed_in_order(tmp_path: Path) -> None:
+def test_control_shuts_down_in_order_when_killed_screen_stays_away(tmp_path: Path) -> None:
     machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
     machine.write_text(resources.read_machine_file("gt75.toml"))
     program.write_text(PROGRAM)

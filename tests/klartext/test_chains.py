@@ -53,7 +53,7 @@ def rotation(axis: Vector, degrees: float) -> Array:
 
 
 @pytest.mark.parametrize("name", CHAINS)
-def test_forward_of_inverse_is_the_frame(name: str) -> None:
+def test_forward_of_inverse_kinematics_is_the_frame(name: str) -> None:
     chain, dice = CHAINS[name], random.Random(7)
     for _ in range(300):
         frame = multiply_matrices(
@@ -72,7 +72,7 @@ def test_forward_of_inverse_is_the_frame(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CHAINS)
-def test_the_tool_stands_square_to_the_plane_in_the_machine(name: str) -> None:
+def test_tool_axis_is_normal_to_plane_in_machine(name: str) -> None:
     """The tool axis as the machine sees it, and the plane's normal carried along by the tables, are one."""
     chain = CHAINS[name]
     frame = make_frame_from_points(*CHAMFERS[2])
@@ -89,7 +89,7 @@ def test_the_tool_stands_square_to_the_plane_in_the_machine(name: str) -> None:
     assert np.allclose(chain.compute_tool_direction(found.axis_angles), tool, atol=1e-12)
 
 
-def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
+def test_head_puts_tool_tip_at_programmed_point() -> None:
     """A fork head, a tool of 80 mm: the tip, carried from the nose about both lines, is where it should."""
     chain = CHAINS["C fork head, A at the tool"]
     frame = make_frame_from_points(*CHAMFERS[2])
@@ -109,7 +109,7 @@ def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
     assert slides + tip == pytest.approx(wanted, abs=1e-9)
 
 
-def test_a_longer_tool_lifts_the_slides_of_a_table_machine() -> None:
+def test_longer_tool_raises_linear_axes_of_table_machine() -> None:
     short, long = AC.make_transform({"A": 45.0}), AC.make_transform({"A": 45.0}, tool_length=80.0)
     low, high = (
         short.convert_to_machine_position((1.0, 2.0, 3.0)),
@@ -119,7 +119,7 @@ def test_a_longer_tool_lifts_the_slides_of_a_table_machine() -> None:
 
 
 @pytest.mark.parametrize(("chamfer", "a", "spin"), [(1, 45.0, 0.0), (3, -45.0, 180.0)])
-def test_one_rotary_axis_reaches_what_lies_across_it(chamfer: int, a: float, spin: float) -> None:
+def test_single_rotary_axis_reaches_planes_across_it(chamfer: int, a: float, spin: float) -> None:
     found = choose_solution(machine(A), make_frame_from_points(*CHAMFERS[chamfer]), {})
     assert found is not None
     assert found.axis_angles["A"] == pytest.approx(a)
@@ -127,17 +127,17 @@ def test_one_rotary_axis_reaches_what_lies_across_it(chamfer: int, a: float, spi
 
 
 @pytest.mark.parametrize("chamfer", [2, 4])
-def test_one_rotary_axis_does_not_reach_the_others(chamfer: int) -> None:
+def test_single_rotary_axis_does_not_reach_other_planes(chamfer: int) -> None:
     assert choose_solution(machine(A), make_frame_from_points(*CHAMFERS[chamfer]), {}) is None
 
 
-def test_one_rotary_axis_has_one_side() -> None:
+def test_single_rotary_axis_has_one_solution_side() -> None:
     frame = make_frame_from_points(*CHAMFERS[1])
     assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_PLUS) is not None
     assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_MINUS) is None
 
 
-def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
+def test_c_table_alone_rotates_but_cannot_tilt() -> None:
     flat = make_rotation(Z_AXIS, 30.0)
     standing, turning = (
         choose_solution(machine(C), flat, {}),
@@ -150,7 +150,7 @@ def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
     assert choose_solution(machine(C), make_frame_from_points(*CHAMFERS[1]), {}) is None
 
 
-def test_c_above_a_only_spins_about_the_tool() -> None:
+def test_c_table_above_a_only_rotates_about_tool() -> None:
     """Workpiece, A, C: Rx(A) Rz(C)."""
     found = choose_solution(machine(A, C), make_frame_from_points(*CHAMFERS[1]), {})
     assert found is not None
@@ -160,7 +160,7 @@ def test_c_above_a_only_spins_about_the_tool() -> None:
     assert choose_solution(machine(A, C), make_frame_from_points(*CHAMFERS[2]), {}) is None
 
 
-def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
+def test_limited_c_axis_uses_revolution_nearest_to_its_position() -> None:
     limited = dataclasses.replace(C, is_modulo=False, travel_min=-360.0, travel_max=360.0)
     chain, frame = machine(limited, A), make_frame_from_points(*CHAMFERS[2])
     for present, wanted in ((0.0, 90.0), (-200.0, -270.0), (359.0, 90.0)):
@@ -169,7 +169,7 @@ def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
         assert found.axis_angles["C"] == pytest.approx(wanted)
 
 
-def test_a_reversed_axis_counts_the_other_way() -> None:
+def test_reversed_axis_gives_opposite_angle() -> None:
     backwards = dataclasses.replace(A, direction=(-1.0, 0.0, 0.0))
     found = choose_solution(
         machine(C, backwards), make_frame_from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS
@@ -178,7 +178,7 @@ def test_a_reversed_axis_counts_the_other_way() -> None:
     assert (found.axis_angles["A"], found.axis_angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
 
 
-def test_a_table_that_counts_the_other_way_swaps_no_side() -> None:
+def test_reversed_table_axis_does_not_swap_solution_sides() -> None:
     """SYM+ is the side of the greater A angle, whichever way C counts."""
     chain, frame = (
         machine(dataclasses.replace(C, direction=(0.0, 0.0, -1.0)), A),
@@ -190,7 +190,7 @@ def test_a_table_that_counts_the_other_way_swaps_no_side() -> None:
         assert (found.axis_angles["A"], found.axis_angles["C"]) == pytest.approx(wanted)
 
 
-def test_a_machine_without_rotary_axes_knows_its_own_plane_alone() -> None:
+def test_machine_without_rotary_axes_reaches_only_its_own_plane() -> None:
     assert choose_solution(machine(), make_rotation(Z_AXIS, 30.0), {}) is not None
     assert choose_solution(machine(), make_frame_from_points(*CHAMFERS[1]), {}) is None
 
@@ -218,7 +218,7 @@ def on_the_workpiece(chain: Kinematics, angles: dict[str, float], slides: Array,
 
 @pytest.mark.parametrize("name", CHAINS)
 @pytest.mark.parametrize("depth", [0.0, 35.0])
-def test_move_keeps_its_pivot_on_any_chain(name: str, depth: float) -> None:
+def test_move_option_preserves_pivot_for_any_chain(name: str, depth: float) -> None:
     chain, length = CHAINS[name], 80.0
     names = [axis.name for axis in chain.rotary_axes]
     start, end = dict.fromkeys(names, 5.0), dict(zip(names, (70.0, -40.0), strict=True))

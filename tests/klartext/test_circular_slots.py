@@ -55,7 +55,7 @@ def in_slot(points: Points) -> Points:
 
 @pytest.mark.parametrize("number", [254, 211])
 @pytest.mark.parametrize("plunge", [0, 1])
-def test_a_circular_slot_is_cleared_and_no_more(number: int, plunge: int) -> None:
+def test_circular_slot_is_cleared_without_overcut(number: int, plunge: int) -> None:
     points = cuts(milled(number, q366=plunge))
     bottom = -7.0 if number == 254 else -10.0
     deep = points[points[:, 2] < -1e-9][:, :2]
@@ -65,7 +65,7 @@ def test_a_circular_slot_is_cleared_and_no_more(number: int, plunge: int) -> Non
     assert left_standing(floor, spots[in_slot(spots) <= 0.0]) <= R + 0.05
 
 
-def test_circular_slots_stand_by_the_tool_or_by_their_centre_and_repeat() -> None:
+def test_circular_slot_positions_and_repeats() -> None:
     """The tool at X50 Y50 is the left end at 0 degrees: the circle's centre lies at X20."""
     deep = cuts(milled(254, q367=1))
     deep = deep[deep[:, 2] < -1e-9][:, :2] + (30.0, 0.0)
@@ -76,7 +76,7 @@ def test_circular_slots_stand_by_the_tool_or_by_their_centre_and_repeat() -> Non
     assert low[:, 0].max() == pytest.approx(50 + 30 + 6 - R, abs=2e-3)
 
 
-def test_allowances_of_a_circular_slot_are_taken_at_the_finishing_feed() -> None:
+def test_circular_slot_allowances_are_removed_at_finishing_feed() -> None:
     rough = cuts(milled(254, q215=1, q368=0.4, q369=0.3))
     assert in_slot(rough[rough[:, 2] < -1e-9][:, :2]).max() == pytest.approx(-R - 0.4, abs=2e-3)
     assert rough[:, 2].min() == pytest.approx(-6.7)
@@ -87,7 +87,7 @@ def test_allowances_of_a_circular_slot_are_taken_at_the_finishing_feed() -> None
     assert 250 in {round(block.feed * 60) for block in both.blocks if block.kind is BlockKind.PLANE_ARC}
 
 
-def test_older_pockets_and_studs_are_gone_round_at_their_walls() -> None:
+def test_older_pocket_and_stud_cycles_finish_their_walls() -> None:
     """The tool's centre: 80 by 60 about X50 Y50 less R, 40 by 30 plus R, circles of R40 less and plus R."""
     floor = {number: cuts(milled(number)) for number in (210, 212, 213, 214, 215)}
     deep = {number: points[points[:, 2] < -10.0 + 1e-6][:, :2] - (50, 50) for number, points in floor.items()}
@@ -125,7 +125,7 @@ def test_thread_cutting_starts_and_stops_the_spindle_itself() -> None:
         (213, {"q207": 99999}, "Q207"),
     ],
 )
-def test_refused(number: int, q: dict[str, float], names: str) -> None:
+def test_invalid_cycle_value_is_rejected(number: int, q: dict[str, float], names: str) -> None:
     ran = milled(number, **q)
     assert ran.codes == ["Input value incorrect"]
     assert names in ran.errors[0].message
@@ -145,7 +145,7 @@ BACK = told("Q200=2 Q249=5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0 Q20
         "CYCL DEF 221 ROWS ~\n Q225=0 ~\n Q226=0 ~\n Q237=9 ~\n Q238=9 ~\n Q242=2 ~\n Q243=1 ~\n Q224=0",
     ],
 )
-def test_back_boring_is_refused_however_it_is_called_because_nothing_orients_the_spindle(call: str) -> None:
+def test_back_boring_is_rejected_without_oriented_spindle(call: str) -> None:
     """Its bar goes into the hole beside the centre: with the edge at any other angle it meets the wall."""
     lines = "".join(f" ~\n  {name}={value:+g}" for name, value in BACK.items())
     ran = run(f"CYCL DEF 204 BACK BORING{lines}\n{call}", tool=TOOL)
@@ -154,7 +154,7 @@ def test_back_boring_is_refused_however_it_is_called_because_nothing_orients_the
     assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) >= 0.0
 
 
-def test_boring_that_frees_its_edge_aside_says_that_nothing_turns_it_there() -> None:
+def test_boring_with_retract_from_wall_warns_without_oriented_spindle() -> None:
     hole = (
         "CYCL DEF 202 BORING ~\n Q200=2 ~\n Q201=-9 ~\n Q206=99 ~\n Q214={} ~\n Q203=0 ~\n Q204=9\nCYCL CALL"
     )

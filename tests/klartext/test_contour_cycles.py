@@ -84,7 +84,7 @@ def test_a_pocket_is_roughed_out_round_its_island(overlap: float, reciprocation:
     no_rapid_in_the_part(ran)
 
 
-def test_allowances_stay_on_walls_floor_and_island_and_are_taken_by_finishing() -> None:
+def test_allowances_remain_on_walls_floor_and_island_until_finishing() -> None:
     rough = cuts(milled(22, q3=0.5, q4=0.3))
     deep = rough[rough[:, 2] < 1.0 - 1e-9][:, :2] - (30.0, 20.0)
     assert rounded(deep, 30, 20, 6).max() == pytest.approx(-R - 0.5, abs=1e-3)
@@ -98,7 +98,7 @@ def test_allowances_stay_on_walls_floor_and_island_and_are_taken_by_finishing() 
     assert np.hypot(*walls.T).min() == pytest.approx(8.2 + R, abs=1e-3)
 
 
-def test_a_wall_is_led_to_and_off_on_arcs_that_touch_it() -> None:
+def test_wall_approach_and_departure_are_tangent_arcs() -> None:
     """A point of the wall that is gone over first is come to along it, not square to it."""
     ran = milled(24, POCKET)
     arcs = [block for block in ran.blocks if block.kind is BlockKind.PLANE_ARC]
@@ -109,7 +109,7 @@ def test_a_wall_is_led_to_and_off_on_arcs_that_touch_it() -> None:
     assert last[0, :2] == pytest.approx(first[-1, :2])
 
 
-def test_pilot_holes_stand_where_the_tool_goes_down() -> None:
+def test_pilot_holes_are_at_plunge_points() -> None:
     """With Q19 0 the tool goes straight down into the holes of cycle 21, and into no other place."""
     holes = [block for block in milled(21).blocks if block.kind is BlockKind.FEED]
     rough = milled(22, q19=0)
@@ -131,7 +131,7 @@ def from_two(points: Points) -> tuple[Points, Points]:
     return np.hypot(*(points - (35.0, 50.0)).T), np.hypot(*(points - (65.0, 50.0)).T)
 
 
-def test_pockets_that_overlap_are_one() -> None:
+def test_overlapping_pockets_are_one_pocket() -> None:
     points = cuts(milled(22, A_OUT, B))
     floor = points[points[:, 2] < -6.0 + 1e-6][:, :2]
     turn = np.linspace(0.0, 2.0 * np.pi, 72)
@@ -142,7 +142,7 @@ def test_pockets_that_overlap_are_one() -> None:
     assert left_standing(floor, spots[inside]) <= R + 0.05
 
 
-def test_where_the_first_begins_inside_the_second_both_together_are_the_pocket() -> None:
+def test_pocket_is_intersection_when_first_starts_inside_second() -> None:
     points = cuts(milled(22, A_IN, B))
     floor = points[points[:, 2] < -6.0 + 1e-6][:, :2]
     assert np.maximum(*from_two(floor)).max() == pytest.approx(25.0 - R, abs=1e-3)
@@ -151,7 +151,7 @@ def test_where_the_first_begins_inside_the_second_both_together_are_the_pocket()
     assert left_standing(floor, spots[inside]) <= R + 0.05
 
 
-def test_an_island_takes_its_share_of_a_pocket() -> None:
+def test_island_is_removed_from_overlapping_pocket() -> None:
     points = cuts(milled(22, A_OUT, B_ISLAND))
     floor = points[points[:, 2] < -6.0 + 1e-6][:, :2]
     a, b = from_two(floor)
@@ -159,7 +159,7 @@ def test_an_island_takes_its_share_of_a_pocket() -> None:
     assert b.min() >= 25.0 + R - 1e-3
 
 
-def test_a_narrow_place_parts_the_pocket_and_the_tool_goes_over_it_above_the_part() -> None:
+def test_tool_crosses_narrow_gap_above_part() -> None:
     """Two rooms of 20 by 20 with a gate of 6 mm between them, through which a tool of R4 does not go."""
     rooms = ("L X+0 Y+0 RL\nL X+20\nL Y+7\nL X+30\nL Y+0\nL X+50\nL Y+20\nL X+30\nL Y+13\nL X+20\nL Y+20\n"
              "L X+0\nL Y+0")  # fmt: skip
@@ -182,7 +182,7 @@ def test_climb_milling_has_the_wall_on_its_right() -> None:
         assert np.sign(x0 * y1 - y0 * x1) == sense
 
 
-def test_a_contour_train_runs_at_its_side_by_levels() -> None:
+def test_contour_train_cuts_open_contour_in_levels() -> None:
     line = "L X+0 Y+0 RL\nL X+40\nL Y+30"
     points = cuts(milled(25, line, q3=0.5))
     deep = points[points[:, 2] < -6.0 + 1e-6]
@@ -196,7 +196,7 @@ def test_a_contour_train_runs_at_its_side_by_levels() -> None:
     assert sum(way(block)[-1, 2] > way(block)[0, 2] for block in ups) == 1  # out once, at the end
 
 
-def test_contour_def_says_what_is_pocket_and_island() -> None:
+def test_contour_def_defines_pocket_and_island() -> None:
     """The same area without RL and RR; a shift in force moves it whole."""
     text = program((22,), (POCKET.replace(" RR", ""), ISLAND.replace(" RL", "")))
     named = text.replace("CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL1 /2",
@@ -204,7 +204,7 @@ def test_contour_def_says_what_is_pocket_and_island() -> None:
     assert np.allclose(cuts(run(named, tool=TOOL)), cuts(milled(22)))
 
 
-def test_contour_def_takes_contours_of_programs_beside() -> None:
+def test_contour_def_reads_contours_from_other_programs() -> None:
     files = tuple(
         ProgramSource(f"{name}.H", f"BEGIN PGM {name} MM\n{contour}\nEND PGM {name} MM\n")
         for name, contour in (("POCKET", POCKET), ("ISLE", ISLAND))
@@ -216,7 +216,7 @@ def test_contour_def_takes_contours_of_programs_beside() -> None:
     assert run_source(ProgramSource("T.H", text)).codes == ["Program not found"]
 
 
-def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:
+def test_contour_uses_parameter_values_at_call() -> None:
     text = program((22,), (POCKET.replace("X+60", "X+Q50"),))
     points = cuts(run("Q50 = 40\n" + text, tool=TOOL))
     assert points[:, 0].max() == pytest.approx(40.0 - R)
@@ -257,7 +257,9 @@ def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:
         (25, ("L X+0 Y+0 RL\nL X+40\nL Y+3\nL X+0",), {}, "Input value incorrect", "contour"),
     ],
 )
-def test_refused(cycle: int, contours: tuple[str, ...], q: dict[str, float], code: str, names: str) -> None:
+def test_invalid_contour_is_rejected(
+    cycle: int, contours: tuple[str, ...], q: dict[str, float], code: str, names: str
+) -> None:
     ran = milled(cycle, *contours, **q)
     assert set(ran.codes) == {code}
     assert names in ran.errors[0].message
@@ -275,7 +277,7 @@ def test_a_cylinder_surface_is_refused_by_name() -> None:
     assert "cylinder surface" in ran.errors[0].message
 
 
-def test_a_contour_that_begins_where_the_tool_stands_keeps_its_first_side() -> None:
+def test_contour_starting_at_tool_position_retains_its_first_side() -> None:
     square = "L X+10 Y+20 RL\nL X+50\nL Y+50\nL X+10\nL Y+20"
     points = cuts(milled(22, square))
     deep = points[points[:, 2] < -6.0 + 1e-6]

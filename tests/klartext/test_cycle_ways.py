@@ -45,9 +45,7 @@ RIGID = "CYCL DEF 17.0 T\nCYCL DEF 17.1 SET UP2\nCYCL DEF 17.2 DEPTH-8\nCYCL DEF
         ("M4", RIGID.format("-"), [-1000.0, 1000.0, -1000.0]),
     ],
 )
-def test_which_way_the_spindle_turns_into_a_thread_and_out_of_it(
-    before: str, cycle: str, told: list[float]
-) -> None:
+def test_spindle_direction_into_and_out_of_thread(before: str, cycle: str, told: list[float]) -> None:
     """17 by the sign of its pitch whatever turned before; behind the cycle that is in force again."""
     ran = run(f"L X+0 Y+0 Z+50 R0 FMAX {before}\n{cycle}L Z+2 FMAX M99", tool="TOOL CALL 1 Z S1000 F500\n")
     assert ran.codes == []
@@ -80,7 +78,7 @@ def test_a_tap_breaks_its_chips_by_depth_on_any_surface(
     assert turned(ran) == [1000.0, *[-1000.0, 1000.0] * turns]
 
 
-def test_a_pocket_is_milled_in_whole_rectangles_from_the_middle_outwards() -> None:
+def test_pocket_is_milled_in_rectangles_from_center_outward() -> None:
     """40 by 20 with a radius of 4: ways of 32 by 12 round it, none further from the next than the overlap."""
     ran = ran_of(
         "CYCL DEF 4.0 P\nCYCL DEF 4.1 SET UP2\nCYCL DEF 4.2 DEPTH-6\nCYCL DEF 4.3 PECKG 3 F100\n"
@@ -122,7 +120,7 @@ def test_a_slot_without_a_length_is_refused(length: str, width: int) -> None:
     assert all(z >= 2.0 for _, _, z in ends(ran.blocks))
 
 
-def test_a_round_pocket_leaves_nothing_between_its_circles() -> None:
+def test_circular_pocket_uses_fewest_rings_within_overlap() -> None:
     """R 20 less 4: to 16 in the fewest circles that are no further apart than the overlap, three."""
     ran = ran_of(
         "CYCL DEF 5.0 CIRCLE\nCYCL DEF 5.1 SET UP 2\nCYCL DEF 5.2 DEPTH -6\nCYCL DEF 5.3 PECKG 3 F100\n"
@@ -134,7 +132,7 @@ def test_a_round_pocket_leaves_nothing_between_its_circles() -> None:
 
 
 @pytest.mark.parametrize("lift", ["", "L Z+5\n"])
-def test_a_contour_is_left_along_its_last_way_in_the_plane(lift: str) -> None:
+def test_departure_is_tangent_to_last_move_in_plane(lift: str) -> None:
     """Up Y with the tool of 4 at its left: straight on to Y 40, also where Z has moved behind it."""
     ran = run(
         f"L X+0 Y+0 Z+10 R0 FMAX M3\nL X+10 Y+10 RL F200\nL Y+30\n{lift}DEP LT LEN10\n",

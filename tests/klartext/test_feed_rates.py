@@ -37,7 +37,7 @@ def feeds(text: str, **setup: Any) -> list[float]:
         ("Q5 = 0.1\nL X+10 FUQ5", [2.0]),
     ],
 )
-def test_feed_by_the_spindle(text: str, per_second: list[float]) -> None:
+def test_feed_per_revolution_and_per_tooth(text: str, per_second: list[float]) -> None:
     assert feeds(text) == pytest.approx(per_second)
 
 
@@ -45,7 +45,7 @@ def test_in_inch_programs_fu_is_inches() -> None:
     assert feeds("L X+1 FU0.01", unit="INCH") == pytest.approx([0.01 * 25.4 * 20.0])
 
 
-def test_a_cycle_takes_a_feed_of_the_tool_call_by_the_revolution() -> None:
+def test_cycle_uses_feed_per_revolution_of_tool_call() -> None:
     """F AUTO of drilling: 0.1 mm x 1200 / 60 s."""
     drill = "CYCL DEF 200 DRILLING Q200=+2 Q201=-5 Q206=FAUTO Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0"
     ran = run(f"TOOL CALL 1 Z S1200 FU0.1\nL X+0 Y+0 Z+10 R0 FMAX M3\n{drill}\nCYCL CALL")
@@ -67,7 +67,7 @@ def test_a_cycle_takes_a_feed_of_the_tool_call_by_the_revolution() -> None:
         ("CC X+0 Y+10\nCP IPA+360 IZ-20 DR+ F600", [2.0 * math.hypot(20.0 * math.pi, 20.0) / 20.0]),
     ],
 )
-def test_m103_keeps_the_share_of_z(text: str, per_second: list[float]) -> None:
+def test_m103_reduces_feed_by_share_of_z(text: str, per_second: list[float]) -> None:
     assert feeds(f"M103 F20\n{text}") == pytest.approx(per_second)
 
 
@@ -97,7 +97,7 @@ def refused(text: str, **setup: Any) -> Ran:
         ("M128 FU0.1", "Syntax error", "M128"),
     ],
 )
-def test_what_is_refused(text: str, code: str, names: str) -> None:
+def test_invalid_feed_is_rejected(text: str, code: str, names: str) -> None:
     ran = refused(text)
     assert code in ran.codes
     assert any(names in each.message for each in ran.diagnostics)
@@ -107,16 +107,16 @@ def test_m136_is_refused_in_inch_programs() -> None:
     assert refused("M136", unit="INCH").codes == ["Not supported"]
 
 
-def test_it_is_said_that_the_override_of_the_spindle_leaves_the_feed() -> None:
+def test_warning_says_spindle_override_does_not_change_feed() -> None:
     ran = run(f"{START}L X+10 FU0.1\nL X+20")
     assert [each.code for each in ran.diagnostics] == ["feed-by-programmed-speed"]
 
 
-def test_what_ends_what_is_not_built_is_no_error() -> None:
+def test_codes_that_cancel_unsupported_functions_are_accepted() -> None:
     assert run("M102\nM117\nM145\nM141\nM105\nL X+1 FMAX").codes == []
 
 
-def test_m116_makes_f_of_a_rotary_axis_millimetres_of_the_tip() -> None:
+def test_m116_sets_rotary_feed_in_mm_at_tool_tip() -> None:
     """C turns about X300 Y252 of the machine, X70 Y42 of the workpiece: at X130 the tip is 60 mm off."""
     at = "L X+130 Y+42 Z+0 R0 FMAX\n"
     degrees_per_second = 600.0 / 60.0 / math.radians(60.0)
@@ -125,6 +125,6 @@ def test_m116_makes_f_of_a_rotary_axis_millimetres_of_the_tip() -> None:
     assert run("L X+70 Y+42 FMAX\nM116\nL C+30 F600").blocks[-2].feed == pytest.approx(10.0)  # on its line
 
 
-def test_m101_says_that_no_other_tool_comes() -> None:
+def test_m101_warns_that_no_replacement_tool_is_used() -> None:
     ran = run("M101\nL X+1 FMAX")
     assert (ran.codes, ran.warned) == ([], ["no-replacement-tool"])

@@ -63,7 +63,7 @@ WORDS = (
 
 
 @given(st.text(max_size=60))
-def test_any_line(text: str) -> None:
+def test_any_line_parses_or_gives_error_with_column(text: str) -> None:
     line = parse_line(7, text)
     assert line.error is None or line.error.line == 7
     if line.error is not None:
@@ -90,7 +90,7 @@ def test_any_program_ends(lines: list[list[str]]) -> None:
 
 
 @pytest.mark.parametrize("text", [AXIAL, POINTS])
-def test_one_sign_changed_raises_nothing(text: str) -> None:
+def test_one_changed_character_raises_no_exception(text: str) -> None:
     dice = random.Random(3)
     for _ in range(150):
         at = dice.randrange(len(text))

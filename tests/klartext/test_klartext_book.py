@@ -36,7 +36,7 @@ def errors_of(entry: CodeBookEntry, lines: str) -> list[Diagnostic]:
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.example], ids=lambda entry: entry.head
 )
-def test_the_example_proves(entry: CodeBookEntry) -> None:
+def test_example_of_entry_is_accepted(entry: CodeBookEntry) -> None:
     assert [each.format_one_line("") for each in errors_of(entry, entry.example)] == []
     assert any(BOOK.at(line, 1) is not None for line in entry.example.splitlines())
     assert entry.what.endswith(".")
@@ -85,7 +85,7 @@ def test_the_entry_of_a_rejected_cycle_has_the_hint_of_the_error(number: int) ->
     assert entry.what.endswith(CYCLE_ALTERNATIVES[number])
 
 
-def test_what_can_be_written_wrongly_has_its_refusal() -> None:
+def test_every_entry_that_can_be_invalid_has_invalid_example() -> None:
     """Without one are blocks that take any text, and words that take nothing."""
     free = {each.head for each in BOOK.entries if not each.refused}
     any_text = {"*", "FN 15", "FN 16", "FN 38", "WMAT", "CYCL DEF 32"}
@@ -95,13 +95,13 @@ def test_what_can_be_written_wrongly_has_its_refusal() -> None:
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.refused], ids=lambda entry: entry.head
 )
-def test_what_is_no_program_is_refused(entry: CodeBookEntry) -> None:
+def test_invalid_example_of_entry_is_rejected(entry: CodeBookEntry) -> None:
     said = [f"{each.message} {each.hint}" for each in errors_of(entry, entry.refused)]
     assert said, entry.refused
     assert any(entry.why in each for each in said), said
 
 
-def test_the_page_is_that_of_the_book() -> None:
+def test_documentation_page_matches_code_book() -> None:
     written = Path(__file__).parents[2] / "docs" / "klartext-codes.md"
     assert written.read_text(encoding="utf-8") == render_code_book(Dialect.KLARTEXT), (
         "print it anew: CONTRIBUTING.md"

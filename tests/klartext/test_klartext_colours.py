@@ -46,24 +46,24 @@ def parts(text: str) -> list[tuple[str, SyntaxKind]]:
         ("", []),
     ],
 )
-def test_parts(text: str, wanted: list[tuple[str, SyntaxKind]]) -> None:
+def test_line_parts_have_their_syntax_kinds(text: str, wanted: list[tuple[str, SyntaxKind]]) -> None:
     assert parts(text) == wanted
 
 
-def test_what_cannot_be_read_is_marked_last() -> None:
+def test_unreadable_text_is_marked_as_error_at_end() -> None:
     assert parts("PLANE AXIAL A+45 A+30 STAY")[-1] == ("A+30", SyntaxKind.ERROR)
     assert parts("FL X+0")[-1] == ("FL", SyntaxKind.ERROR)
 
 
 @given(st.text(max_size=40))
-def test_any_text_keeps_inside_its_line(text: str) -> None:
+def test_colored_parts_stay_within_line_for_any_text(text: str) -> None:
     for start, length, _ in color_line(text)[0]:
         assert start >= 0
         assert length >= 1
         assert start + length <= max(len(text), 1)
 
 
-def test_a_block_of_several_lines_is_one_block() -> None:
+def test_block_of_several_lines_is_colored_as_one_block() -> None:
     """Neither half of a PLANE is a fault, nor a number that begins a line of it the number of a block."""
     first, state = color_line("6 PLANE SPATIAL SPA+45 ~")
     assert SyntaxKind.ERROR not in {ink for _, _, ink in first}
@@ -77,7 +77,7 @@ def test_a_block_of_several_lines_is_one_block() -> None:
     assert SyntaxKind.ERROR in {ink for _, _, ink in color_line("  SPB+0 SPC+90", PLAIN_STATE)[0]}
 
 
-def test_a_comment_that_goes_on_is_all_comment() -> None:
+def test_continued_comment_is_colored_as_comment() -> None:
     _, state = color_line("4 ; A long comment ~")
     assert state == COMMENT_GOES_ON
     assert color_line(" L X+5 is text here ~", state) == ([(0, 21, SyntaxKind.COMMENT)], COMMENT_GOES_ON)

@@ -32,7 +32,7 @@ def written(tmp_path: Path) -> Path:
     return path
 
 
-def test_the_shipped_mill_is_the_machine_of_the_tables() -> None:
+def test_shipped_mill_matches_kinematics_of_test_tables() -> None:
     made = build_kinematics(load_shipped_machine("ac-table-mill"))
     assert made is not None
     assert made.axis_order == AC.axis_order
@@ -43,7 +43,7 @@ def test_the_shipped_mill_is_the_machine_of_the_tables() -> None:
         assert here.vmax == pytest.approx(there.vmax)
 
 
-def test_prove(turndesk: Turndesk, written: Path, offsets: Path) -> None:
+def test_prove_reports_limits_and_final_position(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     told = turndesk("prove", written, *MILL, "--offsets", offsets, "--json")
     assert told.status == 0
     (report,) = told.lines
@@ -63,7 +63,7 @@ def test_prove_names_the_message_of_the_control(turndesk: Turndesk, tmp_path: Pa
     assert (found["code"], found["line"], found["column"]) == ("Wrong axis programmed", 3, 13)
 
 
-def test_expand(turndesk: Turndesk, written: Path, offsets: Path) -> None:
+def test_expand_as_json_lists_blocks(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     told = turndesk("expand", written, *MILL, "--offsets", offsets, "--json")
     assert told.status == 0
     planes = [block for block in told.lines if block["kind"] == "plane"]
@@ -84,7 +84,7 @@ def test_expand(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     assert "frame" not in cut
 
 
-def test_expand_for_a_person(turndesk: Turndesk, written: Path, offsets: Path) -> None:
+def test_expand_as_text_lists_positions_and_feeds(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     told = turndesk("expand", written, *MILL, "--offsets", offsets)
     row = next(line for line in told.out.splitlines() if "L X+115 F600" in line)
     for shown in ("115.0000", "-7.0710", "45.000", "600.0/m"):
@@ -104,7 +104,7 @@ def test_trace_has_a_column_for_every_axis(turndesk: Turndesk, written: Path, tm
 
 
 @pytest.mark.parametrize("text", [AXIAL, POINTS])
-def test_run(turndesk: Turndesk, tmp_path: Path, offsets: Path, text: str) -> None:
+def test_run_completes_klartext_program(turndesk: Turndesk, tmp_path: Path, offsets: Path, text: str) -> None:
     path = tmp_path / "part.h"
     path.write_text(text)
     told = turndesk("run", path, *MILL, "--headless", "--offsets", offsets, "--json")
@@ -133,7 +133,9 @@ CALL LBL 4 REP 2
 
 
 @pytest.mark.parametrize("unit", ["MM", "INCH"])
-def test_run_of_every_way_to_position(turndesk: Turndesk, tmp_path: Path, offsets: Path, unit: str) -> None:
+def test_run_completes_every_positioning_option(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, unit: str
+) -> None:
     path = tmp_path / "ways.h"
     text = EVERY_WAY
     if unit == "INCH":
@@ -146,7 +148,7 @@ def test_run_of_every_way_to_position(turndesk: Turndesk, tmp_path: Path, offset
     assert (end["final"]["a"], end["final"]["c"]) == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
-def test_run_waits_for_a_tool_nobody_measured(turndesk: Turndesk, written: Path, tmp_path: Path) -> None:
+def test_run_stops_for_tool_without_offset(turndesk: Turndesk, written: Path, tmp_path: Path) -> None:
     nothing = tmp_path / "none.toml"
     nothing.write_text("")
     told = turndesk("run", written, *MILL, "--headless", "--offsets", nothing)
@@ -154,7 +156,7 @@ def test_run_waits_for_a_tool_nobody_measured(turndesk: Turndesk, written: Path,
     assert "T1" in told.err
 
 
-def test_a_lathe_runs_no_klartext_and_a_mill_no_omniturn(turndesk: Turndesk, written: Path) -> None:
+def test_lathe_rejects_klartext_and_mill_rejects_omniturn(turndesk: Turndesk, written: Path) -> None:
     told = turndesk("prove", written, "--machine", "gt75")
     assert told.status == 1
     assert "ac-table-mill" in told.out
@@ -191,7 +193,7 @@ def test_a_block_past_a_software_limit_is_refused(turndesk: Turndesk, tmp_path: 
         ('side = "table"\norder = 1', 'side = "head"\norder = 1', "kinematics.A.order"),
     ],
 )
-def test_what_a_chain_of_axes_cannot_be(old: str, new: str, named: str) -> None:
+def test_invalid_axis_chain_in_machine_file_is_rejected(old: str, new: str, named: str) -> None:
     text = read_machine_file("ac-table-mill.toml")
     assert old in text
     with pytest.raises(MachineFileError) as caught:
@@ -199,7 +201,7 @@ def test_what_a_chain_of_axes_cannot_be(old: str, new: str, named: str) -> None:
     assert named in str(caught.value)
 
 
-def test_a_mill_without_its_chain_runs_no_klartext(turndesk: Turndesk, written: Path, tmp_path: Path) -> None:
+def test_mill_without_kinematics_rejects_klartext(turndesk: Turndesk, written: Path, tmp_path: Path) -> None:
     text = read_machine_file("ac-table-mill.toml")
     start, end = text.index("[kinematics]"), text.index("[spindle]")
     path = tmp_path / "bare.toml"
@@ -209,6 +211,6 @@ def test_a_mill_without_its_chain_runs_no_klartext(turndesk: Turndesk, written: 
     assert "[kinematics]" in told.out
 
 
-def test_the_command_line_names_the_mill(capsys: pytest.CaptureFixture[str]) -> None:
+def test_machine_check_names_the_mill(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["machine", "check", "resources/machines/ac-table-mill.toml"]) == 0
     assert "A-C table" in capsys.readouterr().out

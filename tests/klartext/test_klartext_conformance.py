@@ -38,14 +38,14 @@ def ends(ran: Ran) -> np.ndarray:
     return np.array([block.travel.end for block in ran.blocks if block.travel is not None])
 
 
-def test_both_ways_to_tell_the_planes_are_one_way_on_the_machine(programs: tuple[str, str]) -> None:
+def test_plane_axial_and_plane_points_give_same_machine_path(programs: tuple[str, str]) -> None:
     axial, points = (run_file(text) for text in programs)
     assert not axial.diagnostics
     assert not points.diagnostics
     assert np.allclose(ends(axial), ends(points), atol=1e-9)
 
 
-def test_the_cuts_of_the_first_chamfer(programs: tuple[str, str]) -> None:
+def test_cuts_of_first_chamfer_have_expected_positions(programs: tuple[str, str]) -> None:
     feeds = [block for block in run_file(programs[0]).blocks if block.kind is BlockKind.FEED]
     down, along = (block.swivel for block in feeds[:2])
     assert down is not None
@@ -54,7 +54,7 @@ def test_the_cuts_of_the_first_chamfer(programs: tuple[str, str]) -> None:
     assert along.machine_position == pytest.approx((342.0, 278.2843, -352.2183), abs=6e-5)
 
 
-def test_the_positions_named_in_its_comments(programs: tuple[str, str]) -> None:
+def test_rotary_angles_match_comments_of_program(programs: tuple[str, str]) -> None:
     """``; A45 C90`` behind a PLANE block is where the table stands then."""
     text = programs[0]
     said = {

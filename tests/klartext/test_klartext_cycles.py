@@ -53,27 +53,27 @@ def cycle(number: int, **q: float) -> str:
     return f"{COMMON}CYCL DEF {number} NAME ~\n{lines}\nCYCL CALL M3\n"
 
 
-def test_drilling_in_three_infeeds() -> None:
+def test_drilling_200_uses_three_infeeds() -> None:
     """Surface 1, clearance 2: to 3; infeeds of 5 to 11 deep are 4, -1 ... from 1 down: -4, -9, -10."""
     assert told(cycle(200, q201=-11)) == [
         "turn 1000", "R 3", "F -4", "R 3", "R -2", "F -9", "R 3", "R -7", "F -10", "R 31",
     ]  # fmt: skip
 
 
-def test_drilling_at_once_with_rests() -> None:
+def test_drilling_200_dwells_at_top_and_bottom() -> None:
     assert told(cycle(200, q201=-11, q202=20, q211=1.5)) == ["turn 1000", "R 3", "F -10", "rest 1.5", "R 31"]
     assert told(cycle(200, q201=-6, q210=0.5))[3:6] == ["R 3", "rest 0.5", "R -2"]
 
 
-def test_a_depth_of_nothing_only_goes_to_the_clearance() -> None:
+def test_zero_depth_only_moves_to_clearance() -> None:
     assert told(cycle(200, q201=0)) == ["turn 1000", "R 3"]
 
 
-def test_reaming_goes_out_at_its_feed() -> None:
+def test_reaming_retracts_at_its_feed() -> None:
     assert told(cycle(201, q201=-8, q208=300)) == ["turn 1000", "R 3", "F -7", "F 3", "R 31"]
 
 
-def test_boring_stops_the_spindle_and_goes_aside() -> None:
+def test_boring_stops_spindle_and_retracts_from_wall() -> None:
     found = told(cycle(202, q201=-8, q214=1, q208=0))
     assert found == [
         "turn 1000",
@@ -88,7 +88,7 @@ def test_boring_stops_the_spindle_and_goes_aside() -> None:
     ]
 
 
-def test_boring_without_going_aside_waits_for_the_spindle_and_for_nobody() -> None:
+def test_boring_without_retract_from_wall_needs_no_operator() -> None:
     found = told(cycle(202, q201=-8, q214=0, q208=0))
     assert found == ["turn 1000", "R 3", "F -7", "stands", "R 31", "turn 1000"]
 
@@ -96,7 +96,7 @@ def test_boring_without_going_aside_waits_for_the_spindle_and_for_nobody() -> No
 @pytest.mark.parametrize(
     ("direction", "aside"), [(1, (-0.2, 0.0)), (2, (0.0, -0.2)), (3, (0.2, 0.0)), (4, (0.0, 0.2))]
 )
-def test_boring_frees_its_edge_in_the_direction_of_q214(direction: int, aside: tuple[float, float]) -> None:
+def test_boring_retracts_from_wall_in_direction_of_q214(direction: int, aside: tuple[float, float]) -> None:
     """1 and 2 are the negative main and secondary axis, 3 and 4 the positive ones; out beside the centre."""
     blocks = ran_of(cycle(202, q201=-8, q214=direction, q208=0)).blocks
     ends = [block.swivel.end for block in blocks if block.line > 4 and block.moves and block.swivel]
@@ -106,14 +106,14 @@ def test_boring_frees_its_edge_in_the_direction_of_q214(direction: int, aside: t
     assert ends[4] == pytest.approx((10.0, 20.0, 31.0))
 
 
-def test_universal_drilling_breaks_chips_and_takes_less_each_time() -> None:
+def test_universal_drilling_breaks_chips_and_reduces_infeed() -> None:
     """Infeeds 5, 4, 3 from the surface at 1, a chip break of .2 behind each but every second."""
     assert told(cycle(203, q201=-12, q212=1, q205=1, q213=1, q256=0.2, q208=0)) == [
         "turn 1000", "R 3", "F -4", "R -3.8", "F -8", "R 3", "R -6", "F -11", "R 31",
     ]  # fmt: skip
 
 
-def test_deep_drilling_stops_before_the_chips() -> None:
+def test_deep_drilling_stops_above_last_depth() -> None:
     assert told(cycle(205, q201=-10, q258=0.5, q259=1.5, q253=750)) == [
         "turn 1000", "R 3", "F -4", "R 3", "R -3", "F -9", "R 31",
     ]  # fmt: skip
@@ -136,7 +136,7 @@ def _height(block: Block) -> float:
     return block.swivel.end[2]
 
 
-def test_a_rejected_cycle_of_a_pattern_does_not_change_the_surface() -> None:
+def test_rejected_cycle_in_pattern_does_not_change_q203() -> None:
     """Cycle 200 without Q201 is rejected at the first point, which is 5 mm below the surface Q203=1."""
     ran = ran_of(
         f"{COMMON}CYCL DEF 200 NAME ~\n  Q200=+2 ;WHAT\n"
@@ -146,7 +146,7 @@ def test_a_rejected_cycle_of_a_pattern_does_not_change_the_surface() -> None:
     assert ran.state.q_values[203] == 1.0
 
 
-def test_tapping_turns_the_spindle_round() -> None:
+def test_tapping_reverses_spindle() -> None:
     assert told(cycle(206, q201=-8)) == ["turn 1000", "R 3", "F -7", "turn -1000", "F 3", "turn 1000", "R 31"]
     ran = ran_of(cycle(207, q201=-8, q239=1.25))
     taps = [block for block in ran.blocks if block.kind is BlockKind.FEED]
@@ -165,7 +165,7 @@ def test_tapping_turns_the_spindle_round() -> None:
          "L Z+2 FMAX M99", "MM", 1.75),
     ],
 )  # fmt: skip
-def test_a_tap_goes_by_its_lead_and_the_spindle(text: str, unit: str, lead: float) -> None:
+def test_tapping_feed_follows_lead_and_spindle(text: str, unit: str, lead: float) -> None:
     ran = run("L X+0 Y+0 Z+50 R0 FMAX M3\n" + text, unit=unit, tool="TOOL CALL 1 Z S1000 F500\n")
     assert ran.codes == []
     taps = [block for block in ran.blocks if block.follows_spindle]
@@ -174,21 +174,21 @@ def test_a_tap_goes_by_its_lead_and_the_spindle(text: str, unit: str, lead: floa
     assert [block.feed for block in taps] == pytest.approx([lead] * len(taps))
 
 
-def test_a_lead_faster_than_z_is_refused() -> None:
+def test_lead_above_max_z_feed_is_rejected() -> None:
     """A plan that held Z back would break the tap: 30 mm at S1000 are 500 mm/s."""
     ran = ran_of(cycle(207, q201=-8, q239=30))
     assert ran.codes == ["Input value incorrect"]
     assert "requires a Z feed rate above the maximum" in ran.errors[0].message
 
 
-def test_tapping_with_chip_breaking() -> None:
+def test_tapping_breaks_chips() -> None:
     assert told(cycle(209, q201=-8, q239=1, q257=5, q256=0)) == [
         "turn 1000", "R 3", "F -4", "turn -1000", "F 3", "turn 1000",
         "F -7", "turn -1000", "F 3", "turn 1000", "R 31",
     ]  # fmt: skip
 
 
-def test_bore_milling_is_a_helix_of_the_tools_way() -> None:
+def test_bore_milling_is_helix_of_tool_center() -> None:
     """A tool of R 4 in a hole of 20 goes round on R 6; 13 mm down from 3 at 4 a turn, and once more."""
     ran = ran_of(cycle(208, q201=-11, q334=4, q335=20))
     assert ran.codes == []
@@ -212,7 +212,7 @@ def test_m99_calls_once_and_m89_until_m99() -> None:
     assert cut == pytest.approx([0.0, 10.0, 20.0])
 
 
-def test_a_pattern_on_a_circle() -> None:
+def test_pattern_on_circle() -> None:
     define = cycle(240, q343=0, q201=-1).replace("CYCL CALL M3\n", "")
     circle = "CYCL DEF 220 POLAR ~\n Q216=+50 ~\n Q217=+40 ~\n Q244=+20 ~\n Q245=+0 ~\n Q246=+360 ~\n"
     ran = ran_of(f"{define}{circle} Q247=+0 ~\n Q241=+4 ~\n Q301=+1")
@@ -221,7 +221,7 @@ def test_a_pattern_on_a_circle() -> None:
     assert cut == [pytest.approx(each) for each in ((60, 40), (50, 50), (40, 40), (50, 30))]
 
 
-def test_a_pattern_in_rows_there_and_back() -> None:
+def test_pattern_in_rows_alternates_direction() -> None:
     define = cycle(240, q343=0, q201=-1).replace("CYCL CALL M3\n", "")
     rows = "CYCL DEF 221 ROWS ~\n Q225=+5 ~\n Q226=+6 ~\n Q237=+10 ~\n Q238=+20 ~\n"
     ran = ran_of(f"{define}{rows} Q242=+2 ~\n Q243=+2 ~\n Q224=+0")
@@ -229,7 +229,7 @@ def test_a_pattern_in_rows_there_and_back() -> None:
     assert cut == [pytest.approx(each) for each in ((5, 6), (15, 6), (15, 26), (5, 26))]
 
 
-def test_old_pecking_begins_where_the_tool_stands() -> None:
+def test_cycle_1_pecking_starts_at_tool_position() -> None:
     """Called 2 above the surface: to 10 deep in infeeds of 6, rapid to .6 before the chips."""
     text = (
         "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP 2\nCYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG 6\n"
@@ -238,7 +238,7 @@ def test_old_pecking_begins_where_the_tool_stands() -> None:
     assert told(text) == ["R 2", "F -6", "R 2", "R -5.4", "F -10", "rest 0.5", "R 2"]
 
 
-def test_old_circular_pocket_keeps_inside_its_radius() -> None:
+def test_cycle_5_circular_pocket_stays_within_radius() -> None:
     text = (
         "CYCL DEF 5.0 CIRCLE\nCYCL DEF 5.1 SET UP 2\nCYCL DEF 5.2 DEPTH -6\nCYCL DEF 5.3 PECKG 3 F100\n"
         "CYCL DEF 5.4 RADIUS 20\nCYCL DEF 5.5 F300 DR-\nL Z+2 FMAX M99"
@@ -250,7 +250,7 @@ def test_old_circular_pocket_keeps_inside_its_radius() -> None:
     assert {round(block.swivel.end[2], 6) for block in arcs if block.swivel} == {-3.0, -6.0}
 
 
-def test_cycle_9_rests_and_cycle_19_tilts() -> None:
+def test_cycle_9_dwells_and_cycle_19_tilts() -> None:
     ran = ran_of(
         "CYCL DEF 9.0 DWELL\nCYCL DEF 9.1 V.ZEIT 1.5\nCYCL DEF 19.0 PLANE\nCYCL DEF 19.1 A+45 B+0 C+0"
     )
@@ -263,7 +263,7 @@ def test_cycle_9_rests_and_cycle_19_tilts() -> None:
 DRILL = f"{COMMON}CYCL DEF 240 CENTRE ~\n Q343=+0 ~\n Q201=-1\n"
 
 
-def test_call_at_a_place_goes_over_it_before_it_goes_down() -> None:
+def test_cycl_call_pos_positions_above_point_before_plunging() -> None:
     """From 50 up the place is reached at 50; from below the clearance of 3 the tool goes up first."""
     ran = ran_of(f"{DRILL}CYCL CALL POS X+30 Y+40 Z+0 F2000\nL Z-5 FMAX\nCYCL CALL POS X+0 Y+0 Z+0")
     assert ran.codes == []
@@ -274,7 +274,7 @@ def test_call_at_a_place_goes_over_it_before_it_goes_down() -> None:
     assert [place for _, place in second] == [pytest.approx((30, 40, 3)), pytest.approx((0, 0, 3))]
 
 
-def test_another_cycle_forgets_the_program_that_cycle_12_has_named() -> None:
+def test_new_cycle_clears_program_named_by_cycle_12() -> None:
     ran = ran_of(f"CYCL DEF 12.0 PGM CALL\nCYCL DEF 12.1 PGM HOLE\n{DRILL}L X+0 FMAX M99")
     assert ran.codes == []
     called = ran_of("CYCL DEF 12.0 PGM CALL\nCYCL DEF 12.1 PGM HOLE\nCYCL CALL")
@@ -288,12 +288,12 @@ def test_another_cycle_forgets_the_program_that_cycle_12_has_named() -> None:
         ("CYCL DEF 247 PRESET ~\n Q339=+2", "preset"),
     ],
 )
-def test_what_is_not_as_on_the_control_is_warned_of(text: str, code: str) -> None:
+def test_difference_from_original_control_causes_warning(text: str, code: str) -> None:
     assert ran_of(text).warned == [code]
 
 
 @pytest.mark.parametrize("text", ["CYCL DEF 32.0 TOLERANCE", "CYCL DEF 13.0 ORIENTATION", "M97", "M120 LA5"])
-def test_what_does_nothing_is_told(text: str) -> None:
+def test_ignored_block_is_reported(text: str) -> None:
     ran = ran_of(f"{text}\n{text}")
     assert [each.code for each in ran.diagnostics] == ["unheeded"]
 
@@ -334,14 +334,14 @@ def test_what_does_nothing_is_told(text: str) -> None:
         ("M5\n" + cycle(206, q201=-5).replace(" M3", ""), "Wrong rpm", "spindle"),
     ],
 )
-def test_refused(text: str, code: str, names: str) -> None:
+def test_invalid_cycle_is_rejected(text: str, code: str, names: str) -> None:
     ran = ran_of(text)
     assert ran.codes[:1] == [code]
     assert names in ran.errors[0].message + ran.errors[0].hint
 
 
 @pytest.mark.parametrize(("text", "column"), [("M99", 1), ("L Z+2 FMAX M99", 1), ("CYCL CALL", 1)])
-def test_a_call_without_a_cycle_is_told_at_the_beginning_of_its_line(text: str, column: int) -> None:
+def test_call_without_cycle_is_reported_at_start_of_block(text: str, column: int) -> None:
     (error, *_) = ran_of(text).errors
     assert "No machining cycle" in error.message + error.hint
     assert error.column == column
@@ -395,11 +395,11 @@ def bottoms(pattern: str) -> list[tuple[float, ...]]:
         ("PITCHCIRC1 (X+0 Y+0 D+20 START+0 STEP+30 NUM2 Z+0)", [(10, 0, 0), (8.6603, 5, 0)]),
     ],
 )
-def test_points_of_a_pattern(pattern: str, wanted: list[tuple[float, ...]]) -> None:
+def test_pattern_def_gives_its_points(pattern: str, wanted: list[tuple[float, ...]]) -> None:
     assert bottoms(pattern) == wanted
 
 
-def test_between_points_the_tool_is_at_the_safe_height_and_q203_is_as_before() -> None:
+def test_pattern_moves_at_safe_height_and_restores_q203() -> None:
     ran = ran_of(f"{CENTRE}\nPATTERN DEF POS1 (X+0 Y+0 Z-5) POS2 (X+9 Y+0 Z+0)\nCYCL CALL PAT FMAX")
     aside = [block for block in ran.blocks if block.swivel and block.swivel.start[:2] != block.swivel.end[:2]]
     assert [block.swivel.end[2] for block in aside if block.swivel] == pytest.approx([50.0, 50.0, 31.0])
@@ -412,7 +412,7 @@ PRESETS = {0: DatumPreset(ORIGIN), 3: DatumPreset((100.0, 50.0, -300.0), 90.0)}
 SET = "CYCL DEF 247 DATUM SETTING ~\n  Q339={} ;DATUM NUMBER\n"
 
 
-def test_a_preset_of_the_table_moves_and_turns_the_workpiece() -> None:
+def test_preset_of_table_shifts_and_rotates_workpiece() -> None:
     """Turned by 90 degrees, X+10 Y+2 of the workpiece are 2 back along X and 10 along Y of the machine."""
     ran = run(f"{SET.format('+3')}L X+10 Y+2 Z+5 FMAX", presets=PRESETS)
     assert ran.codes == []
@@ -420,21 +420,21 @@ def test_a_preset_of_the_table_moves_and_turns_the_workpiece() -> None:
     assert [ran.axes(ran.blocks[-2])[name] for name in "XYZ"] == pytest.approx([98.0, 60.0, -295.0])
 
 
-def test_a_preset_ends_the_datum_shift_and_zero_leads_back() -> None:
+def test_preset_cancels_datum_shift_and_preset_zero_returns() -> None:
     ran = run(
         f"{SET.format('+3')}TRANS DATUM AXIS X+7\n{SET.format('+0')}L X+0 Y+0 Z+0 FMAX", presets=PRESETS
     )
     assert [ran.axes(ran.blocks[-2])[name] for name in "XYZ"] == pytest.approx(list(ORIGIN))
 
 
-def test_a_plane_counts_in_the_preset_that_is_in_force() -> None:
+def test_plane_is_relative_to_active_preset() -> None:
     """SPA+45 of a workpiece turned by 90 degrees: the table turns by C 90 first."""
     plane = "PLANE SPATIAL SPA+45 SPB+0 SPC+0 STAY SYM+"
     ran = run(f"{SET.format('+3')}{plane}", presets=PRESETS)
     assert (ran.state.q_values[120], ran.state.q_values[122]) == pytest.approx((45.0, 90.0))
 
 
-def test_a_part_clamped_turned_on_its_table_runs_as_before_and_c_goes_on_from_there() -> None:
+def test_preset_c_zero_shifts_c_and_leaves_other_axes_unchanged() -> None:
     """C carries the part: with its zero at 30 all slides go where they went, and C 30 further."""
     text = (
         "L X+10 Y+2 Z+5 C+15 FMAX\nPLANE SPATIAL SPA+20 SPB+10 SPC+5 MOVE FMAX\nL X+3 Y+4 Z+5 FMAX\n"
@@ -476,7 +476,7 @@ def test_a_tool_is_called_by_its_name_in_the_table() -> None:
     assert run('TOOL CALL "MILL_D12" Z S1000', tool="", **around).codes == ["Tool not defined"]
 
 
-def test_centring_by_diameter_with_the_point_of_the_table() -> None:
+def test_centering_by_diameter_uses_point_angle_of_table() -> None:
     """A point of 90 degrees makes 8 mm at a depth of 4."""
     q = "CYCL DEF 240 C ~\n Q200=2 ~\n Q343=+1 ~\n Q201=-1 ~\n Q344=-8 ~\n Q206=100 ~\n Q203=+1 ~\n Q204=9"
     ran = run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL", mill_tools={1: MillTool(point_angle_deg=90.0)})
@@ -496,9 +496,7 @@ TAP = "CYCL DEF 207 RIGID TAPPING Q200=2 Q201=-8 Q239={pitch} Q203=+0 Q204=30\nL
         ("M4\n", "-1", [-1000.0, 1000.0, -1000.0]),
     ],
 )
-def test_the_sign_of_the_pitch_turns_the_spindle_of_a_rigid_tap(
-    before: str, pitch: str, speeds: list[float]
-) -> None:
+def test_rigid_tap_pitch_sign_sets_spindle_direction(before: str, pitch: str, speeds: list[float]) -> None:
     ran = run(before + TAP.format(pitch=pitch), tool="TOOL CALL 1 Z S1000\n")
     assert not ran.errors
     turned = [block.action for block in ran.blocks if isinstance(block.action, SpindleRun | SpindleStop)]

@@ -48,7 +48,7 @@ def q(text: str, number: int = 1, **setup: Any) -> float:
         ("+5", 5.0),
     ],
 )
-def test_a_formula(formula: str, value: float) -> None:
+def test_formula_gives_its_value(formula: str, value: float) -> None:
     assert q(f"Q1 = {formula}") == pytest.approx(value, abs=1e-12)
 
 
@@ -69,7 +69,7 @@ def test_a_formula(formula: str, value: float) -> None:
         ("FN3:Q1=Q2*-2", -20.0),
     ],
 )
-def test_fn(block: str, value: float) -> None:
+def test_fn_block_gives_its_value(block: str, value: float) -> None:
     assert q(f"Q2 = 10\n{block}") == pytest.approx(value, abs=1e-12)
 
 
@@ -85,14 +85,14 @@ def test_fn(block: str, value: float) -> None:
         ("FN12: IF+Q2LT+10GOTO LBL 1", False),
     ],
 )
-def test_a_jump(condition: str, jumps: bool) -> None:
+def test_jump_follows_its_condition(condition: str, jumps: bool) -> None:
     goto = "" if "GOTO" in condition else " GOTO LBL 1"
     ran = run(f"Q2 = 10\nQ1 = 1\n{condition}{goto}\nQ1 = 2\nLBL 1")
     assert ran.codes == []
     assert ran.state.q_values[1] == (1.0 if jumps else 2.0)
 
 
-def test_a_loop_that_counts_by_a_jump() -> None:
+def test_loop_with_counter_ends_by_jump() -> None:
     ran = run("L X+0 Y+0 FMAX\nQ1 = 0\nLBL 1\nL IX+5 FMAX\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +4 GOTO LBL 1")
     assert ran.codes == []
     assert ran.state.programmed_position[0] == pytest.approx(20.0)
@@ -107,34 +107,34 @@ def test_a_loop_that_counts_by_a_jump() -> None:
         ("Q1 = 0\nLBL 1\nQ1 = 1 - +Q1\nL X+Q1 FMAX\nFN 9: IF +0 EQU +0 GOTO LBL 1", 7, 6),  # two jumps
     ],
 )
-def test_a_loop_that_comes_round_unchanged_is_told_at_its_jump(text: str, line: int, most: int) -> None:
+def test_loop_without_change_is_reported_at_its_jump(text: str, line: int, most: int) -> None:
     ran = run(text)
     assert ran.codes == ["endless-loop"]
     assert ran.errors[0].line == line
     assert len([block for block in ran.blocks if block.moves]) <= most
 
 
-def test_long_loops_that_count_are_none() -> None:
+def test_long_loop_with_counter_is_accepted() -> None:
     text = "Q1 = 0\nLBL 1\nQ1 = Q1 + 0.001\nQ2 = INT( Q1 )\nFN 12: IF +Q2 LT +2 GOTO LBL 1\nL X+Q1 FMAX"
     ran = run(text)
     assert ran.codes == []
     assert ran.state.programmed_position[0] == pytest.approx(2.0, abs=2e-3)
 
 
-def test_a_loop_within_repeats_is_none() -> None:
+def test_loop_inside_repeats_is_not_reported_as_endless() -> None:
     """The inner jump meets the same Q parameters again, but another repeat is left."""
     inner = "Q1 = 0\nLBL 2\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +3 GOTO LBL 2"
     assert run(f"LBL 1\n{inner}\nCALL LBL 1 REP 5").codes == []
 
 
-def test_what_reads_the_control_is_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_loop_that_reads_system_data_ends_at_block_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """FN 18 may read what no parameter shows, so only the count of blocks ends such a loop."""
     monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_BLOCK_COUNT", 200)
     text = "LBL 1\nFN 18: SYSREAD Q5 = ID20 NR1\nL IX+1 FMAX\nFN 9: IF +0 EQU +0 GOTO LBL 1"
     assert run(text).codes == ["too-many-blocks"]
 
 
-def test_local_and_kept_parameters_are_others() -> None:
+def test_q_ql_and_qr_parameters_are_separate() -> None:
     ran = run("Q1 = 1\nQL1 = 2\nQR1 = 3\nQ2 = Q1 + 10 * QL1 + 100 * QR1\nL X+QL1 Y-QR1 FMAX")
     assert ran.codes == []
     assert ran.state.q_values[2] == 321.0
@@ -142,11 +142,11 @@ def test_local_and_kept_parameters_are_others() -> None:
 
 
 @pytest.mark.parametrize("block", ["Q1 = 10 ^ 300", "Q1 = EXP 1000", f"Q1 = {MAX_Q_VALUE:.0f} * 2"])
-def test_a_result_that_is_too_large(block: str) -> None:
+def test_result_out_of_range_is_rejected(block: str) -> None:
     assert run(block).codes
 
 
-def test_what_the_control_keeps_up_to_date() -> None:
+def test_control_updates_its_q_parameters() -> None:
     def told(text: str) -> Ran:
         return run(f"TOOL DEF 5 L+30 R+4\nTOOL CALL 5 Z S1200 DR+0.5\nM3\nL X+7 Y+0 Z+3 FMAX\n{text}")
 
@@ -158,7 +158,7 @@ def test_what_the_control_keeps_up_to_date() -> None:
     assert [ran.state.q_values[at] for at in range(1, 7)] == pytest.approx([4.5, 30.0, 0.0, 2.0, 5.0, 7.0])
 
 
-def test_print_does_nothing_and_says_so() -> None:
+def test_f_print_has_no_effect_and_is_reported() -> None:
     ran = run("FN 16: F-PRINT TNC:\\MASK.A / TNC:\\OUT.TXT\nL X+1 FMAX")
     assert ran.codes == []
     assert [each.code for each in ran.diagnostics] == ["unheeded"]

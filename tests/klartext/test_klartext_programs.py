@@ -48,7 +48,7 @@ def cuts(ran: Ran) -> list[tuple[np.ndarray, np.ndarray]]:
     return found
 
 
-def test_both_programs_go_the_same_way_on_the_machine() -> None:
+def test_both_programs_follow_same_path_on_machine() -> None:
     axial, points = run_file(AXIAL), run_file(POINTS)
     assert not axial.diagnostics
     assert not points.diagnostics
@@ -56,7 +56,7 @@ def test_both_programs_go_the_same_way_on_the_machine() -> None:
     assert [block.kind for block in axial.blocks] == [block.kind for block in points.blocks]
 
 
-def test_the_cuts_start_and_end_where_the_tables_say() -> None:
+def test_cuts_start_and_end_at_positions_of_table() -> None:
     """With nothing left to turn, a point of the plane is the machine's place of the datum plus its words."""
     ran = run_file(AXIAL)
     feeds = [block for block in ran.blocks if block.kind is BlockKind.FEED]
@@ -73,7 +73,7 @@ def test_the_cuts_start_and_end_where_the_tables_say() -> None:
     assert first.machine_position == pytest.approx((215.0, 278.2843, -352.2183), abs=6e-5)
 
 
-def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
+def test_other_solution_side_cuts_same_lines_of_workpiece() -> None:
     plus, minus = run_file(POINTS), run_file(SYM_MINUS)
     assert not minus.errors
     for here, there in zip(cuts(plus), cuts(minus), strict=True):
@@ -88,7 +88,7 @@ def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
         assert swivel.machine_position == pytest.approx(np.add(origin, turned), abs=6e-5)
 
 
-def test_the_cuts_lie_on_the_chamfers() -> None:
+def test_cuts_are_on_the_chamfers() -> None:
     """Chamfer 1 runs at y 5, z -5 from x -15 to 115; the others are that line about the block's centre."""
     ends = [np.array((-15.0, 5.0, -5.0)), np.array((115.0, 5.0, -5.0))]
     quarter = np.array(((0, -1, 0), (1, 0, 0), (0, 0, 1)))
@@ -98,7 +98,7 @@ def test_the_cuts_lie_on_the_chamfers() -> None:
         ends = [centre + quarter @ (each - centre) for each in ends]
 
 
-def test_an_end_at_the_bottom_is_no_second_end() -> None:
+def test_program_with_m30_before_end_pgm_ends_once() -> None:
     ran = run_file(AXIAL)
     assert sum(isinstance(block.action, ProgramEnd) for block in ran.blocks) == 1
     assert ran.state.position_by_axis["C"] == pytest.approx(360.0)
@@ -125,30 +125,30 @@ def test_a_section_is_repeated() -> None:
     assert xs(ran) == [10.0, 20.0, 30.0, 40.0]
 
 
-def test_repeats_within_a_subprogram_begin_anew() -> None:
+def test_repeats_in_subprogram_restart_at_each_call() -> None:
     text = 'CALL LBL "ROW"\nCALL LBL "ROW"\nM30\nLBL "ROW"\nLBL 5\nL IX+10 FMAX\nCALL LBL 5 REP 1\nLBL 0'
     ran = run(text, start=(230.0, 0.0, 0.0, 0.0, 0.0))
     assert xs(ran) == [10.0, 20.0, 30.0, 40.0]
 
 
-def test_a_subprogram_within_a_subprogram() -> None:
+def test_subprogram_calls_subprogram() -> None:
     text = "CALL LBL 1\nM30\nLBL 1\nL X+1 FMAX\nCALL LBL 2\nL X+3 FMAX\nLBL 0\nLBL 2\nL X+2 FMAX\nLBL 0"
     assert xs(run(text)) == [1.0, 2.0, 3.0]
 
 
-def test_skipped_blocks() -> None:
+def test_blocks_with_slash_are_skipped_under_block_delete() -> None:
     text = "/L X+1 FMAX\n/ 12 L X+2 FMAX\n13 / L X+3 FMAX\nL X+4 FMAX"
     assert xs(run(text)) == [1.0, 2.0, 3.0, 4.0]
     assert xs(run(text, block_delete=True)) == [4.0]
 
 
-def test_parameters() -> None:
+def test_q_parameters_set_positions() -> None:
     ran = run("Q1 = +10\nFN 0: Q2 = -Q1\nL X+Q1 Y-Q2 FMAX\nL XQ2 FMAX")
     assert xs(ran) == [10.0, -10.0]
     assert ran.state.position_by_axis["Y"] == pytest.approx(220.0)
 
 
-def test_structure_and_comments_do_nothing() -> None:
+def test_structure_items_and_comments_have_no_effect() -> None:
     ran = run("* - FIRST SIDE ; really\n; only a comment\n\nL X+1 FMAX ; go")
     assert xs(ran) == [1.0]
 
@@ -160,7 +160,7 @@ def actions(ran: Ran) -> list[Action]:
     return [block.action for block in ran.blocks if block.action is not None]
 
 
-def test_functions_before_and_behind_the_motion() -> None:
+def test_m_functions_run_before_or_after_motion() -> None:
     ran = run("L X+1 FMAX M3 M8\nL X+2 FMAX M5 M9")
     kinds = [block.kind if block.action is None else type(block.action).__name__ for block in ran.blocks]
     wanted = [
@@ -176,7 +176,7 @@ def test_functions_before_and_behind_the_motion() -> None:
     assert kinds == wanted
 
 
-def test_a_second_tool_stops_the_spindle_and_waits_for_whoever_changes_it() -> None:
+def test_second_tool_stops_spindle_and_waits_for_operator() -> None:
     tools = {1: ToolOffset(), 2: ToolOffset(z=80.0)}
     ran = run("L Z+100 FMAX M13\nTOOL CALL 2 Z S1000 DL+0.5\nL Z+100 FMAX", tools=tools)
     assert actions(ran) == [
@@ -196,12 +196,12 @@ def test_a_call_without_a_tool_changes_the_speed_of_the_running_spindle() -> Non
     assert actions(ran)[1:3] == [SpindleRun(-3000.0), SpindleRun(-1500.0)]
 
 
-def test_a_tool_that_nobody_measured_is_warned_of() -> None:
+def test_tool_without_offset_causes_warning() -> None:
     ran = run("L X+1 FMAX", tools={})
     assert ran.warned == ["tool-offset-missing"]
 
 
-def test_stops() -> None:
+def test_stop_m1_and_m0_stop_with_message() -> None:
     ran = run("STOP ; TURN THE PART\nM1 ; LOOK\nM0 ; WAIT")
     stops = [action for action in actions(ran) if isinstance(action, ProgramStop)]
     assert stops == [
@@ -211,7 +211,7 @@ def test_stops() -> None:
     ]
 
 
-def test_m91_counts_in_the_machine_and_ignores_the_plane_for_its_block() -> None:
+def test_m91_uses_machine_positions_for_one_block() -> None:
     ran = run("PLANE AXIAL A+45 TURN FMAX\nL Z-5 R0 FMAX M91\nL X+100 Y+20 FMAX M91\nL X+0 Y+0 Z+0 FMAX")
     moves = [ran.axes(block) for block in ran.blocks if block.kind is BlockKind.RAPID]
     assert [moves[0][axis] for axis in "XYZ"] == [0.0, 0.0, -5.0]
@@ -219,7 +219,7 @@ def test_m91_counts_in_the_machine_and_ignores_the_plane_for_its_block() -> None
     assert [moves[2][axis] for axis in "XYZ"] == pytest.approx((230.0, 278.2843, -345.1472), abs=6e-5)
 
 
-def test_m140_goes_back_along_the_tool() -> None:
+def test_m140_retracts_along_tool() -> None:
     ran = run("PLANE AXIAL A+45 TURN FMAX\nL Z+10 FMAX\nL IX+5 FMAX M140 MB 30\nM140 MB MAX F6000")
     z = [ran.axes(block)["Z"] for block in ran.blocks if block.moves]
     assert z[2] - z[1] == pytest.approx(30.0)
@@ -227,25 +227,25 @@ def test_m140_goes_back_along_the_tool() -> None:
     assert ran.blocks[-2].feed == pytest.approx(100.0)
 
 
-def test_a_cut_with_the_spindle_at_rest_is_warned_of_once() -> None:
+def test_cut_with_stopped_spindle_causes_one_warning() -> None:
     assert run("L X+1 F100\nL X+2").warned == ["spindle-stopped"]
 
 
 # --- rotary axes by L, inches ----------------------------------------------------------------------------
 
 
-def test_rotary_moves_take_the_short_way_and_incremental_ones_what_is_written() -> None:
+def test_absolute_rotary_moves_use_short_path_and_incremental_full_path() -> None:
     ran = run("L C+270 FMAX\nL IC+450 FMAX\nL A+10 C+0 FMAX")
     assert [ran.axes(block)["C"] for block in ran.blocks if block.moves] == [-90.0, 360.0, 360.0]
 
 
-def test_with_m127_rotary_axes_go_by_the_figures() -> None:
+def test_m127_rotary_moves_follow_displayed_angles() -> None:
     """From 350 to 10: +20 the short way, -340 by the figures; from 370, which is shown as 10, to 350 +340."""
     ran = run("L C+350 FMAX\nM127\nL C+10 FMAX\nM126\nL C+350 FMAX")
     assert [ran.axes(block)["C"] for block in ran.blocks if block.moves] == [-10.0, -350.0, -370.0]
 
 
-def test_the_feed_of_rotary_axes_alone_is_degrees_a_minute() -> None:
+def test_feed_of_rotary_move_is_in_degrees_per_minute() -> None:
     ran = run("M3\nL A+30 C+40 F600")
     block = ran.blocks[-2]
     assert block.travel is not None
@@ -257,7 +257,7 @@ def test_the_feed_of_rotary_axes_alone_is_degrees_a_minute() -> None:
     assert mixed.travel.length == pytest.approx(50.0)
 
 
-def test_inch_programs_count_lengths_in_inches_and_feeds_in_tenths_a_minute() -> None:
+def test_inch_program_lengths_are_inches_and_feeds_tenths_per_minute() -> None:
     ran = run("L X+1 Y+0 Z+0 FMAX M3\nL IX+1 F100\nPLANE AXIAL A+45 TURN MB 2 F600\nL A+0 F300", unit="INCH")
     moves = [block for block in ran.blocks if block.moves]
     assert ran.axes(moves[0])["X"] == pytest.approx(230.0 + 25.4)
@@ -268,7 +268,7 @@ def test_inch_programs_count_lengths_in_inches_and_feeds_in_tenths_a_minute() ->
     assert not ran.state.modal.metric
 
 
-def test_points_and_datum_in_inches() -> None:
+def test_points_and_datum_in_inch_program() -> None:
     ran = run("TRANS DATUM AXIS X+1\nL X+0 Y+0 Z+0 FMAX", unit="INCH")
     assert ran.state.position_by_axis["X"] == pytest.approx(255.4)
 
@@ -283,7 +283,7 @@ def test_points_and_datum_in_inches() -> None:
         ("X+Q1 Y+2 Z+0", "MM", None),
     ],
 )
-def test_the_blank_is_known_where_it_is_given_in_numbers(
+def test_blank_is_known_when_given_in_numbers(
     second: str, unit: str, corners: tuple[tuple[float, ...], tuple[float, ...]] | None
 ) -> None:
     ran = run(f"BLK FORM 0.1 Z X+0 Y+0 Z-1\nBLK FORM 0.2 {second}", unit=unit)
@@ -295,7 +295,7 @@ def test_the_blank_is_known_where_it_is_given_in_numbers(
         assert np.allclose(ran.state.blank_corners, corners)
 
 
-def test_a_cylinder_is_drawn_by_the_block_around_it() -> None:
+def test_cylinder_blank_is_drawn_as_its_bounding_box() -> None:
     blank = run("BLK FORM CYLINDER Z D100 L80 DIST+5 RI10").state.blank_corners
     assert blank is not None
     assert np.allclose(blank, ((-50.0, -50.0, -75.0), (50.0, 50.0, 5.0)))
@@ -304,7 +304,7 @@ def test_a_cylinder_is_drawn_by_the_block_around_it() -> None:
     assert np.allclose(lying, ((-50.8, -25.4, -25.4), (0.0, 25.4, 25.4)))
 
 
-def test_a_tool_that_the_program_measures_is_one_of_its_tools() -> None:
+def test_tool_def_tool_is_used_and_not_missing() -> None:
     """TOOL DEF tells length and radius, the tool table none: it is used all the same, and not missing."""
     text = whole("TOOL DEF 7 L+0 R+4\nTOOL CALL 7 Z S100 DR2:+0.05\nTOOL CALL 1 Z")
     program = read_program(ProgramSource("T.H", text))

@@ -157,7 +157,7 @@ def points(*third: object) -> str:
         ("PLANE AXIAL A+45 TURN F AUTO\nTOOL CALL 1 Z S100\nPLANE AXIAL A+50 TURN F AUTO", FEED, "TOOL CALL"),
     ],
 )
-def test_refused(block: str, code: str, names: str) -> None:
+def test_invalid_block_is_rejected(block: str, code: str, names: str) -> None:
     ran = run(block)
     assert ran.codes[:1] == [code]
     assert names in ran.errors[0].message + ran.errors[0].hint
@@ -185,17 +185,17 @@ def test_refused(block: str, code: str, names: str) -> None:
         "BLK FORM ROTATION Z DIM_R LBL1",
     ],
 )
-def test_accepted(block: str) -> None:
+def test_valid_block_is_accepted(block: str) -> None:
     assert run(block).codes == []
 
 
-def test_a_plane_needs_a_tool_axis_and_its_end_none() -> None:
+def test_plane_needs_tool_axis_and_plane_reset_does_not() -> None:
     assert run("M129\nM140 MB MAX\nPLANE RESET STAY\nCYCL DEF 19.0 PLANE\nCYCL DEF 19.1", tool="").codes == []
     assert run("PLANE AXIAL A+45 TURN FMAX", tool="").codes == ["Tool axis is missing"]
     assert run("PLANE AXIAL A+45 TURN FMAX", tool="TOOL CALL 1 S100\n").codes == ["Tool axis is missing"]
 
 
-def test_a_swivel_needs_a_feed() -> None:
+def test_move_without_feed_is_rejected() -> None:
     no_feed = "TOOL CALL 1 Z S3000\n"
     assert run("PLANE AXIAL A+45 TURN", tool=no_feed).codes == [FEED]
     assert run("PLANE AXIAL A+45 MOVE", tool=no_feed).codes == [FEED]
@@ -206,7 +206,7 @@ def test_a_swivel_needs_a_feed() -> None:
     assert run("L X+1 FMAX\nL X+2", tool=no_feed).codes == [FEED]  # FMAX holds for its own block
 
 
-def test_after_a_refused_plane_the_old_one_stands_and_nothing_has_moved() -> None:
+def test_rejected_plane_leaves_active_plane_and_axes_unchanged() -> None:
     ran = run("PLANE AXIAL A+100 TURN FMAX\nPLANE AXIAL IA+30 TURN MB MAX FMAX")
     assert ran.codes == [ANGLE]
     assert ran.errors[0].line == 4
@@ -217,7 +217,7 @@ def test_after_a_refused_plane_the_old_one_stands_and_nothing_has_moved() -> Non
     assert len(ran.planes) == 1
 
 
-def test_a_refused_turn_without_feed_leaves_the_targets_alone() -> None:
+def test_rejected_plane_without_feed_leaves_q120_unset() -> None:
     ran = run("PLANE AXIAL A+45 TURN", tool="TOOL CALL 1 Z S3000\n")
     assert 120 not in ran.state.q_values
     assert ran.state.active_plane is None
@@ -229,7 +229,7 @@ def test_chamfers_across_a_single_axis_are_refused() -> None:
     assert ran.codes == [ANGLE]
 
 
-def test_syntax_errors_tell_line_and_column() -> None:
+def test_syntax_error_has_line_and_column() -> None:
     text = "BEGIN PGM T MM\n" + TOOL + "  12 PLANE AXIAL A+45 TURN MB MAX FMAX SYM+ SEQ-\nEND PGM T MM\n"
     (error,) = run_file(text, AC).errors
     assert (error.line, error.column) == (3, 45)
@@ -246,24 +246,24 @@ def test_syntax_errors_tell_line_and_column() -> None:
         ("BEGIN PGM T MM\nEND PGM T MM\nM5\n", "after END PGM", 3),
     ],
 )
-def test_the_frame_of_a_program(text: str, names: str, line: int) -> None:
+def test_program_without_begin_or_end_is_rejected(text: str, names: str, line: int) -> None:
     (error,) = run_file(text).errors
     assert error.code == SYNTAX
     assert names in error.message
     assert error.line == line
 
 
-def test_a_program_that_ends_under_another_name_is_warned_of() -> None:
+def test_end_pgm_with_other_name_causes_warning() -> None:
     assert run_file("BEGIN PGM T MM\nM5\nEND PGM U MM\n").warned == ["program-name"]
 
 
-def test_no_block_comes_after_an_error_and_the_other_errors_are_found() -> None:
+def test_no_block_follows_an_error_and_all_errors_are_reported() -> None:
     ran = run("PLANE AXIAL B+1 TURN FMAX\nL X+1 FMAX\nPLANE AXIAL A+121 TURN FMAX")
     assert ran.codes == ["Wrong axis programmed", ANGLE]
     assert [block.line for block in ran.blocks] == [2]
 
 
-def test_the_same_words_in_lower_case_with_commas() -> None:
+def test_lower_case_and_decimal_commas_are_accepted() -> None:
     ran = run_file(whole(TOOL + "l x+1,5 r0 fmax").lower())
     assert not ran.errors
     assert ran.state.position_by_axis["X"] == pytest.approx(231.5)
@@ -272,7 +272,7 @@ def test_the_same_words_in_lower_case_with_commas() -> None:
 @pytest.mark.parametrize(
     "first", ["%PART G71 *", "% 12 G70 *", "N10 G30 G17 X+0 Y+0 Z-40 *", "N5 T1 G17 S500 *"]
 )
-def test_a_program_in_din_iso_is_told_once(first: str) -> None:
+def test_din_iso_program_is_reported_once(first: str) -> None:
     ran = run_file(f"\n{first}\nN20 G31 X+100 Y+100 Z+0 *\nN30 G00 Z+50 *\nN99 %PART G71 *\n")
     assert [(error.line, error.code) for error in ran.errors] == [(2, UNSUPPORTED)]
     assert "DIN/ISO" in ran.errors[0].message

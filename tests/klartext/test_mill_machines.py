@@ -83,9 +83,7 @@ def test_a_chamfer_is_cut_on_any_machine(
     assert [row[2] for row in plane["frame"]] == pytest.approx([0.70710678, 0.0, 0.70710678])
 
 
-def test_a_single_tilting_axis_cuts_what_lies_across_it(
-    turndesk: Turndesk, tmp_path: Path, offsets: Path
-) -> None:
+def test_single_tilting_axis_cuts_planes_across_it(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     machine, part = file_of(tmp_path, without(FILE, "C")), tmp_path / "part.h"
     part.write_text(whole(HEAD + "PLANE AXIAL A+45 TURN MB MAX FMAX\nL X+0 Y+0 Z+2 FMAX\nL Z+0 F200"))
     told = turndesk("run", part, "--machine", machine, "--headless", "--offsets", offsets, "--json")
@@ -99,7 +97,7 @@ def test_a_single_tilting_axis_cuts_what_lies_across_it(
     assert told.lines[0]["diagnostics"][0]["code"] == "Wrong axis programmed"
 
 
-def test_a_mill_without_rotary_axes_runs_what_tilts_nothing(
+def test_mill_without_rotary_axes_runs_programs_without_tilt(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
     machine, part = file_of(tmp_path, without(without(FILE, "A"), "C")), tmp_path / "part.h"
@@ -112,7 +110,7 @@ def test_a_mill_without_rotary_axes_runs_what_tilts_nothing(
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_the_chain_of_a_file(name: str) -> None:
+def test_kinematic_chain_matches_machine_file(name: str) -> None:
     made = build_kinematics(parse_machine(MACHINES[name], "m"))
     assert made is not None
     assert [axis.is_table for axis in made.rotary_axes] == sorted(

@@ -41,7 +41,7 @@ def speeds(axes: Array) -> Array:
     return np.asarray(np.diff(axes, axis=0) / DT)
 
 
-def test_the_feed_in_the_plane_is_the_programmed_one() -> None:
+def test_feed_in_plane_is_programmed_feed() -> None:
     """L X+115 F600 of chamfer 2 runs along Y of the workpiece and X of the machine."""
     axes, lines = traced(AXIAL)
     cut = np.hypot.reduce(speeds(axes)[(lines[1:] == 25) & (lines[:-1] == 25), :3], axis=1)
@@ -49,14 +49,14 @@ def test_the_feed_in_the_plane_is_the_programmed_one() -> None:
     assert cut.max() <= 600.0 / 60.0 * (1.0 + 1e-6)
 
 
-def test_a_slanted_cut_runs_at_its_feed_whatever_axes_it_takes() -> None:
+def test_slanted_cut_runs_at_its_feed_for_any_axes() -> None:
     text = TOOL + "M3\nPLANE AXIAL A+45 C+30 TURN FMAX\nL X+0 Y+0 Z+50 FMAX\nL X+30 Y+20 Z+40 F3000"
     axes, lines = traced(whole(text))
     cut = np.hypot.reduce(speeds(axes[lines == 6])[:, :3], axis=1)
     assert np.median(cut) == pytest.approx(50.0, rel=1e-6)
 
 
-def test_no_axis_passes_its_speed_and_its_acceleration() -> None:
+def test_no_axis_exceeds_its_speed_and_acceleration() -> None:
     axes, _ = traced(POINTS)
     v = speeds(axes)
     top = np.array([axis.max_speed for axis in MILL.axes])
@@ -72,7 +72,7 @@ def slow(name: str, vmax: float) -> Machine:
     return dataclasses.replace(MILL, axes=axes)
 
 
-def test_a_slow_axis_slows_the_block_and_breaks_nothing() -> None:
+def test_slow_axis_reduces_feed_of_block() -> None:
     """A cut along Y' of the plane at A45 takes Y of the machine alone; F3000 is 50 mm/s, Y can 10."""
     text = TOOL + "M3\nPLANE AXIAL A+45 TURN FMAX\nL X+0 Y+0 Z+50 FMAX\nL X+30 Y+40 F3000"
     axes, lines = traced(whole(text), slow("Y", 10.0))
@@ -90,7 +90,7 @@ def test_a_slow_table_slows_the_swivel() -> None:
 
 
 @pytest.mark.parametrize(("words", "depth"), [("MOVE FMAX", 0.0), ("MOVE DIST50 F3000", 50.0)])
-def test_the_pivot_keeps_its_place_while_all_five_axes_run(words: str, depth: float) -> None:
+def test_pivot_stays_in_place_while_all_five_axes_move(words: str, depth: float) -> None:
     text = TOOL + f"L X+5 Y+8 Z+50 R0 FMAX\nPLANE AXIAL A+45 C+90 {words}"
     axes, lines = traced(whole(text))
     moved = axes[lines == 4]
@@ -107,14 +107,14 @@ def test_the_pivot_keeps_its_place_while_all_five_axes_run(words: str, depth: fl
     assert (v <= np.array([axis.max_speed for axis in MILL.axes]) * (1.0 + 1e-6)).all()
 
 
-def test_the_swivel_takes_the_time_of_its_feed() -> None:
+def test_swivel_time_follows_its_feed() -> None:
     """50 degrees of path at 300 degrees a minute are 10 s, and a little to start and stop."""
     axes, _ = traced(whole(TOOL + "PLANE AXIAL A+30 C+40 TURN F300"))
     turning = (np.abs(speeds(axes)[:, 3]) > 1e-9).sum() * DT
     assert 10.0 <= turning <= 10.1
 
 
-def test_a_move_that_leaves_the_travel_on_its_way_is_found() -> None:
+def test_move_that_exceeds_travel_between_its_ends_is_found() -> None:
     """The table swivels the tip down and back; between the ends Z goes lower than at either of them."""
     text = whole(TOOL + "L X+0 Y+0 Z-80 R0 FMAX\nPLANE AXIAL A-60 MOVE FMAX\nPLANE AXIAL A+60 MOVE FMAX")
     setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})

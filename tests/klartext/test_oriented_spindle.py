@@ -47,7 +47,7 @@ def told(block: Block) -> object:
 
 
 @pytest.mark.parametrize(("direction", "x", "y"), [(1, 9.8, 20), (2, 10, 19.8), (3, 10.2, 20), (4, 10, 20.2)])
-def test_boring_frees_its_edge_by_itself(direction: int, x: float, y: float) -> None:
+def test_boring_orients_spindle_and_retracts_from_wall(direction: int, x: float, y: float) -> None:
     ran = on(BORE.format(direction))
     assert ran.errors == []
     assert ran.warned == []
@@ -57,7 +57,7 @@ def test_boring_frees_its_edge_by_itself(direction: int, x: float, y: float) -> 
 
 
 @pytest.mark.parametrize(("direction", "x", "y"), [(1, 6.5, 20), (2, 10, 16.5), (3, 13.5, 20), (4, 10, 23.5)])
-def test_back_boring_goes_in_and_out_on_the_same_side(direction: int, x: float, y: float) -> None:
+def test_back_boring_enters_and_leaves_on_same_side(direction: int, x: float, y: float) -> None:
     """Tip at 0 - 20 - 15 - 2 below the part, at 0 - 20 + 5 - 15 at the counterbore's end."""
     ran = back(Q214=direction)
     assert ran.errors == []
@@ -80,16 +80,16 @@ def test_back_boring_goes_in_and_out_on_the_same_side(direction: int, x: float, 
         ({"Q336": 400.0}, "Q336"),
     ],
 )
-def test_refused(changes: dict[str, float], names: str) -> None:
+def test_invalid_back_boring_is_rejected(changes: dict[str, float], names: str) -> None:
     (error,) = back(**changes).errors
     assert names in error.message
 
 
-def test_back_boring_of_no_depth_only_goes_to_its_clearance() -> None:
+def test_back_boring_of_zero_depth_only_moves_to_clearance() -> None:
     assert [told(each) for each in back(Q249=0.0).blocks][-2:] == [(10.0, 20.0, 2.0), "end"]
 
 
-def test_cycle_13_is_the_angle_of_m19_until_another_is_told() -> None:
+def test_cycle_13_sets_angle_of_m19_until_next_cycle_13() -> None:
     told_at = "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE Q1\n"
     ran = on(f"M19\nQ1 = 45\n{told_at}L X+5 FMAX M19\nL X+6 FMAX M19\nM3\n")
     assert ran.errors == []
@@ -105,7 +105,7 @@ def test_cycle_13_is_the_angle_of_m19_until_another_is_told() -> None:
         ("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 90\nM19\n", "cannot be oriented"),
     ],
 )
-def test_where_nothing_orients_m19_names_the_key_of_the_machine_file(text: str, part: str) -> None:
+def test_m19_without_oriented_spindle_names_machine_file_key(text: str, part: str) -> None:
     (error,) = run(START + text).errors
     assert part in error.message
     assert "oriented = true under [spindle]" in error.hint

@@ -30,13 +30,13 @@ def ran_of(text: str, **setup: Any) -> Ran:
         ("L X+10 R+ F100 M8", 14.0),
     ],
 )
-def test_a_block_of_one_axis(block: str, x: float) -> None:
+def test_single_axis_block_moves_its_axis(block: str, x: float) -> None:
     ran = ran_of(block)
     assert not ran.errors
     assert ran.state.programmed_position == pytest.approx((x, 0.0, 50.0))
 
 
-def test_ln_goes_to_its_point_where_nothing_is_to_compensate() -> None:
+def test_ln_moves_to_its_point_without_compensation() -> None:
     ran = ran_of("LN X+3 Y+4 Z+40 NX+0.6 NY+0 NZ+0.8 F100")
     assert not ran.errors
     assert ran.state.programmed_position == pytest.approx((3.0, 4.0, 40.0))
@@ -51,13 +51,13 @@ def test_ln_goes_to_its_point_where_nothing_is_to_compensate() -> None:
         ("LN X+3 NX+0 NY+0 NZ+1 TX+0 TY+0 TZ+1", {}),
     ],
 )
-def test_ln_is_refused_where_its_normal_would_count(text: str, setup: dict[str, object]) -> None:
+def test_ln_is_rejected_when_its_normal_would_apply(text: str, setup: dict[str, object]) -> None:
     ran = ran_of(text, **setup)
     assert ran.codes == ["Not supported"]
     assert "LN" in ran.errors[0].message
 
 
-def test_predef_takes_what_global_def_has_told_last() -> None:
+def test_predef_uses_last_value_of_global_def() -> None:
     hole = "CYCL DEF 200 DRILLING Q200=PREDEF Q201=-8 Q206=+150 Q202=+8 Q203=+0\nCYCL CALL\n"
     ran = ran_of(f"GLOBAL DEF 100 GENERAL Q200=+3\nGLOBAL DEF 100 GENERAL Q200=+5\n{hole}")
     assert not ran.errors
@@ -65,20 +65,20 @@ def test_predef_takes_what_global_def_has_told_last() -> None:
     assert ran_of(hole).codes == ["Cycle incomplete"]
 
 
-def test_a_cutting_speed_counts_at_the_tools_radius() -> None:
+def test_cutting_speed_sets_rpm_from_tool_radius() -> None:
     ran = ran_of("TOOL CALL 5 Z S(VC = 100) F300")
     assert ran.state.modal.rpm == pytest.approx(100_000.0 / (2.0 * math.pi * 4.0))
     assert ran_of("TOOL DEF 6 L+0 R+0\nTOOL CALL 6 Z S(VC=100)").codes == ["Wrong rpm"]
 
 
-def test_function_dwell_rests() -> None:
+def test_function_dwell_dwells() -> None:
     rests = [
         each.action for each in ran_of("FUNCTION DWELL TIME1.5").blocks if isinstance(each.action, Dwell)
     ]
     assert rests == [Dwell(1.5)]
 
 
-def test_whether_a_parameter_is_defined() -> None:
+def test_is_defined_and_is_undefined_conditions_test_the_parameter() -> None:
     text = "Q1 = 1\nFN 9: IF Q{0} IS {1} GOTO LBL 1\nL X+7 F100\nLBL 1"
     jumped = {(q, word): ran_of(text.format(q, word)).state.programmed_position[0] < 1.0
               for q in (1, 2) for word in ("DEFINED", "UNDEFINED")}  # fmt: skip
@@ -86,7 +86,7 @@ def test_whether_a_parameter_is_defined() -> None:
                       (2, "DEFINED"): False, (2, "UNDEFINED"): True}  # fmt: skip
 
 
-def test_cycle_19_with_a_feed_turns_the_axes() -> None:
+def test_cycle_19_with_feed_positions_rotary_axes() -> None:
     """With F the control positions them; the point at the set-up clearance keeps its place."""
     turned = ran_of("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+30 C+0 F1000 SETUP50")
     assert not turned.errors
@@ -112,7 +112,7 @@ def test_cycle_19_with_a_feed_turns_the_axes() -> None:
         ("SQL BIND Q1", "Not supported", "SQL"),
     ],
 )
-def test_refused(block: str, code: str, names: str) -> None:
+def test_invalid_block_is_rejected(block: str, code: str, names: str) -> None:
     ran = ran_of(block)
     assert ran.codes == [code]
     assert names in ran.errors[0].message
@@ -121,7 +121,7 @@ def test_refused(block: str, code: str, names: str) -> None:
 @pytest.mark.parametrize(
     "block", ["M94 C", "L M94 A", 'WMAT "STEEL"', "FUNCTION DCM OFF", "FUNCTION COUNT RESET"]
 )
-def test_what_steers_nothing_is_told_and_no_fault(block: str) -> None:
+def test_block_without_effect_is_reported_as_ignored(block: str) -> None:
     ran = ran_of(block)
     assert not ran.errors
     assert "unheeded" in [each.code for each in ran.diagnostics]

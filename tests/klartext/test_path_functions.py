@@ -51,7 +51,7 @@ def on_the_way(block: Block, count: int = 33) -> np.ndarray:
         ("CC X+10 Y+0\nCP IPA+90 IZ-5 DR+ F100", (10, 0), 10.0, math.hypot(5 * math.pi, 5), (10, -10, -5)),
     ],
 )
-def test_an_arc(
+def test_arc_ends_at_its_point_in_its_direction(
     text: str, centre: tuple[float, float], radius: float, length: float, stop: tuple[float, float, float]
 ) -> None:
     (arc,) = ways(text)
@@ -71,7 +71,7 @@ def test_an_arc(
     assert middle[2] == pytest.approx(stop[2] / 2.0)
 
 
-def test_a_helix_of_three_turns_and_a_half() -> None:
+def test_cp_ipa_makes_helix_of_three_and_a_half_turns() -> None:
     arcs = ways("CC X+10 Y+0\nCP IPA-1260 IZ-7 DR- F100")
     assert [arc.kind for arc in arcs] == [BlockKind.PLANE_ARC] * 4
     assert [end(arc)[2] for arc in arcs] == pytest.approx([-2.0, -4.0, -6.0, -7.0])
@@ -79,13 +79,13 @@ def test_a_helix_of_three_turns_and_a_half() -> None:
     assert sum(arc.length for arc in arcs) == pytest.approx(math.hypot(70 * math.pi, 7.0))
 
 
-def test_an_arc_without_dr_turns_as_the_one_before() -> None:
+def test_arc_without_dr_uses_direction_of_previous_arc() -> None:
     first, second = ways("CC X+10 Y+0\nC X+20 Y+0 DR- F100\nCC X+30 Y+0\nC X+40 Y+0")
     assert on_the_way(first, 3)[1][:2] == pytest.approx((10.0, 10.0))
     assert on_the_way(second, 3)[1][:2] == pytest.approx((30.0, 10.0))
 
 
-def test_a_tangential_arc_goes_on_in_the_direction_before() -> None:
+def test_tangential_arc_continues_in_previous_direction() -> None:
     """Along +X, then to (20, 10): the centre lies above (10, 0) and is as far from both: R 10."""
     line, arc = ways("L X+10 F100\nCT X+20 Y+10")
     points = on_the_way(arc)
@@ -94,18 +94,18 @@ def test_a_tangential_arc_goes_on_in_the_direction_before() -> None:
     assert end(line)[:2] == pytest.approx((10.0, 0.0))
 
 
-def test_a_tangential_arc_straight_on_is_a_line() -> None:
+def test_tangential_arc_straight_ahead_is_a_line() -> None:
     blocks = ways("L X+10 F100\nCT X+20")
     assert [block.kind for block in blocks] == [BlockKind.FEED, BlockKind.FEED]
 
 
-def test_polar_words_count_from_the_pole() -> None:
+def test_polar_coordinates_are_relative_to_pole() -> None:
     blocks = ways("CC X+10 Y+10\nLP PR+10 PA+0 F100\nLP PA+90\nLP IPA+90\nLP IPR+5\nLP PR+2 PA-90")
     wanted = [(20, 10), (10, 20), (0, 10), (-5, 10), (10, 8)]
     assert [end(block)[:2] for block in blocks] == [pytest.approx(each, abs=1e-9) for each in wanted]
 
 
-def test_the_pole_may_be_where_the_tool_stands_or_counted_from_there() -> None:
+def test_pole_may_be_current_or_incremental_position() -> None:
     blocks = ways("L X+5 Y+5 F100\nCC\nLP PR+3 PA+0\nCC IX+1 IY+1\nLP PR+2 PA+90")
     assert end(blocks[1])[:2] == pytest.approx((8.0, 5.0))
     assert end(blocks[2])[:2] == pytest.approx((9.0, 8.0))
@@ -128,14 +128,14 @@ def test_a_chamfer_is_measured_along_each_leg() -> None:
     assert end(cut)[:2] == pytest.approx((20.0, 3.0))
 
 
-def test_two_corners_on_one_element() -> None:
+def test_element_may_have_corner_at_both_ends() -> None:
     blocks = ways("L X+20 F100\nRND R5\nL Y+20\nRND R5\nL X+0")
     assert [end(block)[:2] for block in blocks] == [
         pytest.approx(each) for each in ((15, 0), (20, 5), (20, 15), (15, 20), (0, 20))
     ]
 
 
-def test_what_stands_before_a_corner_comes_before_it() -> None:
+def test_actions_before_corner_run_before_it() -> None:
     blocks = [block for block in run(f"{HERE}L X+20 F100 M8\nRND R5\nL Y+20 M9").blocks if block.line >= 4]
     kinds = [(block.line, block.kind) for block in blocks]
     assert kinds[:3] == [(4, BlockKind.ACTION), (4, BlockKind.FEED), (6, BlockKind.PLANE_ARC)]
@@ -151,27 +151,27 @@ def test_rotation_turns_about_the_datum() -> None:
     assert line.swivel.machine_position[:2] == pytest.approx((230.0 + 10.0, 210.0 + 5.0))
 
 
-def test_mirroring_turns_an_arc_round() -> None:
+def test_mirroring_reverses_arc_direction() -> None:
     (arc,) = ways("TRANS MIRROR AXIS X\nCC X+10 Y+0\nC X+20 Y+0 DR- F100")
     points = on_the_way(arc)
     assert points[-1][:2] == pytest.approx((-20.0, 0.0), abs=1e-9)
     assert points[16][:2] == pytest.approx((-10.0, 10.0), abs=1e-9)
 
 
-def test_scaling_and_its_end() -> None:
+def test_scaling_applies_until_cancelled() -> None:
     blocks = ways(
         "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.5\nL X+20 Z-4 FMAX\nTRANS SCALE RESET\nL X+20 FMAX"
     )
     assert [end(block) for block in blocks] == [pytest.approx((10, 0, -2)), pytest.approx((20, 0, -2))]
 
 
-def test_old_and_new_words_do_the_same() -> None:
+def test_cycl_def_and_trans_give_same_transformation() -> None:
     old = "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X Y\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30\n"
     new = "TRANS MIRROR AXIS X Y\nTRANS ROTATION ROT+30\n"
     assert end(ways(f"{old}L X+7 Y+3 FMAX")[0]) == pytest.approx(end(ways(f"{new}L X+7 Y+3 FMAX")[0]))
 
 
-def test_a_preset_ends_what_was_shifted_and_turned() -> None:
+def test_preset_cancels_shift_and_rotation() -> None:
     (line,) = ways(
         "TRANS DATUM AXIS X+10\nTRANS ROTATION ROT+90\nCYCL DEF 247 PRESET ~\n  Q339=+1 ;NUMBER\nL X+5 FMAX"
     )
@@ -185,24 +185,24 @@ def ran_of(text: str) -> Ran:
     return run(HERE + text)
 
 
-def test_a_block_over_several_lines_tells_errors_where_they_stand() -> None:
+def test_error_in_block_of_several_lines_has_its_line_and_column() -> None:
     ran = ran_of("PLANE SPATIAL SPA+45 ~\n   SPB+0 SPC+0 ~\n   TURN FOO")
     assert [(error.line, error.column) for error in ran.errors] == [(6, 9)]
 
 
-def test_repeats_in_the_old_way_of_writing() -> None:
+def test_repeats_in_old_notation() -> None:
     ran = ran_of("LBL 5\nL IX+1 FMAX\nCALL LBL 5 REP 3/3")
     assert ran.codes == []
     assert ran.state.programmed_position[0] == pytest.approx(4.0)
 
 
-def test_repeats_by_a_parameter() -> None:
+def test_repeat_count_may_be_a_parameter() -> None:
     ran = ran_of("Q106 = 2.9\nLBL 5\nL IX+1 FMAX\nCALL LBL 5 REP Q106")
     assert ran.codes == []
     assert ran.state.programmed_position[0] == pytest.approx(3.0)
 
 
-def test_a_called_program_runs_and_its_faults_are_told_at_the_call() -> None:
+def test_errors_of_called_program_are_reported_at_call() -> None:
     hole = ProgramSource(
         "HOLE.H", "0 BEGIN PGM HOLE MM\n1 LBL 1\n2 L IX+5 FMAX\n3 CALL LBL 1 REP 1\n4 END PGM HOLE MM\n"
     )
@@ -217,7 +217,7 @@ def test_a_called_program_runs_and_its_faults_are_told_at_the_call() -> None:
     assert "HOLE.H line 2" in error.message
 
 
-def test_a_program_that_calls_itself_ends() -> None:
+def test_recursive_program_call_is_rejected() -> None:
     text = whole("TOOL CALL 1 Z S100\nCALL PGM T")
     ran = run_source(ProgramSource("T.H", text, subprograms=(ProgramSource("T.H", text),)))
     assert ran.codes == ["Excessive nesting"]

@@ -41,14 +41,14 @@ def by_the_long_way(text: str, monkeypatch: pytest.MonkeyPatch) -> KlartextLine:
     "text",
     ["L X+10", "12 L X-12 Y-7.071 R0 FMAX", "L IX+1 Y2 Z-0 A+1 B2 C-3 R0 F12.5", "7 L Z+0 F200", "L X-0.0"],
 )
-def test_both_ways_read_the_same(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_plain_move_parser_matches_full_parser(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     short = parse_plain_move(3, text)
     assert short is not None
     assert short == by_the_long_way(text, monkeypatch)
 
 
 @given(st.lists(WORDS, max_size=6), st.sampled_from(["L", "5 L"]))
-def test_whatever_the_short_way_reads_the_long_one_reads_the_same(words: list[str], head: str) -> None:
+def test_plain_move_parser_matches_full_parser_for_any_words(words: list[str], head: str) -> None:
     text = " ".join((head, *words))
     short = parse_plain_move(3, text)
     if short is not None:
@@ -59,5 +59,5 @@ def test_whatever_the_short_way_reads_the_long_one_reads_the_same(words: list[st
 @pytest.mark.parametrize(
     "text", ["L X+1 X+2", "L X+1 M3", "L", "L X+Q1", "l x+1", "L X+1 ; c", "/L X+1", "L X1O", "L X+1 F0 F1"]
 )
-def test_everything_else_goes_the_long_way(text: str) -> None:
+def test_other_blocks_are_not_read_as_plain_moves(text: str) -> None:
     assert parse_plain_move(1, text) is None

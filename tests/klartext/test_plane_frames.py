@@ -78,7 +78,7 @@ def about(angles: tuple[float, float, float]) -> object:
 
 
 @pytest.mark.parametrize("chamfer", CHAMFERS)
-def test_the_frame_of_a_chamfer_by_all_its_names(chamfer: int) -> None:
+def test_frame_of_chamfer_is_same_for_every_definition(chamfer: int) -> None:
     frame = make_frame_from_points(*CHAMFERS[chamfer])
     turn = 90.0 * (chamfer - 1)
     assert np.allclose(frame, FRAMES[chamfer], atol=1e-12)
@@ -88,7 +88,7 @@ def test_the_frame_of_a_chamfer_by_all_its_names(chamfer: int) -> None:
 
 @pytest.mark.parametrize("chamfer", STANDS)
 @pytest.mark.parametrize(("row", "side"), [(0, "SYM+"), (1, "SYM-"), (0, "SEQ+"), (1, "SEQ-")])
-def test_both_ways_to_stand_in_a_chamfer(chamfer: int, row: int, side: str) -> None:
+def test_both_solutions_of_chamfer_give_expected_positions(chamfer: int, row: int, side: str) -> None:
     frame = make_frame_from_points(*CHAMFERS[chamfer])
     angles, middle, origin = STANDS[chamfer][row]
     found = choose_solution(AC, frame, {}, SolutionSide(side))
@@ -102,14 +102,14 @@ def test_both_ways_to_stand_in_a_chamfer(chamfer: int, row: int, side: str) -> N
     )
 
 
-def test_the_workpiece_zero_on_the_swivelled_table() -> None:
+def test_workpiece_datum_position_on_swiveled_table() -> None:
     for c, there in ((0.0, (230.0, 278.2843, -345.1472)), (90.0, (258.0, 357.4802, -424.3431))):
         assert AC.make_transform({"A": 45.0, "C": c}).convert_to_machine_position(ZERO) == pytest.approx(
             there, abs=6e-5
         )
 
 
-def test_without_sym_the_chamfers_follow_each_other_on_the_positive_side() -> None:
+def test_chamfers_without_sym_stay_on_positive_side() -> None:
     a = c = 0.0
     for chamfer, turn in ((1, 0.0), (2, 90.0), (3, 180.0), (4, 270.0)):
         found = stands(make_frame_from_points(*CHAMFERS[chamfer]), a=a, c=c)
@@ -127,7 +127,9 @@ def test_without_sym_the_chamfers_follow_each_other_on_the_positive_side() -> No
         ((ZERO, (1e9, 0, 0), (0, 1e9, 1e9)), FRAMES[1]),
     ],
 )
-def test_only_directions_count(points: tuple[Vector, Vector, Vector], frame: Matrix) -> None:
+def test_frame_depends_only_on_directions_of_points(
+    points: tuple[Vector, Vector, Vector], frame: Matrix
+) -> None:
     assert np.allclose(make_frame_from_points(*points), frame, atol=1e-9)
 
 
@@ -139,7 +141,7 @@ def test_only_directions_count(points: tuple[Vector, Vector, Vector], frame: Mat
         ((ZERO, (1, 0, 0), (0, 1, -1)), (45, 180, 180), (-45, 0, 0)),
     ],
 )
-def test_other_planes(
+def test_solutions_of_other_planes(
     points: tuple[Vector, Vector, Vector],
     plus: tuple[float, float, float],
     minus: tuple[float, float, float],
@@ -171,12 +173,12 @@ def test_a_plane_that_faces_down_is_out_of_range(points: tuple[Vector, Vector, V
         ((ZERO, (1, 0, 0), (1000, 0.0001, 0)), "points-on-one-line"),
     ],
 )
-def test_points_that_make_no_plane(points: tuple[Vector, Vector, Vector], code: str) -> None:
+def test_points_that_define_no_plane_are_rejected(points: tuple[Vector, Vector, Vector], code: str) -> None:
     with raises_code(InvalidFrameError, code):
         make_frame_from_points(*points)
 
 
-def test_the_table_of_the_older_manual() -> None:
+def test_solutions_match_table_of_older_manual() -> None:
     frame = make_frame_from_spatial_angles(0.0, 45.0, 0.0)
     plus, minus = (45.0, 90.0, 0.0), (-45.0, 270.0, 0.0)
     narrow = limited(-90.0, 10.0)
@@ -196,7 +198,7 @@ def test_the_table_of_the_older_manual() -> None:
     assert stands(frame, "SYM+", machine=narrow) is None
 
 
-def test_the_shorter_way_and_its_ties() -> None:
+def test_shortest_rotation_is_selected_and_ties_are_resolved() -> None:
     frame = make_frame_from_points(*CHAMFERS[1])
     assert stands(frame, c=90.0) == about((45.0, 0.0, 0.0))  # a tie goes to the positive side
     assert stands(frame, c=91.0) == about((-45.0, 180.0, 180.0))
@@ -204,7 +206,7 @@ def test_the_shorter_way_and_its_ties() -> None:
     assert stands(frame, a=45.0, c=95.0) == about((45.0, 0.0, 0.0))  # by the sum, not the longest
 
 
-def test_ranges() -> None:
+def test_solution_respects_axis_ranges() -> None:
     frame = make_frame_from_points(*CHAMFERS[1])
     up, down = limited(-10.0, 110.0), limited(-110.0, 10.0)
     assert stands(frame, "SYM+", machine=up) == about((45.0, 0.0, 0.0))
@@ -215,14 +217,14 @@ def test_ranges() -> None:
     assert stands(frame, "SYM+", machine=limited(0.0, 45.0)) == about((45.0, 0.0, 0.0))  # the end is inside
 
 
-def test_a_turn_about_the_tool_is_left_over() -> None:
+def test_rotation_about_tool_remains_in_solution() -> None:
     """Chamfer 2, then 20 degrees about its own Z."""
     frame = multiply_matrices(make_frame_from_points(*CHAMFERS[2]), make_rotation(Z_AXIS, 20.0))
     assert stands(frame, "SYM+") == about((45.0, 90.0, 20.0))
     assert stands(frame, "SYM-") == about((-45.0, 270.0, -160.0))
 
 
-def test_a_free_axis_goes_to_zero_or_takes_the_whole_turn() -> None:
+def test_free_axis_goes_to_zero_or_rotates_with_table_rot() -> None:
     frame = make_frame_from_spatial_angles(0.0, 0.0, 30.0)
     assert stands(frame) == about((0.0, 0.0, 30.0))
     assert stands(frame, table_rot=True) == about((0.0, 30.0, 0.0))
@@ -231,7 +233,7 @@ def test_a_free_axis_goes_to_zero_or_takes_the_whole_turn() -> None:
     assert stands(tilted, "SYM+", table_rot=True) == stands(tilted, "SYM+")
 
 
-def test_forward_of_inverse_is_the_frame() -> None:
+def test_forward_of_inverse_kinematics_is_the_frame() -> None:
     """10 000 planes, some very near to the pole, against the closed formula of a right-angled A-C machine."""
     dice = random.Random(20)
     for count in range(10_000):

@@ -36,7 +36,7 @@ def targets(ran: Ran) -> tuple[float, float]:
     return ran.state.q_values[120], ran.state.q_values[122]
 
 
-def test_axial_blocks_add_up_to_one_plane() -> None:
+def test_plane_axial_blocks_accumulate_to_one_plane() -> None:
     ran = run(
         "PLANE AXIAL A+45 TURN FMAX\nPLANE AXIAL C+90 TURN FMAX\nPLANE AXIAL IC+90 TURN FMAX\n"
         "PLANE AXIAL IC+90 TURN FMAX\nPLANE AXIAL IA-15 TURN FMAX\nPLANE AXIAL A+0 TURN FMAX"
@@ -65,7 +65,7 @@ WITH_IT = {"TRANS MIRROR AXIS X": 270.0, "TRANS ROTATION ROT+90": 180.0, "TRANS 
 
 @pytest.mark.parametrize("form", LEANS)
 @pytest.mark.parametrize("before", WITH_IT)
-def test_a_plane_goes_with_mirror_rotation_and_scale_before_it(form: str, before: str) -> None:
+def test_plane_follows_mirror_rotation_and_scaling(form: str, before: str) -> None:
     """Turned by 90 the tool leans to +Y, so C is at 180; a factor changes no direction."""
     plane = f"PLANE {form} {LEANS[form]} TURN FMAX SYM+"
     assert np.allclose(shown(run(plane)), [(30.0, 90.0)], atol=1e-6)
@@ -75,7 +75,7 @@ def test_a_plane_goes_with_mirror_rotation_and_scale_before_it(form: str, before
     assert np.allclose(shown(ran), [(30.0, WITH_IT[before])], atol=1e-6)
 
 
-def test_what_is_programmed_in_the_plane_is_the_mirrored_picture() -> None:
+def test_positions_in_mirrored_plane_are_mirrored() -> None:
     """X10 in the plane is (8.66, 0, -5) without MIRROR, and with it (-8.66, 0, -5)."""
     ran = run("TRANS MIRROR AXIS X\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+")
     assert ran.planes[0].swivel is not None
@@ -86,20 +86,20 @@ def test_what_is_programmed_in_the_plane_is_the_mirrored_picture() -> None:
 
 
 @pytest.mark.parametrize("before", WITH_IT)
-def test_axial_names_axes_and_stays_as_it_is(before: str) -> None:
+def test_plane_axial_ignores_transformations(before: str) -> None:
     ran = run(f"{before}\nPLANE AXIAL A+45 C+90 TURN FMAX")
     assert (shown(ran), ran.warned) == ([(45.0, 90.0)], [])
 
 
 @pytest.mark.parametrize("behind", ["TRANS MIRROR RESET", "TRANS MIRROR AXIS X\nTRANS MIRROR RESET"])
-def test_a_figure_that_has_ended_changes_no_plane(behind: str) -> None:
+def test_canceled_transformation_does_not_change_plane(behind: str) -> None:
     ran = run(f"{behind}\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+")
     assert not ran.errors
     assert "plane-figure" not in ran.warned
     assert np.allclose(shown(ran), [(30.0, 90.0)], atol=1e-9)
 
 
-def test_axial_without_an_axis_keeps_where_it_stands() -> None:
+def test_plane_axial_leaves_unnamed_axis_in_position() -> None:
     ran = run("PLANE AXIAL A+45 TURN FMAX", start=(0.0, 0.0, 0.0, 0.0, 30.0))
     assert shown(ran) == [(45.0, 30.0)]
     frame = ((0.866025, -0.353553, 0.353553), (0.5, 0.612372, -0.612372), (0.0, 0.707107, 0.707107))
@@ -107,14 +107,14 @@ def test_axial_without_an_axis_keeps_where_it_stands() -> None:
     assert np.allclose(ran.planes[0].swivel.system.frame, frame, atol=1e-6)
 
 
-def test_axial_stay_moves_nothing_and_counts_on_from_its_targets() -> None:
+def test_plane_axial_stay_moves_nothing_and_increments_from_targets() -> None:
     ran = run("PLANE AXIAL A+45 C+90 STAY\nPLANE AXIAL IC+10 STAY")
     assert targets(ran) == (45.0, 100.0)
     assert shown(ran) == [(0.0, 0.0), (0.0, 0.0)]
     assert [block.travel.length for block in ran.planes if block.travel] == [0.0, 0.0]
 
 
-def test_a_modulo_axis_takes_any_value() -> None:
+def test_modulo_axis_accepts_any_value() -> None:
     ran = run("PLANE AXIAL A+45 C+450 TURN FMAX")
     assert shown(ran) == [(45.0, 90.0)]
     assert ran.axes(ran.planes[0])["C"] == 90.0
@@ -130,24 +130,24 @@ def test_axial_a_minus_45_c_180_is_not_chamfer_1_with_sym_minus() -> None:
     assert np.allclose(points.system.frame, ((1, 0, 0), (0, S, -S), (0, S, S)), atol=1e-12)
 
 
-def test_axial_reads_and_ignores_what_only_other_planes_need() -> None:
+def test_plane_axial_ignores_sym_and_table_rot() -> None:
     ran = run("PLANE AXIAL A+45 TURN FMAX SYM- TABLE ROT")
     assert not ran.errors
     assert shown(ran) == [(45.0, 0.0)]
 
 
-def test_after_points_an_incremental_angle_counts_from_its_solution() -> None:
+def test_incremental_axial_after_points_starts_from_its_solution() -> None:
     ran = run(f"{CHAMFER_2} TURN FMAX SYM+\nPLANE AXIAL IA+5 TURN FMAX")
     assert np.allclose(shown(ran), [(45.0, 90.0), (50.0, 90.0)], atol=1e-9)
 
 
 @pytest.mark.parametrize(("side", "a", "c"), [("SYM+", 45.0, 90.0), ("SYM-", -45.0, 270.0)])
-def test_relativ_turns_about_the_tilted_axes(side: str, a: float, c: float) -> None:
+def test_plane_relativ_rotates_about_tilted_axes(side: str, a: float, c: float) -> None:
     ran = run(f"{CHAMFER_2} TURN FMAX SYM+\nPLANE RELATIV SPC+20 TURN FMAX {side}")
     assert shown(ran)[1] == pytest.approx((a, c))
 
 
-def test_relativ_without_a_plane_turns_the_workpiece_system() -> None:
+def test_plane_relativ_without_plane_rotates_workpiece_system() -> None:
     relativ = run("PLANE RELATIV SPA+45 TURN FMAX").planes[0].swivel
     spatial = run("PLANE SPATIAL SPA+45 SPB+0 SPC+0 TURN FMAX").planes[0].swivel
     assert relativ is not None
@@ -156,18 +156,18 @@ def test_relativ_without_a_plane_turns_the_workpiece_system() -> None:
 
 
 @pytest.mark.parametrize(("turn", "c"), [(0, 0.0), (90, 90.0), (180, 180.0), (270, 270.0)])
-def test_spatial_names_the_four_chamfers(turn: int, c: float) -> None:
+def test_plane_spatial_defines_the_four_chamfers(turn: int, c: float) -> None:
     ran = run(f"PLANE SPATIAL SPA+45 SPB+0 SPC+{turn} TURN FMAX SYM+")
     assert shown(ran)[0] == pytest.approx((45.0, c))
 
 
-def test_a_published_program_reaches_its_comment() -> None:
+def test_published_program_reaches_angles_of_its_comment() -> None:
     """SPA90 SPB0 SPC180 with SEQ- and TABLE ROT was commented "A-90 C0" by whoever wrote it."""
     ran = run("PLANE SPATIAL SPA+90 SPB+0 SPC+180 STAY SEQ- TABLE ROT")
     assert targets(ran) == pytest.approx((-90.0, 0.0))
 
 
-def test_a_published_test_of_the_tool_axis() -> None:
+def test_published_tool_axis_test_gives_its_result() -> None:
     swivel = run("PLANE AXIAL A-90 TURN FMAX").planes[0].swivel
     assert swivel is not None
     frame = np.array(swivel.system.frame)
@@ -185,7 +185,7 @@ def test_coord_rot_and_table_rot_where_c_is_free() -> None:
 # --- the order of events ---------------------------------------------------------------------------------
 
 
-def test_mb_max_ends_just_short_of_the_limit_and_comes_before_the_swivel() -> None:
+def test_mb_max_stops_before_limit_and_precedes_swivel() -> None:
     ran = run("L Z+100 R0 FMAX\nPLANE AXIAL A+45 C+90 TURN MB MAX FMAX")
     up, swivel = ran.blocks[-3:-1]
     assert (up.kind, swivel.kind) == (BlockKind.RAPID, BlockKind.PLANE)
@@ -195,7 +195,7 @@ def test_mb_max_ends_just_short_of_the_limit_and_comes_before_the_swivel() -> No
     assert [ran.axes(swivel)[axis] for axis in "XYZ"] == [ran.axes(up)[axis] for axis in "XYZ"]
 
 
-def test_mb_with_a_length_goes_up_at_the_feed_of_the_block() -> None:
+def test_mb_length_retracts_at_feed_of_block() -> None:
     ran = run("L Z+100 R0 FMAX\nPLANE AXIAL A+45 TURN MB 50 F600")
     up, swivel = ran.blocks[-3:-1]
     assert up.kind is BlockKind.FEED
@@ -209,7 +209,7 @@ def test_mb_at_the_limit_moves_nothing() -> None:
     assert [block.kind for block in ran.blocks] == [BlockKind.ACTION, BlockKind.PLANE, BlockKind.ACTION]
 
 
-def test_turn_counts_the_path_of_both_rotary_axes() -> None:
+def test_turn_path_includes_both_rotary_axes() -> None:
     ran = run("PLANE AXIAL A+30 C+40 TURN F300")
     block = ran.planes[0]
     assert block.travel is not None
@@ -217,7 +217,7 @@ def test_turn_counts_the_path_of_both_rotary_axes() -> None:
     assert block.feed == pytest.approx(5.0)
 
 
-def test_turn_in_rapid_takes_as_long_as_the_slowest_axis() -> None:
+def test_turn_in_rapid_lasts_as_long_as_slowest_axis() -> None:
     """A at 60, C at 120 degrees/s: 90 degrees of A take 1.5 s, 100 of C less."""
     ran = run("PLANE AXIAL A+90 C+100 TURN FMAX")
     block = ran.planes[0]
@@ -230,14 +230,14 @@ def test_turn_in_rapid_takes_as_long_as_the_slowest_axis() -> None:
     ("words", "there"),
     [("MOVE FMAX", (230.0, 313.6396, -309.7918)), ("MOVE DIST50 FMAX", (230.0, 278.2843, -295.1472))],
 )
-def test_move_keeps_its_pivot_on_the_workpiece(words: str, there: tuple[float, float, float]) -> None:
+def test_move_ends_with_pivot_in_place_on_workpiece(words: str, there: tuple[float, float, float]) -> None:
     ran = run(f"L X+0 Y+0 Z+50 R0 FMAX\nPLANE AXIAL A+45 {words}")
     swivel = ran.planes[0]
     assert [ran.axes(swivel)[axis] for axis in "XYZ"] == pytest.approx(there, abs=6e-5)
 
 
 @pytest.mark.parametrize(("words", "depth"), [("MOVE FMAX", 0.0), ("MOVE DIST50 FMAX", 50.0)])
-def test_move_keeps_it_all_the_way(words: str, depth: float) -> None:
+def test_move_holds_pivot_during_whole_motion(words: str, depth: float) -> None:
     """Against the chain written out for this machine: a point below the tip, carried back by both tables."""
     ran = run(f"L X+5 Y+8 Z+50 R0 FMAX\nPLANE AXIAL A+45 C+90 {words}")
     travel = ran.planes[0].travel
@@ -262,20 +262,20 @@ def test_a_frame_is_in_force_after_stay_too() -> None:
     assert not ran.warned
 
 
-def test_a_cut_beside_the_targets_is_warned_of_once() -> None:
+def test_cut_away_from_target_angles_causes_one_warning() -> None:
     ran = run("M3\nPLANE AXIAL A+45 STAY\nL X+10 F100\nL X+20\nL Y+5")
     assert ran.warned == ["table-elsewhere"]
     assert [d.line for d in ran.diagnostics] == [5]
 
 
-def test_displacements_in_the_plane_are_turned_by_what_was_left_over() -> None:
+def test_moves_in_plane_follow_remaining_rotation() -> None:
     for side, wanted in (("SYM+", (10.0, 0.0, 5.0)), ("SYM-", (-10.0, 0.0, 5.0))):
         ran = run(f"{CHAMFER_1} TURN FMAX {side}\nL X+0 Y+0 Z+0 FMAX\nL IX+10 IZ+5 FMAX")
         start, end = (ran.axes(block) for block in ran.blocks[-3:-1])
         assert [end[axis] - start[axis] for axis in "XYZ"] == pytest.approx(wanted, abs=1e-9)
 
 
-def test_reset_drives_the_axes_home_the_short_way_and_stay_leaves_them() -> None:
+def test_plane_reset_turn_uses_short_path_and_stay_leaves_axes() -> None:
     ran = run("PLANE AXIAL A+45 C+270 TURN FMAX\nPLANE RESET TURN FMAX")
     first, second = (ran.axes(block) for block in ran.planes)
     assert (first["A"], first["C"]) == (45.0, -90.0)  # 0 to 270 by the short way
@@ -288,20 +288,20 @@ def test_reset_drives_the_axes_home_the_short_way_and_stay_leaves_them() -> None
     assert shown(bare)[1] == (45.0, 0.0)
 
 
-def test_half_a_turn_goes_positive() -> None:
+def test_rotation_of_180_degrees_goes_positive() -> None:
     ran = run("PLANE AXIAL C+180 TURN FMAX\nPLANE AXIAL C+0 TURN FMAX")
     assert [ran.axes(block)["C"] for block in ran.planes] == [180.0, 360.0]
     assert shown(ran) == [(0.0, 180.0), (0.0, 0.0)]
 
 
-def test_reset_without_a_plane_does_its_positioning_alone() -> None:
+def test_plane_reset_without_plane_only_positions() -> None:
     ran = run("PLANE RESET TURN FMAX", start=(0.0, 0.0, 0.0, 10.0, 20.0))
     assert not ran.errors
     assert shown(ran) == [(0.0, 0.0)]
 
 
 @pytest.mark.parametrize("end", ["M2", "M30", ""])
-def test_the_end_of_the_program_ends_the_plane_and_moves_nothing(end: str) -> None:
+def test_program_end_cancels_plane_without_motion(end: str) -> None:
     ran = run(f"PLANE AXIAL A+45 TURN FMAX\n{end}")
     assert ran.state.active_plane is None
     assert ran.state.position_by_axis["A"] == 45.0
@@ -314,23 +314,23 @@ def point(ran: Ran, index: int = -2) -> list[float]:
     return [ran.axes(ran.blocks[index])[axis] for axis in "XYZ"]
 
 
-def test_a_datum_before_the_plane_counts_in_the_workpiece() -> None:
+def test_datum_before_plane_is_in_workpiece_system() -> None:
     ran = run("TRANS DATUM AXIS Y+10\nPLANE AXIAL A+45 TURN FMAX\nL X+50 Y-7.0710678 Z+0 FMAX")
     assert point(ran) == pytest.approx((280.0, 278.2843, -352.2183), abs=6e-5)
 
 
-def test_a_datum_within_the_plane_counts_along_its_axes() -> None:
+def test_datum_within_plane_is_along_its_axes() -> None:
     ran = run("PLANE AXIAL A+45 TURN FMAX\nTRANS DATUM AXIS Y+10 Z+3\nL X+0 Y+0 Z+0 FMAX")
     assert point(ran) == pytest.approx((230.0, 288.2843, -342.1472), abs=6e-5)
 
 
-def test_no_plane_block_moves_the_datum() -> None:
+def test_plane_block_does_not_move_datum() -> None:
     """A shift along Y' of chamfer 1 is (0, 10 s, 10 s) of the workpiece, and stays there."""
     ran = run("PLANE AXIAL A+45 TURN FMAX\nTRANS DATUM AXIS Y+10\nPLANE RESET TURN FMAX\nL X+0 Y+0 Z+0 FMAX")
     assert point(ran) == pytest.approx((230.0, 210.0 + 10 * S, -350.0 + 10 * S), abs=1e-9)
 
 
-def test_the_trap_of_a_datum_in_the_old_system_is_told() -> None:
+def test_datum_set_in_previous_plane_causes_warning() -> None:
     trapped = "PLANE AXIAL A+45 TURN FMAX\nTRANS DATUM AXIS X+90\nPLANE AXIAL C+90 TURN FMAX"
     assert run(trapped).warned == ["datum-in-plane"]
     freed = trapped.replace("\nTRANS", "\nPLANE RESET STAY\nTRANS")
@@ -349,7 +349,7 @@ def turned_part(angle: float) -> Kinematics:
     return dataclasses.replace(AC, basic_rotation_deg=angle)
 
 
-def test_points_follow_the_basic_rotation_and_axial_does_not() -> None:
+def test_plane_points_follows_basic_rotation_and_axial_does_not() -> None:
     points = run(f"{CHAMFER_1} TURN FMAX SYM+", turned_part(10.0))
     axial = run("PLANE AXIAL A+45 TURN FMAX", turned_part(10.0))
     assert shown(points)[0] == pytest.approx((45.0, 10.0))
@@ -361,7 +361,7 @@ def test_points_follow_the_basic_rotation_and_axial_does_not() -> None:
 # --- ranges ----------------------------------------------------------------------------------------------
 
 
-def test_ranges_of_the_machine() -> None:
+def test_plane_solution_respects_machine_ranges() -> None:
     up, down = limited(-10.0, 110.0), limited(-110.0, 10.0)
     assert shown(run(f"{CHAMFER_1} TURN FMAX SYM+", up)) == [(45.0, 0.0)]
     assert run(f"{CHAMFER_1} TURN FMAX SYM-", up).codes == ["Entered angle not permitted"]
@@ -369,7 +369,7 @@ def test_ranges_of_the_machine() -> None:
     assert shown(run(f"{CHAMFER_1} TURN FMAX", down))[0] == pytest.approx((-45.0, 180.0))
 
 
-def test_b_on_a_b_c_table() -> None:
+def test_b_axis_on_b_c_table() -> None:
     b = dataclasses.replace(AC.rotary_axes[1], name="B", direction=(0.0, 1.0, 0.0))
     machine = dataclasses.replace(AC, rotary_axes=(C, b), axis_order=("X", "Y", "Z", "B", "C"))
     ran = run("PLANE AXIAL B+45 C+90 TURN FMAX", machine)
@@ -386,7 +386,7 @@ def test_b_on_a_b_c_table() -> None:
     st.floats(-180.0, 180.0),
     st.sampled_from(["", "SYM+", "SYM-"]),
 )
-def test_whatever_the_plane_its_z_is_the_spindles(a: float, b: float, c: float, side: str) -> None:
+def test_z_of_any_plane_is_spindle_direction(a: float, b: float, c: float, side: str) -> None:
     """A move along Z' of any plane that the table can reach moves Z of the machine alone, by as much."""
     plane = f"PLANE SPATIAL SPA{a:+.4f} SPB{b:+.4f} SPC{c:+.4f} TURN FMAX {side}"
     ran = run(f"{plane}\nL X+5 Y-3 Z+40 FMAX\nL IZ+7 FMAX")
@@ -412,7 +412,7 @@ def test_whatever_the_plane_its_z_is_the_spindles(a: float, b: float, c: float, 
         ("PLANE SPATIAL SPA+0 SPB+0 SPC+30 TURN FMAX", False),  # there is one way only
     ],
 )
-def test_a_way_that_hangs_on_where_the_table_stands_is_told(text: str, told: bool) -> None:
+def test_plane_solution_that_depends_on_table_position_is_reported(text: str, told: bool) -> None:
     ran = run(text)
     assert not ran.errors
     assert ("two-ways" in [d.code for d in ran.diagnostics]) is told

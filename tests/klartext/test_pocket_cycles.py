@@ -74,7 +74,7 @@ def grid(a: float, b: float, r: float, pitch: float = 1.7) -> Points:
 
 @pytest.mark.parametrize(("number", "a", "b", "r"), [(251, 30, 18, 6), (252, 25, 25, 25), (253, 20, 6, 6)])
 @pytest.mark.parametrize("plunge", [0, 1, 2])
-def test_a_pocket_is_cleared_and_no_more(number: int, a: float, b: float, r: float, plunge: int) -> None:
+def test_pocket_is_cleared_without_overcut(number: int, a: float, b: float, r: float, plunge: int) -> None:
     """The tip's way stays R inside the walls, ends on the floor, and passes every spot within R."""
     points = cuts(milled(number, q366=plunge))
     here = points[:, :2] - (10.0, 20.0)
@@ -85,7 +85,7 @@ def test_a_pocket_is_cleared_and_no_more(number: int, a: float, b: float, r: flo
     assert left_standing(floor, grid(a, b, r)) <= R + 0.05
 
 
-def test_a_pocket_stands_where_q367_and_q224_put_it() -> None:
+def test_q367_and_q224_set_pocket_position_and_rotation() -> None:
     """The tool at the lower left corner, the pocket turned by 90 degrees: it lies to the left and above."""
     points = cuts(milled(251, q367=1, q224=90))
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
@@ -93,19 +93,19 @@ def test_a_pocket_stands_where_q367_and_q224_put_it() -> None:
     assert high == pytest.approx([10 - R, 20 + 60 - R])
 
 
-def test_a_slot_begins_at_its_left_end() -> None:
+def test_slot_starts_at_its_left_end() -> None:
     points = cuts(milled(253, q367=1))
     assert points[:, 0].min() == pytest.approx(10 + R)
     assert points[:, 0].max() == pytest.approx(10 + 40 - R)
 
 
-def test_a_slot_as_wide_as_the_tool_is_gone_along_once_a_level() -> None:
+def test_slot_of_tool_width_is_cut_once_per_level() -> None:
     points = cuts(milled(253, q219=8, q366=0))
     assert np.ptp(points[:, 1]) == pytest.approx(0.0, abs=1e-9)
     assert sorted({round(z, 6) for z in points[:, 2] if z < 1.0} & {-2.0, -5.0, -6.0}) == [-6.0, -5.0, -2.0]
 
 
-def test_allowances_are_left_by_clearing_and_taken_by_finishing() -> None:
+def test_allowances_remain_after_clearing_and_finishing_removes_them() -> None:
     rough = cuts(milled(251, q215=1, q368=0.5, q369=0.3))
     assert rounded(rough[:, :2] - (10, 20), 30, 18, 6).max() == pytest.approx(-R - 0.5, abs=1e-6)
     assert rough[:, 2].min() == pytest.approx(-5.7)
@@ -119,7 +119,7 @@ def test_allowances_are_left_by_clearing_and_taken_by_finishing() -> None:
     }
 
 
-def test_climb_milling_goes_round_a_pocket_counter_clockwise_and_a_stud_clockwise() -> None:
+def test_climb_milling_is_ccw_in_pocket_and_cw_around_stud() -> None:
     for number, q351, sense in ((252, 1, 1), (252, -1, -1), (257, 1, -1), (257, -1, 1)):
         ran = milled(number, q351=q351, q366=0)
         assert ran.codes == []
@@ -130,7 +130,7 @@ def test_climb_milling_goes_round_a_pocket_counter_clockwise_and_a_stud_clockwis
 
 
 @pytest.mark.parametrize(("number", "a", "b", "r"), [(256, 20, 15, 5), (257, 20, 20, 20)])
-def test_a_stud_is_left_standing_and_its_blank_cleared(number: int, a: float, b: float, r: float) -> None:
+def test_stud_remains_and_its_blank_is_cleared(number: int, a: float, b: float, r: float) -> None:
     ran = milled(number)
     points = cuts(ran)
     here = points[:, :2] - (10.0, 20.0)
@@ -160,13 +160,13 @@ def test_a_stud_is_left_standing_and_its_blank_cleared(number: int, a: float, b:
         (256, {"q424": 30, "q425": 20}, "blank"),
     ],
 )
-def test_refused(number: int, q: dict[str, float], names: str) -> None:
+def test_invalid_pocket_cycle_is_rejected(number: int, q: dict[str, float], names: str) -> None:
     ran = milled(number, **q)
     assert ran.codes == ["Input value incorrect"]
     assert names in ran.errors[0].message
 
 
-def test_a_rapid_does_not_cut() -> None:
+def test_rapid_feed_in_pocket_cycle_is_rejected() -> None:
     ran = run(
         "CYCL DEF 252 POCKET ~\n Q207=MAX ~\n Q206=9 ~\n Q223=30 ~\n Q201=-5 ~\n Q200=2\nCYCL CALL", tool=TOOL
     )

@@ -40,7 +40,7 @@ def about(*wanted: tuple[float, float]) -> list[object]:
     return [pytest.approx(each, abs=1e-9) for each in wanted]
 
 
-def test_a_square_cut_round_the_outside_with_the_tool_on_the_left() -> None:
+def test_square_is_cut_outside_with_rl() -> None:
     """Clockwise round a square of 20: the tool of R 5 keeps 5 mm off, and goes round each corner."""
     text = "L X+0 Y+0 RL F100\nL Y+20\nL X+20\nL Y+0\nL X+0\nL X-20 Y-20 R0 FMAX"
     wanted = [(-5, 0), (-5, 20), (0, 25), (20, 25), (25, 20), (25, 0), (20, -5), (0, -5), (-20, -20)]
@@ -49,12 +49,12 @@ def test_a_square_cut_round_the_outside_with_the_tool_on_the_left() -> None:
     assert [arc.length for arc in arcs] == pytest.approx([2.5 * math.pi] * 3)
 
 
-def test_the_same_square_inside_with_the_tool_on_the_right() -> None:
+def test_square_is_cut_inside_with_rr() -> None:
     text = "L X+0 Y+10 RR F100\nL Y+20\nL X+20\nL Y+0\nL X+0\nL Y+10\nL X+10 R0"
     assert ends(text) == about((5, 10), (5, 15), (15, 15), (15, 5), (5, 5), (5, 10), (10, 10))
 
 
-def test_a_start_in_an_inside_corner_would_cut_into_the_other_wall() -> None:
+def test_start_in_inside_corner_is_rejected() -> None:
     ran = ran_of("L X+0 Y+0 RR F100\nL Y+20\nL X+20\nL Y+0\nL X+0\nL X+10 Y+10 R0")
     assert ran.codes == ["Tool radius too large"]
 
@@ -65,14 +65,14 @@ def test_the_feed_of_each_element_is_its_own() -> None:
     assert blocks[-1].kind is BlockKind.RAPID
 
 
-def test_down_between_two_elements_and_up_at_the_end_stay_beside_the_contour() -> None:
+def test_z_moves_in_contour_stay_at_compensated_position() -> None:
     blocks = moves("L X+0 Y+0 RL F100\nL Z-3\nL Y+20\nL Z-6\nL Y+40\nL Z+10 R0 FMAX")
     points = [block.swivel.end for block in blocks if block.swivel is not None]
     wanted = [(-5, 0, 0), (-5, 0, -3), (-5, 20, -3), (-5, 20, -6), (-5, 40, -6), (-5, 40, 10)]
     assert points == [pytest.approx(each, abs=1e-9) for each in wanted]
 
 
-def test_m_functions_keep_their_place_in_the_contour() -> None:
+def test_m_functions_stay_in_order_within_contour() -> None:
     ran = ran_of("L X+0 Y+0 RL F100\nL Y+20 M8\nL Y+40\nM9\nL Y+60\nL X-20 R0 FMAX")
     assert ran.codes == []
     told = [(block.kind.value, block.line) for block in ran.blocks if block.line >= 6]
@@ -86,13 +86,13 @@ def test_a_rounding_inside_is_smaller_by_the_tool() -> None:
     assert np.hypot(points[:, 0] - 8.0, points[:, 1] - 32.0) == pytest.approx(3.0)
 
 
-def test_a_rounding_smaller_than_the_tool_is_refused_where_it_stands() -> None:
+def test_rounding_smaller_than_tool_is_rejected_at_its_line() -> None:
     ran = ran_of("L X+0 Y+0 RR F100\nL Y+40\nRND R4\nL X+40\nL X+20 Y+20 R0")
     assert ran.codes == ["Tool radius too large"]
     assert ran.errors[0].line == 8
 
 
-def test_dr_of_tool_call_makes_the_tool_thicker() -> None:
+def test_dr_of_tool_call_increases_tool_radius() -> None:
     thick = "TOOL DEF 5 L+0 R+5\nTOOL CALL 5 Z S3000 F500 DR+0.3\n"
     ran = run(HERE + "L X+0 Y+0 RL F100\nL Y+20\nL X-20 R0 FMAX", tool=thick)
     assert end([block for block in ran.blocks if block.moves][1]) == pytest.approx((-5.3, 0.0))
@@ -104,12 +104,12 @@ def test_a_mirrored_contour_is_the_mirror_image() -> None:
     assert mirrored == about(*((-x, y) for x, y in plain))
 
 
-def test_a_scaled_contour_keeps_the_tool_as_it_is() -> None:
+def test_scaled_contour_uses_unscaled_tool_radius() -> None:
     blocks = ends("TRANS SCALE SCL2\nL X+0 Y+0 RL F100\nL Y+20\nL X+20\nL X+40 Y+40 R0 FMAX")
     assert blocks[:4] == about((-5, 0), (-5, 40), (0, 45), (40, 45))
 
 
-def test_a_program_that_ends_compensated_is_warned_of_and_runs_its_contour() -> None:
+def test_program_ending_with_compensation_on_causes_warning() -> None:
     ran = ran_of("L X+0 Y+0 RL F100\nL Y+20")
     assert ran.warned == ["compensation-left-on"]
     assert end([block for block in ran.blocks if block.moves][-1]) == pytest.approx((-5.0, 20.0))
@@ -121,15 +121,15 @@ def test_a_program_that_ends_compensated_is_warned_of_and_runs_its_contour() -> 
 BEHIND = "\nL Y+20\nL X-20 Y+40 R0 FMAX"
 
 
-def test_approach_along_a_tangent() -> None:
+def test_appr_lt_is_tangent_to_contour() -> None:
     assert ends(f"APPR LT X+0 Y+0 LEN10 RL F100{BEHIND}")[:3] == about((-5, -10), (-5, 0), (-5, 20))
 
 
-def test_approach_square_to_the_contour() -> None:
+def test_appr_ln_is_perpendicular_to_contour() -> None:
     assert ends(f"APPR LN X+0 Y+0 LEN10 RL F100{BEHIND}")[:3] == about((-15, 0), (-5, 0), (-5, 20))
 
 
-def test_approach_on_an_arc() -> None:
+def test_appr_ct_is_an_arc() -> None:
     """R 12 for the contour is 7 for the centre of the tool: a quarter about (-12, 0)."""
     blocks = moves(f"APPR CT X+0 Y+0 CCA90 R+12 RL F100{BEHIND}")
     assert [end(block) for block in blocks[:3]] == about((-12, -7), (-5, 0), (-5, 20))
@@ -137,12 +137,12 @@ def test_approach_on_an_arc() -> None:
     assert np.hypot(points[:, 0] + 12.0, points[:, 1]) == pytest.approx(7.0)
 
 
-def test_approach_on_an_arc_from_the_side_of_the_workpiece() -> None:
+def test_appr_ct_with_negative_radius_starts_on_workpiece_side() -> None:
     blocks = moves(f"APPR CT X+0 Y+0 CCA90 R-12 RL F100{BEHIND}")
     assert [end(block) for block in blocks[:2]] == about((12, -17), (-5, 0))
 
 
-def test_approach_on_an_arc_that_a_line_leads_into() -> None:
+def test_appr_lct_line_is_tangent_to_arc() -> None:
     """The line from (-20, -20) touches the circle of 7 about (-12, 0) in its own sense."""
     blocks = moves(f"APPR LCT X+0 Y+0 R12 RL F100{BEHIND}")
     x, y = end(blocks[0])
@@ -163,11 +163,11 @@ def test_approach_on_an_arc_that_a_line_leads_into() -> None:
         ("DEP CT CCA180 R+12 F100", [(-19, 20)]),
     ],
 )
-def test_departure(words: str, wanted: list[tuple[float, float]]) -> None:
+def test_departure_ends_at_its_point(words: str, wanted: list[tuple[float, float]]) -> None:
     assert ends(f"L X+0 Y+0 RL F100\nL Y+20\n{words}")[2:] == about(*wanted)
 
 
-def test_departure_on_an_arc_and_a_line_that_leaves_it() -> None:
+def test_dep_lct_line_is_tangent_to_arc() -> None:
     blocks = moves("L X+0 Y+0 RL F100\nL Y+20\nDEP LCT X-40 Y+40 R12 F100")
     arc, line = blocks[2:]
     x, y = end(arc)
@@ -176,12 +176,12 @@ def test_departure_on_an_arc_and_a_line_that_leaves_it() -> None:
     assert end(line) == pytest.approx((-40.0, 40.0))
 
 
-def test_approach_and_departure_without_compensation() -> None:
+def test_approach_and_departure_run_without_compensation() -> None:
     wanted = [(0, -10), (0, 0), (0, 20), (0, 30)]
     assert ends("APPR LT X+0 Y+0 LEN10 R0 F100\nL Y+20\nDEP LT LEN10") == about(*wanted)
 
 
-def test_approach_from_the_pole() -> None:
+def test_polar_approach_starts_from_pole() -> None:
     wanted = [(-5, -10), (-5, 0), (-5, 20)]
     assert ends(f"CC X+10 Y+0\nAPPR PLT PR+10 PA+180 LEN10 RL F100{BEHIND}")[:3] == about(*wanted)
 
@@ -196,6 +196,6 @@ def test_approach_from_the_pole() -> None:
         ("L X+0 Y+0 RL F100\nL Y+20\nL Y+5\nL X-20 R0", "Tool radius too large"),
     ],
 )
-def test_refused(text: str, code: str) -> None:
+def test_invalid_compensation_is_rejected(text: str, code: str) -> None:
     ran = ran_of(f"{text}{BEHIND}")
     assert ran.codes[:1] == [code]

@@ -63,7 +63,9 @@ CONTOURS = "\nCYCL DEF 20 DATA Q1=-5 Q2=+1\nCYCL DEF 22 ROUGH-OUT Q10=-5 Q11=150
         ),
     ],
 )
-def test_one_error_tells_the_place_and_the_remedy(text: str, line: int, column: int, instead: str) -> None:
+def test_unsupported_code_gives_one_error_with_place_and_remedy(
+    text: str, line: int, column: int, instead: str
+) -> None:
     (error,) = run(text).errors
     assert (error.code, error.line, error.column) == ("Not supported", line, column)
     assert error.hint == instead
@@ -83,7 +85,7 @@ def test_the_error_names_the_code(text: str, code: str) -> None:
     assert code in error.message
 
 
-def test_contours_by_label_and_names_in_quotes_go_on_being_read() -> None:
+def test_contour_labels_and_quoted_names_are_accepted() -> None:
     assert run('CONTOUR DEF P1 = LBL 1 I2 = "ROUND.H"\nM30\nLBL 1\nLBL 0').codes == []
     assert run('CALL LBL "SIDE"\nM30\nLBL "SIDE"\nLBL 0').codes == []
     assert run('FN 20: WAIT FOR SYNC\nFN 38: SEND /"%f" / +Q1').codes == []

@@ -9,7 +9,7 @@ from app.offsets.offset_values import ValueMode
 MILL, LATHE = load_shipped_machine("ac-table-mill"), load_machine()
 
 
-def test_every_axis_has_both_ways() -> None:
+def test_every_axis_has_both_jog_directions() -> None:
     for machine, names in ((MILL, "XYZAC"), (LATHE, "XZC")):
         ways = make_jog_directions(machine)
         assert sorted((way.axis, way.direction_sign) for way in ways) == sorted(
@@ -17,7 +17,7 @@ def test_every_axis_has_both_ways() -> None:
         )
 
 
-def test_no_two_share_a_key_or_a_cell() -> None:
+def test_no_two_jog_directions_share_a_key_or_cell() -> None:
     for machine in (MILL, LATHE):
         ways = make_jog_directions(machine)
         assert len({way.key_name for way in ways}) == len(ways)
@@ -26,14 +26,14 @@ def test_no_two_share_a_key_or_a_cell() -> None:
         assert (1, 1) not in cells  # the figures stand there
 
 
-def test_x_of_a_lathe_comes_towards_the_operator_and_y_of_a_mill_goes_away() -> None:
+def test_down_key_is_x_plus_on_lathe_and_up_key_is_y_plus_on_mill() -> None:
     down = next(way for way in make_jog_directions(LATHE) if way.key_name == "Down")
     up = next(way for way in make_jog_directions(MILL) if way.key_name == "Up")
     assert (down.axis, down.direction_sign) == ("X", 1)
     assert (up.axis, up.direction_sign) == ("Y", 1)
 
 
-def test_a_slow_table_is_not_asked_for_more_than_it_can() -> None:
+def test_jog_speed_of_slow_table_is_within_its_limit() -> None:
     speeds, mode = JogSpeeds(MILL, speed_index=3), ValueMode(is_metric=True)
     assert speeds.find_velocity("A", mode, is_rapid=True) == 60.0  # degrees/s: 3600 a minute
     assert speeds.find_velocity("A", mode, is_rapid=False) == 60.0

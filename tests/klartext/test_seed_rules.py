@@ -50,7 +50,7 @@ def told(step: str, value: object, old: bool) -> str:
     raise AssertionError(step)
 
 
-def test_every_order_of_a_plane_and_transformations() -> None:
+def test_plane_and_transformations_combine_in_every_order() -> None:
     """A shift counts in the system in force where it stands; a point is scaled, mirrored, turned about
     the datum, in whatever order that was told."""
     some = random.Random(11)

@@ -34,7 +34,7 @@ def read(place: str, before: str = "", **setup: Any) -> float:
         ("ID50 NR1 IDX7", 80.0), ("ID50 NR2 IDX+7", 3.0), ("ID50 NR15 IDX7", 0.0),
     ],
 )  # fmt: skip
-def test_columns_of_the_tool_table(place: str, value: float) -> None:
+def test_sysread_reads_columns_of_tool_table(place: str, value: float) -> None:
     assert read(place) == pytest.approx(value)
 
 
@@ -56,11 +56,11 @@ CALL = "TOOL CALL 1 Z S1200 F600 DL+1 DR-0.5\nL X+7 Y+0 Z+50 R0 FMAX M3"
         ("ID270 NR1 IDX1", 7.0), ("ID270 NR1 IDX6", 0.0),
     ],
 )  # fmt: skip
-def test_figures_behind_a_tool_call(place: str, value: float) -> None:
+def test_sysread_reads_values_of_tool_call(place: str, value: float) -> None:
     assert read(place, CALL) == pytest.approx(value)
 
 
-def test_transformations_in_force() -> None:
+def test_sysread_reads_active_transformations() -> None:
     turned = "TRANS DATUM AXIS X+3 Y-4\nTRANS MIRROR AXIS X Y\nTRANS ROTATION ROT+30\nTRANS SCALE SCL0.5"
     found = [read(f"ID{place}", turned) for place in ("220 NR2 IDX2", "210 NR3", "210 NR2", "210 NR4 IDX1")]
     assert found == pytest.approx([-4.0, 3.0, 30.0, 0.5])
@@ -68,13 +68,13 @@ def test_transformations_in_force() -> None:
     assert read("ID280 NR1", "M128") == -1.0
 
 
-def test_a_length_is_that_of_tool_def_where_the_program_brings_one() -> None:
+def test_sysread_uses_tool_def_length_when_program_defines_tool() -> None:
     assert read("ID50 NR1", "TOOL DEF 5 L+30 R+4\nTOOL CALL 5 Z S100 DL+1") == pytest.approx(30.0)
     assert read("ID50 NR2", 'TOOL DEF "MILL" L+30 R+4\nTOOL CALL "MILL" Z S100') == pytest.approx(4.0)
 
 
 @pytest.mark.parametrize(("number", "empty"), [(36, 0.0), (22, 0.0), (19, 99999.9999)])
-def test_a_column_that_the_table_lacks_reads_as_empty_and_says_so(number: int, empty: float) -> None:
+def test_sysread_of_missing_column_is_empty_and_reported(number: int, empty: float) -> None:
     """R-OFFS is preset to R, the tool's radius, which reads as 99999.9999."""
     ran = with_table(f"FN 18: SYSREAD Q1 = ID50 NR{number} IDX1")
     assert ran.codes == []
@@ -101,14 +101,14 @@ def test_a_column_that_the_table_lacks_reads_as_empty_and_says_so(number: int, e
         ("FN 17: ID50 NR4 = +0", "Syntax error", "SYSWRITE"),
     ],
 )
-def test_what_is_refused(block: str, code: str, names: str) -> None:
+def test_invalid_system_data_access_is_rejected(block: str, code: str, names: str) -> None:
     ran = with_table(f"Q1 = 5\n{block}")
     assert ran.codes == [code]
     assert any(names in each.message for each in ran.diagnostics)
     assert ran.state.q_values[1] == 5.0
 
 
-def test_what_fn_17_writes_is_read_back_and_moves_nothing() -> None:
+def test_fn_17_values_are_read_back_and_reported_as_ignored() -> None:
     ran = with_table(
         "FN 17: SYSWRITE ID50 NR22 IDX7 = +0.2\nFN 17: SYSWRITE ID50 NR4 IDX7 = +0\n"
         "FN 18: SYSREAD Q1 = ID50 NR22 IDX7"

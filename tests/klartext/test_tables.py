@@ -51,18 +51,18 @@ def test_rows_are_read_by_their_columns() -> None:
 
 @pytest.mark.parametrize("block", ["CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 #2", "TRANS DATUM TABLE TABLINE2",
                                    "Q5 = 2\nCYCL DEF 7.0 DATUM\nCYCL DEF 7.1 #Q5"])  # fmt: skip
-def test_a_row_is_the_datum(block: str) -> None:
+def test_table_row_sets_datum(block: str) -> None:
     ran = beside(f'SEL TABLE "TNC:\\TAB\\vice.d"\n{block}')
     assert ran.codes == []
     assert ran.state.datum == (10.5, -5.0, 3.0)
 
 
-def test_an_empty_cell_leaves_its_axis() -> None:
+def test_empty_cell_leaves_its_axis_unchanged() -> None:
     ran = beside('SEL TABLE "VICE.D"\nCYCL DEF 7.0 D\nCYCL DEF 7.1 #2\nCYCL DEF 7.0 D\nCYCL DEF 7.1 #7')
     assert ran.state.datum == (10.5, 8.0, 3.0)
 
 
-def test_points_of_a_table_are_those_of_the_pattern() -> None:
+def test_point_table_gives_pattern_points() -> None:
     ran = beside(f'L Z+40 R0 FMAX M3\n{DRILL}SEL PATTERN "HOLES.PNT"\nCYCL CALL PAT FMAX')
     assert ran.codes == []
     ends = [block.swivel.end for block in ran.blocks if block.kind is BlockKind.FEED and block.swivel]
@@ -75,7 +75,7 @@ def test_a_selected_program_is_called() -> None:
     assert sum(block.kind is BlockKind.FEED for block in ran.blocks) == 1
 
 
-def test_tables_are_found_beside_the_program(tmp_path: Path) -> None:
+def test_tables_are_found_in_folder_of_program(tmp_path: Path) -> None:
     (tmp_path / "vice.d").write_text(DATUMS)
     (tmp_path / "t.h").write_text(whole('SEL TABLE "TNC:\\VICE.D"\nCYCL DEF 7.0 D\nCYCL DEF 7.1 #2'))
     source = load_called_files(load_source(tmp_path / "t.h"), [tmp_path])
@@ -98,7 +98,7 @@ def test_tables_are_found_beside_the_program(tmp_path: Path) -> None:
         ("CYCL DEF 7.0 D\nCYCL DEF 7.1 #2 X+5", "Syntax error", "cycle 7"),
     ],
 )
-def test_refused(text: str, code: str, names: str) -> None:
+def test_invalid_table_access_is_rejected(text: str, code: str, names: str) -> None:
     ran = beside(text)
     assert code in ran.codes
     assert any(names in each.message for each in ran.errors)
@@ -109,7 +109,7 @@ def test_files_are_named_without_their_folder() -> None:
     assert list(find_called_programs(ProgramSource("T.H", whole(text)))) == ["SLOT.H", "VICE.D", "50.H"]
 
 
-def test_words_of_older_and_of_german_controls() -> None:
+def test_words_of_older_and_german_controls_are_accepted() -> None:
     """R, F and M without a value leave all as it is; ABST is DIST."""
     line = parse_line(1, "L X+10 Y+5 R F M")
     assert line.error is None

@@ -32,7 +32,7 @@ def tips(block: Block, count: int = 9) -> np.ndarray:
     return np.array(found)
 
 
-def test_the_tip_stands_while_the_table_turns() -> None:
+def test_tool_tip_stays_in_place_while_table_turns() -> None:
     ran = ran_of("L A+30 C+50 F200")
     (move,) = (block for block in ran.blocks if block.kind is BlockKind.FEED)
     assert tips(move) == pytest.approx(np.tile((10.0, 20.0, 5.0), (9, 1)), abs=1e-9)
@@ -53,7 +53,7 @@ def test_the_tip_runs_straight_while_the_table_turns() -> None:
     assert not move.has_angular_feed
 
 
-def test_moves_behind_it_count_on_the_turned_workpiece() -> None:
+def test_moves_after_rotation_follow_rotated_workpiece() -> None:
     ran = ran_of("L A+30 C+50 F200\nL X+60 F300")
     last = [block for block in ran.blocks if block.kind is BlockKind.FEED][-1]
     at = ran.axes(last)
@@ -61,7 +61,7 @@ def test_moves_behind_it_count_on_the_turned_workpiece() -> None:
     assert on_the_workpiece(AC, at, slides, 60.0) == pytest.approx((60.0, 20.0, 5.0))
 
 
-def test_m129_gives_the_old_way_of_counting_back() -> None:
+def test_m129_restores_machine_coordinates() -> None:
     ran = ran_of("L A+30 FMAX\nM129\nL X+10 Y+20 Z+5 FMAX")
     last = [block for block in ran.blocks if block.moves][-1]
     assert last.swivel is not None
@@ -77,7 +77,7 @@ def test_function_tcpm_is_m128() -> None:
 
 
 @pytest.mark.parametrize("call", ["TOOL CALL S2857", "TOOL CALL Z S2857 F400", "TOOL CALL F400"])
-def test_a_new_speed_or_feed_is_taken_while_m128_is_on(call: str) -> None:
+def test_tool_call_with_speed_or_feed_is_accepted_under_m128(call: str) -> None:
     ran = run(f"L Z+50 R0 FMAX M3\nL M128\nL IA+5 R0 F500\n{call}\nL IA-5 R0 F500\nL M129")
     assert ran.codes == []
     assert ran.state.modal.rpm == (2857.0 if "S" in call else 3000.0)
@@ -86,5 +86,5 @@ def test_a_new_speed_or_feed_is_taken_while_m128_is_on(call: str) -> None:
 @pytest.mark.parametrize(
     "call", ["TOOL CALL 2", "TOOL CALL 1 Z S100", "TOOL CALL DL+0.1", "TOOL CALL S100 DR-0.1"]
 )
-def test_another_tool_or_oversize_is_not(call: str) -> None:
+def test_tool_call_with_tool_or_oversize_is_rejected_under_m128(call: str) -> None:
     assert run(f"L Z+50 R0 FMAX M3\nL M128\n{call}").codes == ["Not permitted with M128"]

@@ -35,14 +35,16 @@ def arcs(text: str, start: str = "L X+1 Y+2 Z+3 FMAX M3") -> Ran:
         ("CC Y+0 Z+3\nCP IPA-180 IX+6 DR- F100", (4, 0, 1), (7, -2, 3), math.hypot(2 * math.pi, 6)),
     ],
 )
-def test_an_upright_arc(text: str, middle: tuple[float, ...], stop: tuple[float, ...], length: float) -> None:
+def test_arc_in_vertical_plane_has_its_end_and_length(
+    text: str, middle: tuple[float, ...], stop: tuple[float, ...], length: float
+) -> None:
     block = next(block for block in arcs(text).blocks if block.kind is BlockKind.PLANE_ARC)
     assert np.allclose(on_the_way(block, 3)[1], middle)
     assert end(block) == pytest.approx(stop)
     assert block.length == pytest.approx(length)
 
 
-def test_mirrored_turned_and_scaled() -> None:
+def test_vertical_arc_is_mirrored_rotated_and_scaled() -> None:
     """Mirrored in X, then turned by 90 degrees: X' is -Y; half as large."""
     told = "TRANS MIRROR AXIS X\nTRANS ROTATION ROT+90\nTRANS SCALE SCL0.5\nCC X-3 Z+3\nCP IPA-90 DR- F100"
     ran = run(f"L X+0 Y+0 Z+0 FMAX M3\n{told.replace('CC', 'L X+1 Y+2 Z+3 FMAX{0}CC').format(chr(10))}")
@@ -53,7 +55,7 @@ def test_mirrored_turned_and_scaled() -> None:
     assert end(block) == pytest.approx((-1.0, 1.5, 3.5))
 
 
-def test_in_a_tilted_plane_the_machine_follows() -> None:
+def test_vertical_arc_in_tilted_plane_is_followed_by_axes() -> None:
     """A 90: the plane's Z is the workpiece's -Y; the slides go the arc as it stands in the plane."""
     tilted = arcs("PLANE AXIAL A+90 TURN FMAX\nL X+1 Y+2 Z+3 FMAX\nCC Y+0 Z+3\nCP IPA-90 DR- F100")
     block = next(block for block in tilted.blocks if block.kind is BlockKind.PLANE_ARC)
@@ -64,12 +66,12 @@ def test_in_a_tilted_plane_the_machine_follows() -> None:
     assert np.allclose(moved, (0.0, -2.0, -2.0))
 
 
-def test_a_polar_point_counts_in_the_plane_of_its_pole() -> None:
+def test_polar_point_is_in_plane_of_its_pole() -> None:
     ran = arcs("CC Y+0 Z+0\nLP PR+10 PA+30 F100")
     assert end(ran.blocks[-2]) == pytest.approx((1.0, 10 * math.cos(math.radians(30)), 5.0))
 
 
-def test_a_pole_of_one_axis_stays_in_its_plane() -> None:
+def test_pole_with_one_axis_stays_in_its_plane() -> None:
     ran = arcs("CC Y+0 Z+3\nCC Y+0\nCP IPA-90 DR- F100")
     assert end(ran.blocks[-2]) == pytest.approx((1.0, 0.0, 1.0))
 
@@ -85,5 +87,5 @@ def test_a_pole_of_one_axis_stays_in_its_plane() -> None:
         ("CC Y+2 Z+3\nCP IPA+90 DR+ F100", "Circle end point incorrect"),
     ],
 )
-def test_refused(text: str, code: str) -> None:
+def test_invalid_vertical_arc_is_rejected(text: str, code: str) -> None:
     assert run(f"L X+1 Y+2 Z+3 FMAX M3\n{text}").codes[:1] == [code]

@@ -65,7 +65,7 @@ def values(snapshot: Snapshot, readout: ReadoutKind) -> list[str]:
     return [axis.value for axis in view.position.axes]
 
 
-def test_figures_count_in_the_working_plane(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_readout_is_in_working_plane(chamfers: tuple[MillScene, list[Block]]) -> None:
     cut = cut_of(chamfers[1], 2)
     snapshot = snapshot_at(cut)
     view = make_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).position
@@ -75,13 +75,13 @@ def test_figures_count_in_the_working_plane(chamfers: tuple[MillScene, list[Bloc
     assert all(axis.diameter_mark == "" for axis in view.axes)
 
 
-def test_figures_from_home_are_the_machines(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_readout_from_home_is_in_machine_coordinates(chamfers: tuple[MillScene, list[Block]]) -> None:
     snapshot = snapshot_at(cut_of(chamfers[1], 1))
     assert values(snapshot, ReadoutKind.HOME) == ["345.0000", "278.2843", "−352.2183", "45.000", "0.000"]
     assert make_status(snapshot, ReadoutKind.HOME, has_c_axis=False).position.x_label == "MACHINE"
 
 
-def test_what_is_left_counts_along_the_planes_axes(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_distance_to_go_is_along_axes_of_plane(chamfers: tuple[MillScene, list[Block]]) -> None:
     """30 mm before the end of chamfer 2, whose X' runs along X of the machine while C stands at 90."""
     cut = cut_of(chamfers[1], 2)
     assert cut.travel is not None
@@ -90,14 +90,14 @@ def test_what_is_left_counts_along_the_planes_axes(chamfers: tuple[MillScene, li
     assert values(snapshot, ReadoutKind.TO_GO) == ["30.0000", "0.0000", "0.0000", "0.000", "0.000"]
 
 
-def test_c_shows_less_than_a_turn(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_c_readout_is_below_360_degrees(chamfers: tuple[MillScene, list[Block]]) -> None:
     snapshot = snapshot_at(chamfers[1][-1])
     assert snapshot.actual[4] == pytest.approx(360.0)
     assert values(snapshot, ReadoutKind.POSITION)[4] == "0.000"
     assert make_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).position.x_label == "WORKPIECE"
 
 
-def test_lamps_tell_of_plane_and_table(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_lamps_show_tilted_plane_and_rotated_table(chamfers: tuple[MillScene, list[Block]]) -> None:
     tilted = {lamp.label: lamp.is_lit for lamp in make_lamps(snapshot_at(cut_of(chamfers[1], 1)))}
     assert (tilted["TILTED PLANE"], tilted["TABLE ROTATED"]) == (True, True)
     home = {lamp.label: lamp.is_lit for lamp in make_lamps(snapshot_at(chamfers[1][-1]))}
@@ -105,7 +105,7 @@ def test_lamps_tell_of_plane_and_table(chamfers: tuple[MillScene, list[Block]]) 
     assert "COLLET OPEN" not in home
 
 
-def test_where_no_table_turns_the_lamp_tells_of_the_head() -> None:
+def test_lamp_shows_rotated_head_on_machine_without_rotary_table() -> None:
     """By the machine file: before a program has run it told of a table."""
     fork, table = load_shipped_machine("fork-head-mill"), load_shipped_machine("ac-table-mill")
     kinematics = build_kinematics(fork)
@@ -124,7 +124,7 @@ def test_where_no_table_turns_the_lamp_tells_of_the_head() -> None:
     ("fork-head-mill", "HEAD AND PLANE"), ("ac-table-mill", "TABLE AND PLANE"),
     ("head-table-mill", "HEAD, TABLE AND PLANE"),
 ])  # fmt: skip
-def test_the_view_is_called_by_what_turns(machine: str, title: str) -> None:
+def test_view_title_names_rotary_part(machine: str, title: str) -> None:
     kinematics = build_kinematics(load_shipped_machine(machine))
     assert kinematics is not None
     assert make_view_title(kinematics) == title
@@ -133,7 +133,7 @@ def test_the_view_is_called_by_what_turns(machine: str, title: str) -> None:
 # --- the scene -------------------------------------------------------------------------------------------
 
 
-def test_cuts_are_kept_on_the_workpiece(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_finished_cuts_are_stored_on_workpiece(chamfers: tuple[MillScene, list[Block]]) -> None:
     scene, blocks = chamfers
     ends = scene.points[scene.move_styles == MoveStyle.CUT]
     assert len(ends) == 8
@@ -144,7 +144,7 @@ def test_cuts_are_kept_on_the_workpiece(chamfers: tuple[MillScene, list[Block]])
     assert scene.count_finished_points(number) - scene.count_finished_points(number - 1) == 1
 
 
-def test_the_plane_of_a_line(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_line_instant_has_plane_of_its_line(chamfers: tuple[MillScene, list[Block]]) -> None:
     scene, _ = chamfers
     first, *_ = sorted(scene.plane_lines)
     here = make_line_instant(scene, first)
@@ -159,7 +159,7 @@ def test_the_plane_of_a_line(chamfers: tuple[MillScene, list[Block]]) -> None:
     assert describe_plane(None) == ""
 
 
-def test_a_plane_that_stays_shows_the_table_where_it_is_meant() -> None:
+def test_plane_with_stay_shows_table_at_target_angles() -> None:
     ran = run("PLANE AXIAL A+30 C+20 STAY")
     scene = build_picture(((block, 0.0, 1.0) for block in ran.blocks), lambda _count: None).scene
     assert scene is not None
@@ -181,9 +181,7 @@ def drawn(scene: MillScene, instant: SceneInstant, aspect: str = "3-D") -> tuple
 
 
 @pytest.mark.parametrize("chamfer", [1, 2, 3, 4])
-def test_z_of_the_plane_stands_upright_in_the_machine(
-    chamfers: tuple[MillScene, list[Block]], chamfer: int
-) -> None:
+def test_plane_z_is_vertical_in_machine_view(chamfers: tuple[MillScene, list[Block]], chamfer: int) -> None:
     """Seen from the front and from the right alike: the table has turned the plane towards the tool."""
     scene, blocks = chamfers
     instant = make_run_instant(scene, snapshot_at(cut_of(blocks, chamfer)))
@@ -196,9 +194,7 @@ def test_z_of_the_plane_stands_upright_in_the_machine(
 
 
 @pytest.mark.parametrize("aspect", [each.name for each in VIEW_ASPECTS])
-def test_the_tool_stands_at_the_end_of_what_is_done(
-    chamfers: tuple[MillScene, list[Block]], aspect: str
-) -> None:
+def test_tool_is_drawn_at_end_of_finished_path(chamfers: tuple[MillScene, list[Block]], aspect: str) -> None:
     scene, blocks = chamfers
     cut = cut_of(blocks, 2)
     assert cut.swivel is not None
@@ -212,7 +208,7 @@ def test_the_tool_stands_at_the_end_of_what_is_done(
     assert (tip <= high).all()
 
 
-def test_the_table_turns_under_the_eye(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_table_rotation_changes_its_drawing(chamfers: tuple[MillScene, list[Block]]) -> None:
     """From the front at A0 the disc is seen edge on; tilted to the rear it has a height, from above."""
     scene, blocks = chamfers
     level, _ = drawn(scene, SceneInstant(dict.fromkeys(NAMES, 0.0), None), "FRONT")
@@ -225,7 +221,7 @@ def test_the_table_turns_under_the_eye(chamfers: tuple[MillScene, list[Block]]) 
     assert heights[1] > 100.0
 
 
-def test_everything_that_stands_on_the_table_is_in_the_picture(
+def test_everything_on_table_is_in_view(
     chamfers: tuple[MillScene, list[Block]],
 ) -> None:
     scene, blocks = chamfers
@@ -237,7 +233,7 @@ def test_everything_that_stands_on_the_table_is_in_the_picture(
                 assert (face.points <= (WIDE + 20.0, HIGH + 20.0)).all()
 
 
-def test_a_small_blank_at_the_far_rim_stands_on_the_table() -> None:
+def test_small_blank_at_edge_is_drawn_on_top_of_table() -> None:
     """Its own middle lies behind the middle of the table, and is drawn upon it all the same."""
     small = (
         "BEGIN PGM S MM\nBLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+40 Y+40 Z+0\n"
@@ -249,7 +245,7 @@ def test_a_small_blank_at_the_far_rim_stands_on_the_table() -> None:
     assert {"blank", "blank-top"} <= set(roles[1:])
 
 
-def test_a_head_that_leans_leaves_the_workpiece_where_it_is(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_tilted_head_does_not_move_workpiece_in_view(chamfers: tuple[MillScene, list[Block]]) -> None:
     head = load_shipped_machine("head-table-mill")
     chain = build_kinematics(head)
     assert chain is not None
@@ -272,7 +268,7 @@ def test_a_head_that_leans_leaves_the_workpiece_where_it_is(chamfers: tuple[Mill
     assert lines[0] == lines[1]  # C, the line of the table
 
 
-def test_looking_around(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_camera_can_be_rotated_moved_and_zoomed(chamfers: tuple[MillScene, list[Block]]) -> None:
     camera = make_camera(chamfers[0])
     names = [camera.view_aspect.name]
     for _ in range(3):
@@ -286,14 +282,14 @@ def test_looking_around(chamfers: tuple[MillScene, list[Block]]) -> None:
     assert camera.with_zoom(1000).zoom_factor == 40.0
 
 
-def test_the_top_view_shows_the_machine_as_it_stands() -> None:
+def test_top_view_shows_machine_directions() -> None:
     camera = Camera((0.0, 0.0, 0.0), 100.0, [each.name for each in VIEW_ASPECTS].index("TOP"))
     right, back = camera.project_points(np.array([(50.0, 0.0, 0.0), (0.0, 50.0, 7.0)]), 200.0, 200.0)
     assert right[:2] == pytest.approx((150.0, 100.0))
     assert back[:2] == pytest.approx((100.0, 50.0))  # Y away from the operator is up
 
 
-def test_a_long_path_is_thinned_out() -> None:
+def test_long_path_is_drawn_with_fewer_points() -> None:
     scene, _ = scene_of(AXIAL)
     many = np.tile(scene.points, (3000, 1))
     long = dataclasses.replace(
@@ -308,7 +304,7 @@ def test_a_long_path_is_thinned_out() -> None:
 
 
 @pytest.mark.parametrize(("feed", "shown"), [("F1200", ("1200.0", "°/min")), ("FMAX", ("RAPID", ""))])
-def test_the_feed_of_a_swivel_is_degrees(feed: str, shown: tuple[str, str]) -> None:
+def test_swivel_feed_is_shown_in_degrees(feed: str, shown: tuple[str, str]) -> None:
     (block,) = run(f"PLANE AXIAL A+30 TURN {feed}").planes
     snapshot = snapshot_at(
         block, feed=block.feed, rapid=block.rapid, turns=block.has_angular_feed and not block.rapid
@@ -317,7 +313,7 @@ def test_the_feed_of_a_swivel_is_degrees(feed: str, shown: tuple[str, str]) -> N
     assert (made.programmed_value, made.programmed_unit) == shown
 
 
-def test_a_mills_program_draws_nothing_on_a_lathes_picture(chamfers: tuple[MillScene, list[Block]]) -> None:
+def test_mill_program_draws_nothing_in_lathe_picture(chamfers: tuple[MillScene, list[Block]]) -> None:
     picture = build_picture(
         ((block, 0.0, float(n)) for n, block in enumerate(chamfers[1])), lambda _count: None
     )

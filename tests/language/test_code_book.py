@@ -30,7 +30,7 @@ OMNITURN, KLARTEXT, SINUMERIK = Dialect.OMNITURN, Dialect.KLARTEXT, Dialect.SINU
         (OMNITURN, "G4F2", 2, "G04"),
     ],
 )
-def test_the_code_at_the_cursor(dialect: Dialect, line: str, column: int, head: str) -> None:
+def test_code_at_cursor_is_found(dialect: Dialect, line: str, column: int, head: str) -> None:
     found = get_code_book(dialect).at(line, column)
     assert found is not None
     assert found.head == head
@@ -46,7 +46,7 @@ def test_the_code_at_the_cursor(dialect: Dialect, line: str, column: int, head: 
         (SINUMERIK, "PART:", 2),
     ],
 )
-def test_no_code_stands_there(dialect: Dialect, line: str, column: int) -> None:
+def test_no_code_is_found_at_other_positions(dialect: Dialect, line: str, column: int) -> None:
     assert get_code_book(dialect).at(line, column) is None
 
 
@@ -66,7 +66,7 @@ def test_no_code_stands_there(dialect: Dialect, line: str, column: int) -> None:
         (SINUMERIK, "IF R1==2 GOTO", 10, ["GOTOF", "GOTOB", "GOTO", "GOTOS"]),
     ],
 )
-def test_typing_is_completed_by_what_it_may_become(
+def test_typed_text_is_completed_with_matching_codes(
     dialect: Dialect, typed: str, column: int, heads: list[str]
 ) -> None:
     begin, found = get_code_book(dialect).find_completions(typed, len(typed) + 1)
@@ -74,7 +74,7 @@ def test_typing_is_completed_by_what_it_may_become(
 
 
 @pytest.mark.parametrize("typed", ["", "L X+10 ", "XYZ", "; M1"])
-def test_nothing_completes_a_blank_a_comment_or_what_begins_no_code(typed: str) -> None:
+def test_blank_comment_or_unknown_start_has_no_completion(typed: str) -> None:
     assert get_code_book(KLARTEXT).find_completions(typed, len(typed) + 1)[1] == ()
 
 
@@ -95,17 +95,17 @@ def _words(dialect: Dialect, head: str) -> dict[str, str]:
         (KLARTEXT, "CYCL DEF 200", "Q201", "depth, measured from the surface"),
     ],
 )
-def test_the_words_of_a_code(dialect: Dialect, head: str, word: str, means: str) -> None:
+def test_code_words_have_meanings(dialect: Dialect, head: str, word: str, means: str) -> None:
     assert _words(dialect, head)[word] == means
 
 
-def test_the_words_of_a_code_come_as_it_has_them() -> None:
+def test_code_words_are_listed_in_order_of_code() -> None:
     assert list(_words(OMNITURN, "G33")) == ["X", "Z", "I", "K", "A", "C", "P", "O"]
     assert _words(OMNITURN, "G90") == {}
 
 
 @pytest.mark.parametrize("dialect", list(Dialect))
-def test_no_meaning_is_told_of_a_word_that_no_code_has(dialect: Dialect) -> None:
+def test_every_word_meaning_belongs_to_a_code(dialect: Dialect) -> None:
     book = get_code_book(dialect)
     used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.list_words(entry)}
     bare = {each.rpartition(".")[2] for each in used}
@@ -119,7 +119,7 @@ def test_no_meaning_is_told_of_a_word_that_no_code_has(dialect: Dialect) -> None
 
 
 @pytest.mark.parametrize("head", CYCLE_PARAMETERS)
-def test_each_cycle_of_sinumerik_tells_its_parameters(head: str) -> None:
+def test_each_sinumerik_cycle_documents_its_parameters(head: str) -> None:
     """Those of the newer controls, which begin with _, apart."""
     assert {name for name in CYCLE_PARAMETERS[head] if not name.startswith("_")} == _words(
         SINUMERIK, head

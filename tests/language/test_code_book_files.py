@@ -38,7 +38,7 @@ def book(folder: Path, codes: str, **further: str) -> CodeBook:
     return read_book(folder)
 
 
-def test_an_entry_has_what_its_file_says(tmp_path: Path) -> None:
+def test_entry_has_values_of_its_file(tmp_path: Path) -> None:
     found = book(tmp_path, CODE)
     assert (found.head, found.tail, found.comment_sign) == ("BEGIN\n", "END\n", ";")
     (entry,) = found.entries
@@ -46,7 +46,7 @@ def test_an_entry_has_what_its_file_says(tmp_path: Path) -> None:
     assert (entry.refused, entry.why, entry.written, entry.whole) == ("G1 F-1", "F", "G1", False)
 
 
-def test_a_text_is_put_together_from_parts_and_from_other_texts(tmp_path: Path) -> None:
+def test_entry_text_is_composed_of_parts_and_other_texts(tmp_path: Path) -> None:
     codes = """
     [parts]
     start = "T1"
@@ -71,7 +71,7 @@ line.
     assert (entry.behind, entry.written, entry.files) == ("T1\n", "G1 X2", (("A.H", "G1 X2\n"),))
 
 
-def test_heads_share_an_entry_and_the_usual_texts(tmp_path: Path) -> None:
+def test_heads_share_entry_and_default_texts(tmp_path: Path) -> None:
     codes = """
     [usual]
     example = "{head}"
@@ -139,7 +139,7 @@ def test_each_file_is_part_of_a_book_and_of_the_package(path: Path) -> None:
     assert any(path.relative_to(CODE_BOOKS_FOLDER.parent).match(pattern) for pattern in patterns)
 
 
-def test_no_book_is_read_before_it_is_needed() -> None:
+def test_code_books_are_not_loaded_before_use() -> None:
     script = "import sys, app.cli.main, core.interpreter.dialects; print(*sys.modules)"
     loaded = subprocess.run(
         [sys.executable, "-c", script], cwd=HOUSE, capture_output=True, text=True, check=True

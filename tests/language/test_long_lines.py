@@ -21,7 +21,7 @@ def split(text: str) -> list[str]:
 
 
 @given(TEXT, st.slices(8), st.integers(-9, 9))
-def test_lines_are_those_of_the_text(text: str, at: slice, one: int) -> None:
+def test_lazy_lines_match_lines_of_text(text: str, at: slice, one: int) -> None:
     lines, known = LazyLines(text), split(text)
     assert (len(lines), list(lines), list(lines[at])) == (len(known), known, known[at])
     if -len(known) <= one < len(known):
@@ -38,14 +38,12 @@ def test_lines_are_those_of_the_text(text: str, at: slice, one: int) -> None:
     ("text", "kept"),
     [("X1\nZ2\n", False), ("X1\r\nZ2\r\n", True), ("(\N{DEGREE SIGN})\nZ2\n", True), ("X", True)],
 )
-def test_only_a_long_ascii_text_keeps_no_lines(
-    text: str, kept: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_long_ascii_text_is_split_lazily(text: str, kept: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_LONG", 2)
     source = ProgramSource("A", text)
     assert isinstance(source.lines, tuple) is kept
     assert [*source.lines] == text.replace("\r", "").removesuffix("\n").split("\n")
 
 
-def test_a_usual_program_keeps_its_lines() -> None:
+def test_short_program_stores_its_lines() -> None:
     assert ProgramSource("A", "X1\nZ2\n").lines == ("X1", "Z2")

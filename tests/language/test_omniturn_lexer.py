@@ -40,11 +40,11 @@ def words(text: str) -> list[tuple[str, float | None, int]]:
         ("", []),
     ],
 )  # fmt: skip
-def test_words(text: str, expected: list[tuple[str, float | None, int]]) -> None:
+def test_lexer_splits_line_into_words(text: str, expected: list[tuple[str, float | None, int]]) -> None:
     assert words(text) == expected
 
 
-def test_words_keep_what_was_written() -> None:
+def test_words_retain_their_original_text() -> None:
     assert lex_line(1, "x -.50 F.003").words == (Word("X", -0.5, 1, "x-.50"), Word("F", 0.003, 8, "F.003"))
 
 
@@ -59,16 +59,16 @@ def test_words_keep_what_was_written() -> None:
         ("X 1 ( X 2 )", " X 2 ", 5, "X1"),
     ],
 )
-def test_comments_survive_untouched(text: str, comment: str, column: int, code: str) -> None:
+def test_comments_are_preserved(text: str, comment: str, column: int, code: str) -> None:
     line = lex_line(1, text)
     assert (line.comment, line.comment_column, line.text, line.errors) == (comment, column, code, ())
 
 
-def test_no_parenthesis_no_comment() -> None:
+def test_line_without_parenthesis_has_no_comment() -> None:
     assert lex_line(1, "X1").comment is None
 
 
-def test_block_delete() -> None:
+def test_slash_sets_block_delete() -> None:
     line = lex_line(3, " /G00X1")
     assert line.has_block_delete
     assert [word.column for word in line.words] == [3, 6]
@@ -149,7 +149,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("text", "column", "code"), REFUSED, ids=[text[:20] for text, _, _ in REFUSED])
-def test_refusals(text: str, column: int, code: str) -> None:
+def test_invalid_line_gives_error_with_message_and_hint(text: str, column: int, code: str) -> None:
     errors = lex_line(7, text).errors
     assert (errors[0].line, errors[0].column, errors[0].code) == (7, column, code)
     assert errors[0].severity == "error"
@@ -157,11 +157,11 @@ def test_refusals(text: str, column: int, code: str) -> None:
     assert errors[0].hint
 
 
-def test_every_refusal_has_its_own_code() -> None:
+def test_lexer_errors_have_at_least_20_codes() -> None:
     assert len({code for _, _, code in REFUSED}) >= 20
 
 
-def test_all_faults_of_a_line_are_told() -> None:
+def test_all_errors_of_line_are_reported() -> None:
     assert [(e.column, e.code) for e in lex_line(1, "N1GO2X1.2.3").errors] == [
         (1, "n-word"),
         (4, "letter-o"),
@@ -169,11 +169,11 @@ def test_all_faults_of_a_line_are_told() -> None:
     ]
 
 
-def test_the_hint_for_one_digit_says_the_two() -> None:
+def test_hint_for_one_digit_g_code_names_two_digits() -> None:
     assert lex_line(1, "G2").errors[0].hint == "Write G02."
 
 
-def test_a_line_without_end_is_refused_at_once() -> None:
+def test_overlong_line_is_rejected_without_lexing() -> None:
     line = lex_line(1, "X1" * 500_000)
     assert [error.code for error in line.errors] == ["line-too-long"]
     assert line.words == ()

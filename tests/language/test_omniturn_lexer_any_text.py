@@ -12,7 +12,7 @@ LIKELY = st.text(alphabet="XZGMFSTDIKRCLPON}0123456789.+-()/, eEo", max_size=60)
 
 @settings(max_examples=300, deadline=None)
 @given(st.text(max_size=80) | LIKELY)
-def test_every_line_has_an_answer(text: str) -> None:
+def test_any_line_gives_words_or_valid_errors(text: str) -> None:
     line = lex_line(4, text)
     for word in line.words:
         assert 1 <= word.column <= len(text)
@@ -26,7 +26,7 @@ def test_every_line_has_an_answer(text: str) -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from("XZIKR"), st.decimals(-9999, 9999, places=4)), max_size=6))
-def test_numbers_come_back_as_written(pairs: list[tuple[str, object]]) -> None:
+def test_numbers_are_read_as_written(pairs: list[tuple[str, object]]) -> None:
     text = "".join(f"{letter}{number}" for letter, number in pairs)
     line = lex_line(1, text)
     assert line.errors == ()
@@ -35,7 +35,7 @@ def test_numbers_come_back_as_written(pairs: list[tuple[str, object]]) -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(LIKELY)
-def test_blanks_change_columns_and_nothing_else(text: str) -> None:
+def test_blanks_change_only_columns(text: str) -> None:
     if "(" in text or ")" in text:
         return
     tight, loose = lex_line(1, text.replace(" ", "")), lex_line(1, " ".join(text))

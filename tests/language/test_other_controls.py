@@ -34,7 +34,7 @@ def errors(*lines: str, name: str = "A", machine: str | None = None) -> list[Dia
     ("PART1234", 1, "PART1234", []),
     ("Größe prüfen", 1, "Größe prüfen", []),
 ])  # fmt: skip
-def test_a_stretch_of_text_is_one_error(text: str, column: int, shown: str, words: list[str]) -> None:
+def test_text_outside_comment_is_one_error(text: str, column: int, shown: str, words: list[str]) -> None:
     line = lex_line(1, text)
     assert [(error.code, error.column) for error in line.errors] == [("text-outside", column)]
     assert line.errors[0].message == f"'{shown}' is text outside parentheses."
@@ -42,7 +42,7 @@ def test_a_stretch_of_text_is_one_error(text: str, column: int, shown: str, word
     assert [word.text for word in line.words] == words
 
 
-def test_two_stretches_are_two_errors() -> None:
+def test_two_separate_texts_are_two_errors() -> None:
     assert [error.column for error in lex_line(1, "TURN T1 ROUGH OD").errors] == [1, 9]
 
 
@@ -50,12 +50,12 @@ def test_two_stretches_are_two_errors() -> None:
     "G33X.2Z-.5I.01K.05PCO", "G33 X.2 Z-.5 I.01 K.05 P C O", "LS5", "LF", "RF", "CA90X.5", "G01 X1 Z.5 F.003",
     "X.5(THE TOOL IS HERE)", "x1z2f3", "G34Z-.5I.01K.05P",
 ])  # fmt: skip
-def test_what_is_code_is_no_text(text: str) -> None:
+def test_code_is_not_reported_as_text(text: str) -> None:
     assert lex_line(1, text).errors == ()
 
 
 @pytest.mark.parametrize("text", ["GO2X1", "MO5", "XO", "GOOX1", "XOZO"])
-def test_the_letter_for_the_figure_is_no_text(text: str) -> None:
+def test_letter_o_for_zero_is_not_reported_as_text(text: str) -> None:
     assert {error.code for error in lex_line(1, text).errors} == {"letter-o"}
 
 
@@ -83,26 +83,26 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
     ("M50", "m-disabled", "not enabled"), ("M10", "m-disabled", "not enabled"),
     ("G33X.3Z-.5I.01K.05C-1", "thread-angle", "0 to 30"),
 ])  # fmt: skip
-def test_a_habit_of_other_controls_says_what_it_is_here(line: str, code: str, says: str) -> None:
+def test_notation_of_other_control_is_explained(line: str, code: str, says: str) -> None:
     found = errors(*HEAD, "M03S500", line, "M30")
     assert [(each.line, each.code) for each in found] == [(5, code)]
     assert says in f"{found[0].message} {found[0].hint}"
     assert found[0].hint
 
 
-def test_each_loader_code_of_the_shipped_lathe_is_told_as_switched_off() -> None:
+def test_disabled_loader_codes_of_shipped_lathe_are_reported() -> None:
     machine = load_machine(None)
     assert machine.disabled_m_codes == {10, 11, 43, 47, 48, 50, 51, 52, 53, 59}
 
 
-def test_the_end_with_text_behind_it_is_no_missing_end() -> None:
+def test_program_end_with_trailing_text_is_not_missing() -> None:
     assert [each.code for each in errors(*HEAD, "M30 END")] == ["text-outside"]
 
 
 @pytest.mark.parametrize(
     ("behind", "weight"), [("(X.25Y0)", "error"), ("(END)", "warning"), ("X.4", "warning")]
 )
-def test_a_plane_without_its_sign_is_suspected(behind: str, weight: str) -> None:
+def test_plane_comment_without_its_sign_is_reported(behind: str, weight: str) -> None:
     machine = load_machine(None)
     text = "\n".join((*HEAD, "(PLXC)", "", behind, "(END)", "M30", ""))
     report = prove(
@@ -115,7 +115,7 @@ def test_a_plane_without_its_sign_is_suspected(behind: str, weight: str) -> None
 
 
 @pytest.mark.parametrize("comment", ["(PLXC IS NEXT)", "(THE PLZC)", "(plx)"])
-def test_other_comments_are_no_planes(comment: str) -> None:
+def test_other_comments_are_not_reported_as_planes(comment: str) -> None:
     assert errors(*HEAD, comment, "(X.25Y0)", "M30") == []
 
 
@@ -128,7 +128,7 @@ KLARTEXT = ("0 BEGIN PGM A MM", "1 TOOL CALL 1 Z S1000")
     ("2 PLANE AXIAL A+30 C+0 TURN MB MAX FMAX THE FRONT SLOPE", 41),
     ("2 PLANE RESET STAY (BACK TO ZERO)", 20),
 ])  # fmt: skip
-def test_klartext_text_without_its_sign_is_one_error(line: str, column: int) -> None:
+def test_klartext_comment_without_its_sign_is_one_error(line: str, column: int) -> None:
     (found,) = errors(*KLARTEXT, line, "3 END PGM A MM", name="a.h", machine="ac-table-mill")
     assert (found.line, found.column) == (3, column)
     assert found.hint.endswith(text("findings.comment-sign", hint="").strip())
@@ -137,13 +137,13 @@ def test_klartext_text_without_its_sign_is_one_error(line: str, column: int) -> 
 @pytest.mark.parametrize(("line", "column"), [
     ("N10 G0 X52 Z3 THIS IS TEXT WITHOUT ITS SIGN", 15), ("N10 M30 END OF PROGRAM", 9),
 ])  # fmt: skip
-def test_sinumerik_text_without_its_sign_is_one_error(line: str, column: int) -> None:
+def test_sinumerik_comment_without_its_sign_is_one_error(line: str, column: int) -> None:
     found = errors("N5 G90 G18", line, "N20 M30", name="a.mpf")
     assert [(each.line, each.column) for each in found] == [(2, column)]
     assert ";" in found[0].hint
 
 
-def test_a_typographic_minus_is_told_in_every_language() -> None:
+def test_typographic_minus_is_reported_in_every_language() -> None:
     (found,) = errors(
         *KLARTEXT, "2 L X\u22125 R0 FMAX", "3 END PGM A MM", name="a.h", machine="ac-table-mill"
     )
@@ -152,7 +152,7 @@ def test_a_typographic_minus_is_told_in_every_language() -> None:
     assert found.hint == "Type -."
 
 
-def test_a_feed_per_revolution_is_judged_per_revolution() -> None:
+def test_feed_per_revolution_is_checked_in_its_unit() -> None:
     (found,) = errors(*HEAD, "M03S3000", "G95F.15X.4", "M30")
     assert (found.code, found.message) == (
         "feed-over-speed",

@@ -30,7 +30,7 @@ def write(folder: Path, data: bytes) -> Path:
     ],
     ids=["unix", "dos", "mac", "no last end", "bom", "blank lines", "dos end of file", "form feed"],
 )
-def test_line_ends(tmp_path: Path, data: bytes, lines: tuple[str, ...]) -> None:
+def test_line_ends_of_all_systems_split_lines(tmp_path: Path, data: bytes, lines: tuple[str, ...]) -> None:
     assert load_source(write(tmp_path, data)).lines == lines
 
 
@@ -43,15 +43,15 @@ def test_line_ends(tmp_path: Path, data: bytes, lines: tuple[str, ...]) -> None:
     ],
     ids=["utf-8", "dos", "latin-1"],
 )
-def test_accents_survive(tmp_path: Path, data: bytes, comment: str) -> None:
+def test_accented_characters_are_preserved(tmp_path: Path, data: bytes, comment: str) -> None:
     assert load_source(write(tmp_path, data)).lines[0] == comment
 
 
-def test_a_line_separator_of_unicode_ends_no_line() -> None:
+def test_unicode_line_separator_does_not_end_a_line() -> None:
     assert ProgramSource("a", "G90(a\u2028b)\nM30\n").lines == ("G90(a\u2028b)", "M30")
 
 
-def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
+def test_program_name_is_file_name(tmp_path: Path) -> None:
     assert load_source(write(tmp_path, b"G90\n")).name == "PART"
 
 
@@ -78,7 +78,7 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
         "among others",
     ],
 )
-def test_what_is_no_program_is_refused(
+def test_file_that_is_not_a_program_is_rejected(
     tmp_path: Path, data: bytes, code: str, values: tuple[str, ...]
 ) -> None:
     with raises_code(SourceError, code, *values) as refused:
@@ -87,7 +87,7 @@ def test_what_is_no_program_is_refused(
 
 
 @pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"], ids=["newline", "both", "return"])
-def test_a_line_of_8192_characters_is_none_too_many(tmp_path: Path, end: bytes) -> None:
+def test_line_of_8192_characters_is_accepted(tmp_path: Path, end: bytes) -> None:
     lines = load_source(write(tmp_path, (b"X" * 8192 + end) * 3 + (b"G90" + end) * 5000)).lines
     assert [len(line) for line in lines] == [8192] * 3 + [3] * 5000
 

@@ -7,14 +7,14 @@ import pytest
 from core.message import Message, fill_template
 
 
-def test_floats_have_six_digits_at_most_and_other_values_stay() -> None:
+def test_floats_have_at_most_six_digits_and_other_values_are_unchanged() -> None:
     text = fill_template("{name} is {value} of {count}", {"name": "DP", "value": 1.0 / 3.0, "count": 1234567})
     assert isinstance(text, Message)
     assert text == "DP is 0.333333 of 1234567"
     assert text.values == {"name": "DP", "value": "0.333333", "count": 1234567}
 
 
-def test_a_message_keeps_its_own_values() -> None:
+def test_message_retains_its_own_values() -> None:
     made = Message("line {line}", line=3)
     assert fill_template(made, {"line": 4}) is made
 
@@ -23,6 +23,6 @@ def test_a_text_without_values_stays_as_it_is() -> None:
     assert fill_template("Write {name}.", {}) == "Write {name}."
 
 
-def test_a_text_without_one_of_its_values_is_refused() -> None:
+def test_missing_template_value_raises_key_error() -> None:
     with pytest.raises(KeyError):
         fill_template("{name} is {value}", {"name": "DP"})

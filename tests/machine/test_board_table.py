@@ -118,7 +118,7 @@ BOARDS = '"sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"'
         (PORT, 'phase_b = "parport.0.pin-15-in"', "", "board.spindle.phase_b", "missing"),
     ],
 )
-def test_what_the_file_says_of_its_board(name: str, old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_board_table_is_rejected(name: str, old: str, new: str, path: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(changed(name, (old, new)), "test.toml")
     found = [each for each in caught.value.findings if each.path == path]
@@ -182,7 +182,7 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
         ),
     ],
 )
-def test_pins_that_the_board_has_not(name: str, old: str, new: str, path: str, expected: str) -> None:
+def test_pins_missing_on_board_are_rejected(name: str, old: str, new: str, path: str, expected: str) -> None:
     (found,) = refused(changed(name, (old, new)))
     assert (found.path, expected in str(found)) == (path, True), found
 
@@ -199,7 +199,7 @@ def test_pins_that_the_board_has_not(name: str, old: str, new: str, path: str, e
         (SERVO, "[board.axis.Z]\nchannel = 1\n", "[board.axis]\nZ = 1\n[board.axis.Q]\n", "board.axis.Z"),
     ],
 )
-def test_a_value_that_is_none_is_told_once(name: str, old: str, new: str, path: str) -> None:
+def test_invalid_board_value_is_reported_once(name: str, old: str, new: str, path: str) -> None:
     """Nothing is made of it: no rate of steps, no scale and no second channel is missed behind it."""
     with pytest.raises(MachineFileError) as caught:
         parse_machine(changed(name, (old, new)), "test.toml")
@@ -208,7 +208,7 @@ def test_a_value_that_is_none_is_told_once(name: str, old: str, new: str, path: 
     )
 
 
-def test_a_board_without_hal_has_nobody_to_drive() -> None:
+def test_board_without_hal_table_is_rejected() -> None:
     text = resources.read_machine_file("gt75.toml") + '\n[board]\nkind = "sim"\n'
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
@@ -220,13 +220,13 @@ def test_a_board_without_hal_has_nobody_to_drive() -> None:
     ) in str(error)
 
 
-def test_a_pot_is_refused_where_the_board_has_none() -> None:
+def test_analog_input_missing_on_board_is_rejected() -> None:
     pot = '[io.analog]\nfeed_pot = { at = "hm2_7i76e.0.7i76.0.0.analogin0", range = [0, 1.5] }\n\n[m_codes]'
     (found,) = refused(changed(STEP, ("[m_codes]", pot)))
     assert found.path == "io.analog.feed_pot"
 
 
-def test_machines_without_a_board_or_without_hal() -> None:
+def test_hal_file_of_machine_without_board_or_hal_is_rejected() -> None:
     with raises_code(CommandError, "no-board", "[board]", '"sim", "parport"'):
         build_hal_file(parse_machine(changed("hal", ('[board]\nkind = "sim"', "")), "test.toml"))
     with raises_code(CommandError, "not-hal"):
@@ -243,13 +243,13 @@ def lines(text: str) -> list[str]:
     ]
 
 
-def test_reversed_turns_the_sign_of_the_scale() -> None:
+def test_reversed_axis_changes_sign_of_scale() -> None:
     assert "setp hm2_7i76e.0.stepgen.00.position-scale 393.7007874" in lines(changed(STEP))
     turned = lines(changed(STEP, ("reversed = false", "reversed = true")))
     assert "setp hm2_7i76e.0.stepgen.00.position-scale -393.7007874" in turned
 
 
-def test_position_mode_leaves_the_place_to_the_card() -> None:
+def test_position_mode_leaves_position_loop_to_card() -> None:
     found = lines(changed(STEP, ('mode = "velocity"', 'mode = "position"')))
     assert "setp hm2_7i76e.0.stepgen.00.control-type 0" in found
     assert "net x-pos-cmd hm2_7i76e.0.stepgen.00.position-cmd" in found
@@ -263,7 +263,7 @@ def test_one_switch_may_be_home_and_limit() -> None:
     assert wire.names == ("hal.axes.X.home", "hal.axes.X.limit_high")
 
 
-def test_all_enables_are_on_one_signal() -> None:
+def test_all_enable_pins_are_on_one_signal() -> None:
     relay = 'feedback = "x-pos-fb"\nenable = "hm2_7i76e.0.7i76.0.0.output-15"'
     found = lines(changed(STEP, ('feedback = "x-pos-fb"', relay)))
     (net,) = [line for line in found if line.startswith("net machine-on ")]
@@ -307,7 +307,7 @@ def without_spindle(name: str, *, encoder: bool) -> str:
     ],
 )
 @pytest.mark.parametrize("encoder", [True, False])
-def test_of_a_spindle_that_the_board_does_not_turn_its_encoder_is_left_or_nothing(
+def test_spindle_not_driven_by_board_has_only_its_encoder(
     name: str, turned: tuple[str, ...], read: tuple[str, ...], encoder: bool
 ) -> None:
     if name == BUS and encoder:
@@ -321,7 +321,7 @@ def test_of_a_spindle_that_the_board_does_not_turn_its_encoder_is_left_or_nothin
     assert [line for line in found if "pid.x" in line or "stepgen.0" in line or "cia402.x" in line]
 
 
-def test_an_inverter_on_its_own_line_leaves_the_analog_output_free() -> None:
+def test_inverter_on_serial_line_leaves_analog_output_unused() -> None:
     vfd = 'driver = "vfd"\nvfd = { family = "delta-vfdb", port = "/dev/ttyUSB1", baud = 9600, parity = "N",'
     vfd += " stop = 2, hz_per_rpm = 0.01667 }\n"
     found = lines(changed(STEP, ('driver = "hal" ', f"{vfd}# "), ('speed_abs = "spindle-rpm-abs"\n', ""),

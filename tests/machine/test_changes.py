@@ -15,12 +15,12 @@ from core.table_schema import MachineFileError
 SHIPPED = resources.read_machine_file("gt75.toml")
 
 
-def test_the_same_file_has_no_changes_whatever_its_comments_and_order() -> None:
+def test_comments_and_order_are_not_changes() -> None:
     assert compare_machine_files(SHIPPED, SHIPPED) == ()
     assert compare_machine_files("a = 1\nb = 2\n", "b = 2  # first now\na = 1.0\n") == ()
 
 
-def test_a_changed_key_is_told_by_its_path_with_both_values() -> None:
+def test_changed_key_is_listed_with_path_and_both_values() -> None:
     new = SHIPPED.replace("vmax = 300", "vmax = 200", 1).replace('safe = "keep"', "safe = false")
     assert [tuple(change) for change in compare_machine_files(SHIPPED, new)] == [
         ("axis.X.vmax", "300", "200"),
@@ -28,7 +28,7 @@ def test_a_changed_key_is_told_by_its_path_with_both_values() -> None:
     ]
 
 
-def test_keys_that_come_and_go() -> None:
+def test_added_and_removed_keys_are_listed() -> None:
     assert [
         tuple(c) for c in compare_machine_files("[a]\nx = 1\ny = [1, 2]\n", "[a]\nx = 1\n[b]\nz = true\n")
     ] == [
@@ -37,18 +37,18 @@ def test_keys_that_come_and_go() -> None:
     ]
 
 
-def test_true_is_not_one() -> None:
+def test_true_and_one_are_different_values() -> None:
     assert [str(change) for change in compare_machine_files("a = 1\n", "a = true\n")] == ["a: 1 → true"]
 
 
-def test_an_empty_table_that_gets_keys_is_told() -> None:
+def test_keys_added_to_empty_table_are_listed() -> None:
     assert [tuple(c) for c in compare_machine_files("[sim]\n", "[sim]\nseed = 3\n")] == [
         ("sim.seed", MISSING_VALUE, "3"),
         ("sim", "{}", MISSING_VALUE),
     ]
 
 
-def test_what_is_no_toml_raises() -> None:
+def test_invalid_toml_raises_error() -> None:
     with pytest.raises(tomllib.TOMLDecodeError):
         compare_machine_files("a = \n", "a = 1\n")
 
@@ -64,7 +64,7 @@ def test_what_is_no_toml_raises() -> None:
         ("status_page", "desks", '"http://a/?token=secret"'),
     ],
 )
-def test_passwords_and_tokens_are_in_no_list_of_changes(table: str, key: str, value: str) -> None:
+def test_passwords_and_tokens_are_masked_in_changes(table: str, key: str, value: str) -> None:
     (change,) = compare_machine_files("", f"[{table}]\n{key} = {value}\n")
     assert change == (f"{table}.{key}", MISSING_VALUE, SECRET_MASK)
 
@@ -80,7 +80,7 @@ def test_passwords_and_tokens_are_in_no_list_of_changes(table: str, key: str, va
         '[status_page]\nagents = ["http://a?token=1234"]',
     ],
 )
-def test_nor_in_what_is_wrong_with_a_file(lines: str) -> None:
+def test_passwords_and_tokens_are_not_in_findings(lines: str) -> None:
     with pytest.raises(MachineFileError) as told:
         parse_machine(f"{SHIPPED}{lines}\n", "m.toml")
     assert "1234" not in str(told.value)

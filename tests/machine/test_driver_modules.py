@@ -22,7 +22,7 @@ TEXT = resources.read_machine_file("gt75.toml")
 
 
 @pytest.mark.parametrize("module", list_driver_modules(), ids=lambda each: each.tables[0])
-def test_a_module_is_listed_with_the_names_that_its_driver_has(module: DriverModule) -> None:
+def test_module_lists_names_of_its_driver(module: DriverModule) -> None:
     driver = module.load_driver()
     assert module.tables == tuple(table.path for table in driver.tables)
     assert (module.backend_name, module.spindle) == (driver.backend_name, driver.spindle)
@@ -40,9 +40,7 @@ def test_a_module_is_listed_with_the_names_that_its_driver_has(module: DriverMod
         ("machine = 1\nspindle = [2]", ["sim"]),
     ],
 )
-def test_a_file_loads_only_the_drivers_that_its_tables_or_names_need(
-    text: str, first_tables: list[str]
-) -> None:
+def test_machine_file_loads_only_drivers_it_needs(text: str, first_tables: list[str]) -> None:
     assert [each.tables[0].path for each in load_used_drivers(parse_toml(text))] == first_tables
 
 
@@ -63,9 +61,7 @@ def test_a_shipped_file_gives_the_same_machine_with_all_drivers(name: str) -> No
         ("[collet]", "[grblhall]\n[collet]", "did you mean grblhal?"),
     ],
 )
-def test_the_findings_name_what_the_drivers_that_are_not_used_would_allow(
-    old: str, new: str, known: str
-) -> None:
+def test_findings_list_values_of_drivers_that_are_not_loaded(old: str, new: str, known: str) -> None:
     assert old in TEXT
     with pytest.raises(MachineFileError, match=re.escape(known)):
         parse_machine(TEXT.replace(old, new), "own.toml")

@@ -25,7 +25,7 @@ def with_encoder(*changes: tuple[str, str]) -> str:
     return text
 
 
-def test_an_encoder_that_is_a_node() -> None:
+def test_spindle_encoder_may_be_its_own_node() -> None:
     hardware = parse_machine(with_encoder(), "can").hardware
     assert hardware.find_driver_table(EncoderTable) == EncoderTable(node="turns", counts_per_rev=4096)
     inverter = hardware.find_driver_table(InverterTable)
@@ -33,7 +33,7 @@ def test_an_encoder_that_is_a_node() -> None:
     assert inverter.disagree == pytest.approx(0.15)
 
 
-def test_an_encoder_at_a_drive() -> None:
+def test_spindle_encoder_may_be_connected_to_a_drive() -> None:
     text = with_encoder(
         ('node = "turns", counts_per_rev = 4096', 'node = "Z", object = "60E4:1", counts_per_rev = -2000'),
         ("turns = { id = 20, profile = 406 }\n", ""),
@@ -59,18 +59,18 @@ def test_an_encoder_at_a_drive() -> None:
         ("hz_per_rpm = 0.01667", "hz_per_rpm = 0.01667, disagree_pct = 80", "spindle.vfd.disagree_pct", "50"),
     ],
 )
-def test_what_cannot_be(old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_encoder_is_rejected(old: str, new: str, path: str, expected: str) -> None:
     assert_refused(with_encoder((old, new)), path, expected)
 
 
-def test_a_drive_on_the_bus_has_its_own() -> None:
+def test_encoder_is_rejected_with_spindle_drive_on_bus() -> None:
     text = changed(
         'driver = "cia402"', 'driver = "cia402"\nencoder = { node = "turns", counts_per_rev = 99 }'
     )
     assert_refused(text, "spindle.encoder", 'spindle.driver must be "vfd"')
 
 
-def test_the_simulated_spindle_does_not_follow_an_inverter() -> None:
+def test_encoder_is_rejected_with_inverter_on_simulated_backend() -> None:
     text = resources.read_machine_file("gt75-vfd.toml").replace(
         "encoder_ppr = 0", 'encoder_ppr = 0\nencoder = { node = "turns", counts_per_rev = 4096 }'
     )

@@ -24,7 +24,7 @@ BENCHES = ("gt75-bench", "gt75-hal")  # without hardware, and so without palm bu
 
 
 @pytest.mark.parametrize("name", STOPPED)
-def test_the_shipped_lathe_and_the_boards_stop_at_the_guard_and_start_with_two_hands(name: str) -> None:
+def test_shipped_lathes_stop_at_guard_and_need_two_hand_start(name: str) -> None:
     machine = parse_machine(resources.read_machine_file(f"{name}.toml"), f"{name}.toml")
     assert machine.interlocks.guard_stops
     assert machine.interlocks.two_hand_start
@@ -32,23 +32,23 @@ def test_the_shipped_lathe_and_the_boards_stop_at_the_guard_and_start_with_two_h
 
 
 @pytest.mark.parametrize("name", BENCHES)
-def test_a_bench_stops_at_the_guard_with_start_and_hold_wired(name: str) -> None:
+def test_bench_machines_stop_at_guard_with_start_and_hold_inputs(name: str) -> None:
     machine = parse_machine(resources.read_machine_file(f"{name}.toml"), f"{name}.toml")
     assert machine.interlocks.guard_stops
     assert {"guard", "start", "hold"} <= set(machine.inputs)
 
 
-def test_left_out_it_is_shown_and_stops_nothing() -> None:
+def test_guard_does_not_stop_machine_without_guard_stops() -> None:
     assert not parse_machine(changed(LINE, ""), "can").interlocks.guard_stops
 
 
-def test_without_its_switch_it_is_refused() -> None:
+def test_guard_stops_without_guard_input_is_rejected() -> None:
     text = changed(LINE, LINE).replace("\nguard ", "\nlid ")
     assert "\nlid " in text
     assert_refused(text, "interlocks.guard_stops", wording("machine.needs-guard"))
 
 
-def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> None:
+def test_parallel_port_machine_rejects_guard_stops() -> None:
     text = resources.read_machine_file("gt75-parport.toml")
     machine = parse_machine(text, "gt75-parport.toml")
     assert not machine.interlocks.guard_stops
@@ -61,7 +61,7 @@ def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> No
     )
 
 
-def test_a_guard_at_an_input_that_grblhal_reads_at_rest_only_stops_nothing_and_is_refused() -> None:
+def test_grblhal_guard_must_be_at_realtime_input() -> None:
     text = resources.read_machine_file("gt75-grblhal.toml")
     assert 'guard = { at = "pn.D", active = "low" }' in text
     assert_refused(text.replace('"pn.D", active = "low"', '"in.1"'), "io.in.guard.at", "pn.D")

@@ -31,7 +31,7 @@ def only_finding(text: str) -> FileFinding:
     return found
 
 
-def test_shipped_table_in_model_units() -> None:
+def test_shipped_hal_table_is_read_in_model_units() -> None:
     machine = parse_machine(HAL, "hal")
     table = machine.hardware.find_driver_table(HalTable)
     assert table is not None
@@ -57,7 +57,7 @@ def test_shipped_table_in_model_units() -> None:
         ('file = "gt75-hal.hal"', "", "hal.file", "missing"),
     ],
 )
-def test_each_refusal_names_its_key(old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_hal_value_is_rejected_at_its_key(old: str, new: str, path: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(changed((old, new)), "test.toml")
     found = [each for each in caught.value.findings if each.path == path]
@@ -98,7 +98,7 @@ HOMED = "absolute = false\nhome = {{ method = {}, speed = 60, order = 1 }}"
         (3, 'home = "a"', "hal.axes.X.index_enable", "required by axis.X.home.method = 3"),
     ],
 )
-def test_homing_needs_its_pins(method: int, pins: str, path: str, expected: str) -> None:
+def test_homing_without_its_pins_is_rejected(method: int, pins: str, path: str, expected: str) -> None:
     text = changed(("absolute = true", HOMED.format(method)), ('"x-motor.sel"', f'"x-motor.sel"\n{pins}'))
     found = only_finding(text)
     assert (found.path, expected in str(found)) == (path, True), found
@@ -114,7 +114,7 @@ def on_one_switch(method: int, offset: float) -> str:
     ("method", "offset", "side"),
     [(19, 0.0, "below"), (19, 0.1, "below"), (21, 0.0, "above"), (21, -0.1, "above")],
 )
-def test_axes_with_one_home_switch_leave_it_at_home(method: int, offset: float, side: str) -> None:
+def test_axes_sharing_home_switch_must_move_off_it(method: int, offset: float, side: str) -> None:
     """An axis that rests on the switch would hide the switch of the other axis."""
     with pytest.raises(MachineFileError) as caught:
         parse_machine(on_one_switch(method, offset), "test.toml")
@@ -124,13 +124,13 @@ def test_axes_with_one_home_switch_leave_it_at_home(method: int, offset: float, 
 
 
 @pytest.mark.parametrize(("method", "offset"), [(19, -0.1), (21, 0.1)])
-def test_axes_may_share_a_home_switch_that_they_leave(method: int, offset: float) -> None:
+def test_axes_may_share_home_switch_they_move_off(method: int, offset: float) -> None:
     table = parse_machine(on_one_switch(method, offset), "test.toml").hardware.find_driver_table(HalTable)
     assert table is not None
     assert table.axes["X"].home == table.axes["Z"].home
 
 
-def test_an_inverter_beside_hal_needs_no_pin_that_turns_the_spindle() -> None:
+def test_inverter_with_hal_needs_no_spindle_pin() -> None:
     vfd = (
         'vfd = { family = "delta-vfdb", port = "/dev/ttyUSB1", baud = 9600, parity = "N", stop = 2,'
         " hz_per_rpm = 0.01667 }"

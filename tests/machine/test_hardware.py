@@ -40,7 +40,7 @@ def assert_refused(text: str, path: str, expected: str) -> None:
     assert expected in str(found[0])
 
 
-def test_shipped_bus_in_model_units() -> None:
+def test_shipped_bus_table_is_read_in_model_units() -> None:
     machine = parse_machine(CAN, "can")
     bus = machine.hardware.find_driver_table(CanopenTable)
     assert bus is not None
@@ -76,11 +76,11 @@ def test_shipped_bus_in_model_units() -> None:
         "gt75-ethercat.toml",
     ],
 )
-def test_every_shipped_file_is_good(name: str) -> None:
+def test_every_shipped_file_is_valid(name: str) -> None:
     assert parse_machine(resources.read_machine_file(name), name).source == name
 
 
-def test_other_lines() -> None:
+def test_serial_and_grbl_tables_are_read() -> None:
     machine = parse_machine(resources.read_machine_file("gt75-vfd.toml"), "vfd")
     vfd, dnc = (
         machine.hardware.find_driver_table(InverterTable),
@@ -102,7 +102,7 @@ def test_other_lines() -> None:
     assert (grbl.x_mode, grbl.settings) == ("G8", {13: 0, 32: 2})
 
 
-def test_faults_of_the_simulation() -> None:
+def test_simulated_faults_are_read() -> None:
     faults = 'faults = [{ at = 12.0, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]'
     machine = parse_machine(changed("[sim]\n", f"[sim]\nrealtime = true\n{faults}\n", SHIPPED), "t")
     sim, shipped = (
@@ -115,7 +115,7 @@ def test_faults_of_the_simulation() -> None:
     assert shipped == SimulatedTable()
 
 
-def test_addresses_of_terminals() -> None:
+def test_terminal_addresses_are_parsed() -> None:
     assert parse_terminal("401.6200.1.3") == CanTerminal("401", 0x6200, 1, 3)
     assert parse_terminal("X.60FD.0.16") == CanTerminal("X", 0x60FD, 0, 16)
     assert parse_terminal("401.6401.2") == CanTerminal("401", 0x6401, 2, -1)
@@ -222,7 +222,7 @@ def test_addresses_of_terminals() -> None:
         ("method = 1,", "method = 99,", "axis.X.home.method", "-128…37"),
     ],
 )
-def test_refused(old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_bus_value_is_rejected(old: str, new: str, path: str, expected: str) -> None:
     assert_refused(changed(old, new), path, expected)
 
 
@@ -303,7 +303,7 @@ def test_refused(old: str, new: str, path: str, expected: str) -> None:
         ("[sim]\n", '[dnc]\nport = "p"\nbits = 6\n[sim]\n', "dnc.bits", "7…8"),
     ],
 )
-def test_refused_on_the_simulated_lathe(old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_value_is_rejected_on_simulated_lathe(old: str, new: str, path: str, expected: str) -> None:
     assert_refused(changed(old, new, SHIPPED), path, expected)
 
 
@@ -312,6 +312,6 @@ def test_a_bus_without_io_names_every_signal() -> None:
     assert len(found) == len(re.findall(r'^[^#\n]*at = "401', CAN, re.MULTILINE))
 
 
-def test_a_serial_port_has_one_owner() -> None:
+def test_serial_port_used_twice_is_rejected() -> None:
     text = resources.read_machine_file("gt75-vfd.toml").replace('"/dev/ttyUSB1"', '"/dev/ttyUSB0"')
     assert_refused(text, "dnc.port", "spindle.vfd.port already uses")

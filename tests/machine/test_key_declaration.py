@@ -45,7 +45,7 @@ def found(table: object) -> list[tuple[str, str]]:
     return [(each.path, each.code) for each in read_table(table, Line, "line", FileValues(True))]
 
 
-def test_the_annotation_is_the_kind() -> None:
+def test_annotation_sets_kind_of_key() -> None:
     kinds = [(each.key, each.kind) for each in get_declared_keys(Line)]
     assert kinds == [
         ("port", ValueKind.TEXT),
@@ -72,7 +72,7 @@ def test_defaults_are_those_of_the_file() -> None:
     assert Line("tty0") == Line("tty0", 0.2, "N", (0.0, 1.0), "")
 
 
-def test_every_mistake_is_found_at_once() -> None:
+def test_all_mistakes_are_reported_together() -> None:
     wrong = {"prot": "tty0", "reply_ms": 5000, "parity": "O", "range": [2, 1], "words": ["a b"]}
     assert found(wrong) == [
         ("line.prot", "unknown-key"),
@@ -85,18 +85,18 @@ def test_every_mistake_is_found_at_once() -> None:
     assert found("tty0") == [("line", "not-a-table")]
 
 
-def test_the_name_of_the_attribute_is_no_key() -> None:
+def test_attribute_name_is_not_a_key() -> None:
     assert ("line.reply", "unknown-key") in found({"port": "tty0", "reply": 5})
 
 
-def test_a_secret_is_not_printed_and_a_value_not_changed() -> None:
+def test_secret_is_not_printed_and_object_is_frozen() -> None:
     line = Line("tty0", words="token")
     assert "token" not in repr(line)
     with pytest.raises(dataclasses.FrozenInstanceError):
         line.port = "tty1"  # type: ignore[misc]
 
 
-def test_an_annotation_that_is_no_kind_is_refused() -> None:
+def test_annotation_of_unknown_kind_raises_key_error() -> None:
     class Wrong:
         file: Path = declare_key(meaning="File.")
 
@@ -104,6 +104,6 @@ def test_an_annotation_that_is_no_kind_is_refused() -> None:
         get_declared_keys(Wrong)
 
 
-def test_a_required_value_is_refused_where_it_is_missing() -> None:
+def test_missing_required_value_raises_type_error() -> None:
     with pytest.raises(TypeError):
         Line()  # type: ignore[call-arg]

@@ -33,7 +33,7 @@ def only(text: str) -> FileFinding:
     return found[0]
 
 
-def test_shipped_lathe_in_model_units() -> None:
+def test_shipped_lathe_is_read_in_model_units() -> None:
     machine = load_machine(None)
     x, z, c = machine.axes
     assert (x.name, z.name, c.name) == ("X", "Z", "C")
@@ -47,7 +47,7 @@ def test_shipped_lathe_in_model_units() -> None:
     assert machine.limits.manual_rapid == 100 * 25.4 / 60
 
 
-def test_shipped_times_spindle_and_interlocks() -> None:
+def test_shipped_lathe_has_its_times_spindle_and_interlocks() -> None:
     machine = load_machine(None)
     timing, spindle = machine.timing, machine.spindle
     assert (timing.commit, timing.lookahead, timing.low_water, timing.lease) == (0.03, 1.0, 0.08, 0.2)
@@ -61,7 +61,7 @@ def test_shipped_times_spindle_and_interlocks() -> None:
     assert all(axis.is_position_absolute for axis in machine.axes)
 
 
-def test_shipped_signals() -> None:
+def test_shipped_io_signals_and_m_codes() -> None:
     machine = load_machine(None)
     assert machine.outputs["collet"].safe_state is None
     assert machine.outputs["coolant"].safe_state is False
@@ -72,7 +72,7 @@ def test_shipped_signals() -> None:
     assert 11 not in machine.m_codes  # the loader option is off until its owner enables it
 
 
-def test_metric_file_keeps_millimetres(tmp_path: Path) -> None:
+def test_metric_file_is_read_in_millimeters(tmp_path: Path) -> None:
     text = changed('units = "inch"', 'units = "mm"').replace("travel = [-4.0, 4.0]", "travel = [-100, 100]")
     text = text.replace("clearance = 1.25", "clearance = 30")
     path = tmp_path / "metric.toml"
@@ -87,7 +87,7 @@ def test_metric_file_keeps_millimetres(tmp_path: Path) -> None:
     assert machine.source == str(path)
 
 
-def test_enabled_loader_code_is_there() -> None:
+def test_enabled_loader_code_is_available() -> None:
     text = SHIPPED.replace("on = false, enabled = false", "on = false, enabled = true")
     text = text.replace('11 = { output = "loader_feed", on = true, enabled = false }', "")
     assert parse_machine(text, "t").m_codes[10] == ("loader_feed", False)
@@ -99,12 +99,12 @@ def test_unknown_key_names_the_nearest() -> None:
     assert "did you mean vmax?" in found.expected_value
 
 
-def test_a_file_without_its_unit_has_its_other_figures_held_to_their_bounds() -> None:
+def test_file_without_units_still_has_other_values_checked() -> None:
     text = "[spindle]\nrpm = [20, 3500]\naccel_rpm_s = 0\nat_speed_s = 0.3\ntimeout_s = 5\n"
     assert "spindle.accel_rpm_s = 0: expected a number, 10…50000 rpm/s" in map(str, findings(text))
 
 
-def test_unknown_table_says_which_are_known() -> None:
+def test_unknown_table_lists_known_tables() -> None:
     found = only(SHIPPED + "\n[profibus]\nbaud = 1000000\n")
     assert found.path == "[profibus]"
     assert "[machine], [limits], [axis]" in found.expected_value
@@ -132,7 +132,7 @@ def test_unknown_table_says_which_are_known() -> None:
         ("[c_axis]\nfeedback = false", "c_axis = 3", "axis.C.c_axis", "unknown key"),
     ],
 )
-def test_wrong_value_is_named_with_what_was_expected(old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_value_is_reported_with_expected_value(old: str, new: str, path: str, expected: str) -> None:
     found = only(changed(old, new))
     assert found.path == path
     assert expected in str(found)
@@ -162,13 +162,13 @@ def test_wrong_value_is_named_with_what_was_expected(old: str, new: str, path: s
         ('25 = { output = "catcher"', '2500 = { output = "catcher"', "m_codes.2500", "0…999"),
     ],
 )
-def test_values_that_do_not_go_together(old: str, new: str, path: str, expected: str) -> None:
+def test_conflicting_values_are_rejected(old: str, new: str, path: str, expected: str) -> None:
     found = [finding for finding in findings(changed(old, new)) if finding.path == path]
     assert found
     assert expected in str(found[0])
 
 
-def test_m_codes_that_do_nothing_on_this_machine() -> None:
+def test_ignored_m_codes_are_read_and_checked() -> None:
     machine = parse_machine(
         changed("[m_codes]", "[m_codes]\n80 = { ignored = true }\n81 = { ignored = true, enabled = false }"),
         "t",
@@ -189,7 +189,7 @@ def test_axis_that_is_not_absolute_needs_homing() -> None:
     assert (machine.axes[0].home_order, machine.axes[0].home_speed) == (2, pytest.approx(25.4))
 
 
-def test_two_axes_may_not_home_at_once() -> None:
+def test_two_axes_with_same_homing_order_are_rejected() -> None:
     text = SHIPPED.replace("in_pos = 0.0002\n", "in_pos = 0.0002\nhome = { order = 1, speed = 60 }\n")
     assert only(text).path == "axis.Z.home.order"
 
@@ -200,13 +200,13 @@ def test_output_without_safe_state_is_refused() -> None:
     assert "missing" in found.expected_value
 
 
-def test_output_that_nothing_switches_off_is_refused() -> None:
+def test_output_without_off_code_is_rejected() -> None:
     found = only(changed('26 = { output = "catcher", on = false }', ""))
     assert found.path == "m_codes.25"
     assert found.expected_value == wording("machine.output-stays-on", output="catcher")
 
 
-def test_all_errors_come_in_one_pass() -> None:
+def test_all_errors_are_reported_in_one_pass() -> None:
     text = changed("amax = 120", "amax = 0").replace("lease_ms = 200", "lease_ms = 9")
     text = text.replace("seed = 1", "sed = 1").replace("accel_rpm_s = 1500", "", 1)
     assert {finding.path for finding in findings(text)} == {
@@ -222,18 +222,18 @@ def test_empty_file_names_every_missing_table() -> None:
     assert {"[machine]", "[axis.X]", "[spindle]", "[io.out]"} <= paths
 
 
-def test_broken_toml_tells_the_line() -> None:
+def test_invalid_toml_reports_its_line() -> None:
     assert "line 2" in only("[machine]\nname = \n").expected_value
 
 
 @pytest.mark.parametrize("value", ["[" * 50_000, "{a=" * 5000, "9" * 5000])
-def test_what_no_parser_can_hold_is_one_finding(value: str) -> None:
+def test_unparsable_value_is_one_finding(value: str) -> None:
     found = only(f"[machine]\nname = {value}")
     assert found.code == "not-toml"
     assert len(found.expected_value) < 100
 
 
-def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
+def test_missing_file_and_wrong_encoding_are_rejected(tmp_path: Path) -> None:
     with raises_code(MachineFileError, "unreadable", "none.toml"):
         load_machine(tmp_path / "none.toml")
     (tmp_path / "latin.toml").write_bytes(b'name = "\xff"')
@@ -241,14 +241,14 @@ def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
         load_machine(tmp_path / "latin.toml")
 
 
-def test_a_key_with_a_line_end_stays_in_its_sentence() -> None:
+def test_key_with_line_break_is_reported_on_one_line() -> None:
     with pytest.raises(MachineFileError) as told:
         parse_machine('["a\\nb"]\nx = 1\n', "x.toml")
     assert "[a b]: unknown table" in str(told.value)
     assert "\n" not in str(told.value)
 
 
-def test_a_turret_is_refused_while_nothing_indexes_it() -> None:
+def test_turret_is_rejected_without_indexing_driver() -> None:
     text = resources.read_machine_file("gt75.toml").replace('kind = "gang" ', 'kind = "turret" ')
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "gt75.toml")

@@ -66,7 +66,7 @@ def test_every_declared_key_is_on_the_page() -> None:
 
 
 @pytest.mark.parametrize(("place", "field"), KEYS, ids=[place for place, _ in KEYS])
-def test_every_key_says_what_it_means(place: str, field: KeyField) -> None:
+def test_every_key_has_a_meaning(place: str, field: KeyField) -> None:
     meaning = field.meaning
     assert re.fullmatch(r"(true|false|Not|s32|[A-Z0-9\"`]).{11,300}\.", meaning), place
     assert "|" not in meaning, "ends the cell of the table"
@@ -80,7 +80,7 @@ def test_a_field_without_a_meaning_is_refused() -> None:
         declare_key(default="")  # type: ignore[call-arg]
 
 
-def test_the_contents_lead_to_headings_that_differ() -> None:
+def test_table_of_contents_links_to_unique_headings() -> None:
     text = generate_page()
     links = re.findall(r"^- \[.*\]\(#(.*)\)$", text, re.MULTILINE)
     headings = [make_anchor(title) for title in re.findall(r"^## (.*)$", text, re.MULTILINE)]
@@ -107,11 +107,11 @@ def test_purposes_are_sentences() -> None:
         "| `seed` | – | 0 to 2147483648 | 1 |",
     ],
 )
-def test_units_ranges_and_defaults_are_those_of_the_file(row: str) -> None:
+def test_units_ranges_and_defaults_match_the_file(row: str) -> None:
     assert row in generate_page()
 
 
-def test_numbers_have_no_exponent() -> None:
+def test_numbers_are_written_without_exponent() -> None:
     assert [number(each) for each in (1e-6, 1e7, -36000.0, 31.75)] == [
         "0.000001",
         "10000000",

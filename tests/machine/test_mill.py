@@ -11,14 +11,14 @@ from core.table_schema import MachineFileError
 from tests.machine.mill import MILL
 
 
-def test_the_axes_come_slides_first() -> None:
+def test_linear_axes_are_listed_before_rotary_axes() -> None:
     machine = parse_machine(MILL, "mill")
     assert [axis.name for axis in machine.axes] == ["X", "Y", "Z", "A", "C"]
     assert [axis.is_rotary for axis in machine.axes] == [False, False, False, True, True]
     assert not machine.is_c_enabled  # its C is an axis of its own, not the spindle
 
 
-def test_rotary_figures_are_degrees_and_seconds() -> None:
+def test_rotary_axis_values_are_in_degrees_and_seconds() -> None:
     machine = parse_machine(MILL, "mill")
     a, c = machine.find_axis("A"), machine.find_axis("C")
     assert a.travel == (-120.0, 120.0)
@@ -43,19 +43,19 @@ def test_rotary_figures_are_degrees_and_seconds() -> None:
         (("travel = [-120.0, 120.0]\nabsolute = true", "travel = [-120.0, 120.0]"), "axis.A.absolute"),
     ],
 )
-def test_what_a_mill_cannot_be(change: tuple[str, str], path: str) -> None:
+def test_invalid_mill_file_is_rejected(change: tuple[str, str], path: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(MILL.replace(*change, 1), "mill")
     assert path in str(caught.value)
 
 
-def test_the_kind_decides_the_language() -> None:
+def test_machine_kind_sets_mdi_language() -> None:
     assert parse_machine(MILL, "mill").mdi_language == "klartext"
     assert load_named_machine("gt75").mdi_language == "omniturn"
     assert load_named_machine("sinumerik-linear").mdi_language == "sinumerik"
 
 
-def test_a_lathe_has_no_y() -> None:
+def test_y_axis_is_rejected_on_lathe() -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(MILL.replace('kind = "mill"', 'kind = "lathe"'), "lathe")
     assert ("axis.Y", "unknown-key") in {(each.path, each.code) for each in caught.value.findings}

@@ -16,6 +16,6 @@ def test_a_single_palm_button_is_refused(name: str) -> None:
     assert_refused(text, f"io.in.{name}", "two-hand relay")
 
 
-def test_the_relays_output_and_other_names_are_not() -> None:
+def test_two_hand_relay_output_and_other_inputs_are_accepted() -> None:
     more = '[io.in]\npalm_rest = { at = "401.6000.5.0" }\nstarted = { at = "401.6000.5.1" }'
     assert "start" in parse_machine(CAN.replace("\n[io.in]", "\n" + more), "can").inputs

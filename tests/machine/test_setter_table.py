@@ -30,7 +30,7 @@ def text(*changes: tuple[str, str]) -> str:
     return found
 
 
-def test_a_setter() -> None:
+def test_tool_setter_gives_touch_position() -> None:
     setter = parse_machine(text(), "test").hardware.find_driver_table(SetterModel)
     assert setter is not None
     assert setter.compute_touch_position("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
@@ -47,7 +47,7 @@ def test_a_setter() -> None:
         ("width = 0.25", "width = 0", "setter.width"),
     ],
 )
-def test_what_is_refused(old: str, new: str, expected: str) -> None:
+def test_invalid_setter_is_rejected(old: str, new: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text((old, new)), "test")
     assert expected in str(caught.value)

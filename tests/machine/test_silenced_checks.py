@@ -29,7 +29,7 @@ def test_checks_are_silenced_by_their_ids() -> None:
 
 
 @pytest.mark.parametrize("checks", ["", "silenced = []"])
-def test_without_one_nothing_is_silenced(checks: str) -> None:
+def test_no_check_is_silenced_without_setting(checks: str) -> None:
     assert machine(checks).silenced_checks == ()
 
 
@@ -44,7 +44,7 @@ def test_without_one_nothing_is_silenced(checks: str) -> None:
         ('silence = ["chip-load"]', "did you mean silenced?"),
     ],
 )
-def test_what_is_no_list_of_checks_is_refused_with_its_place(checks: str, told: str) -> None:
+def test_invalid_list_of_checks_is_rejected_at_its_path(checks: str, told: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         machine(checks)
     assert "checks.silence" in str(caught.value)

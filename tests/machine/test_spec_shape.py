@@ -45,7 +45,7 @@ def test_the_example_of_the_specification_loads() -> None:
     assert machine.hardware.analog_inputs["spindle_pot"].switch == "spindle_auto"
 
 
-def test_the_example_on_a_bus_wants_the_switch_wired_and_says_the_line() -> None:
+def test_example_on_bus_needs_spindle_driver_and_wired_switch() -> None:
     text = spec_text().replace('backend = "sim"', 'backend = "canopen"', 1)
     told = {finding.path: finding.expected_value for finding in findings(text)}
     # bits 0 to 5 of the module's first byte are taken by estop … end_of_bar
@@ -55,7 +55,7 @@ def test_the_example_on_a_bus_wants_the_switch_wired_and_says_the_line() -> None
     assert told["spindle.driver"] == spindle
 
 
-def test_a_switch_of_another_name_has_no_button_on_the_screen() -> None:
+def test_pot_switch_with_other_name_must_be_wired() -> None:
     text = without().replace("[sim]\n", '[io.analog]\nspindle_pot = { at = "A", switch = "auto" }\n[sim]\n')
     (found,) = findings(text)
     assert found.path == "io.analog.spindle_pot.switch"
@@ -63,7 +63,7 @@ def test_a_switch_of_another_name_has_no_button_on_the_screen() -> None:
     assert parse_machine(text.replace('"auto"', '"spindle_auto"'), "t").hardware.analog_inputs["spindle_pot"]
 
 
-def test_figures_of_slides_that_say_nothing_follow_from_their_speed_and_count() -> None:
+def test_missing_axis_values_are_derived_from_speed_and_count() -> None:
     text = without("fe_window = 0.08", "in_pos = 0.0002", "[limits]", "max_feed = 300", "manual_rapid = 100")
     text = (
         text.replace("resolution = 0.00005\n", "").replace("fe_window = 0.08", "").replace("clearance =", "#")
@@ -76,7 +76,7 @@ def test_figures_of_slides_that_say_nothing_follow_from_their_speed_and_count() 
     assert machine.limits.max_feed == pytest.approx(127.0)
 
 
-def test_a_slow_slide_limits_feed_and_hand_rapid() -> None:
+def test_slow_axis_limits_feed_and_manual_rapid() -> None:
     text = without("[limits]", "max_feed = 300", "manual_rapid = 100", "resolution = 0.00005").replace(
         "vmax = 300", "vmax = 60", 1
     )
@@ -92,12 +92,12 @@ def test_a_lathe_without_a_c_axis_needs_no_table_for_it() -> None:
     assert [axis.name for axis in machine.axes] == ["X", "Z", "C"]
 
 
-def test_a_c_axis_that_is_used_says_its_speed_and_count() -> None:
+def test_enabled_c_axis_needs_speed_and_count() -> None:
     found = findings(without("vmax = 200", "count = 0.02"))
     assert [finding.path for finding in found] == ["axis.C.vmax", "axis.C.count"]
 
 
-def test_without_a_switch_the_collet_says_how_long_it_takes() -> None:
+def test_collet_without_switch_needs_its_times() -> None:
     text = without("close_s = 0.30", 'collet_closed = { at = "IN-5" }')
     text = text.replace("spindle_with_collet_open = false", "spindle_with_collet_open = true")
     assert [finding.path for finding in findings(text)] == ["collet.close_s"]
@@ -118,11 +118,11 @@ def test_without_a_switch_the_collet_says_how_long_it_takes() -> None:
         ('estop = { at = "IN-1", active = "low" }', "io.in.estop"),
     ],
 )
-def test_what_has_no_safe_default_is_refused(line: str, path: str) -> None:
+def test_missing_value_without_safe_default_is_rejected(line: str, path: str) -> None:
     assert [finding.path for finding in findings(without(line))] == [path]
 
 
-def test_the_shipped_lathe_leaves_nothing_to_a_default() -> None:
+def test_shipped_lathe_uses_no_defaults() -> None:
     machine = load_machine(None)
     assert (machine.collet.open_time, machine.spindle.decel) == (0.25, 2500)
 
@@ -134,7 +134,7 @@ def test_the_power_of_the_spindle_is_stated_in_kilowatts(stated: str, power: flo
 
 
 @pytest.mark.parametrize("wrong", ["0", "-1.5", "1500", '"1.5"', "true", "nan"])
-def test_a_power_that_no_spindle_has_is_refused(wrong: str) -> None:
+def test_spindle_power_out_of_range_is_rejected(wrong: str) -> None:
     """0.05 kW to 100 kW; 1500 are watts."""
     text = without().replace("[spindle]\n", f"[spindle]\npower_kw = {wrong}\n", 1)
     (found,) = findings(text)

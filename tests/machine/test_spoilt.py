@@ -73,14 +73,14 @@ def paths_of(text: str, name: str) -> list[str]:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_a_sample_as_it_is_loads(name: str) -> None:
+def test_sample_file_loads_unchanged(name: str) -> None:
     data = sample(name)
     place = next(place for place, _ in leaves(data))
     assert parse_machine(with_value(data, place, data["machine"]["name"]), name).axes  # type: ignore[index]
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_every_wrong_value_is_one_error_under_its_own_path(name: str) -> None:
+def test_every_wrong_value_is_one_error_at_its_path(name: str) -> None:
     """Only machine.kind, which decides what tables there are, draws further ones."""
     data, trouble = sample(name), []
     for place, wrong in spoilt(name):
@@ -93,7 +93,7 @@ def test_every_wrong_value_is_one_error_under_its_own_path(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_an_unknown_key_beside_every_key_is_named(name: str) -> None:
+def test_every_unknown_key_is_reported(name: str) -> None:
     data = sample(name)
     free = ("m_codes", "io.in", "io.out", "canopen.nodes", "canopen.sdo.all", "grblhal.settings")
     for place, _ in new_places(name):

@@ -18,7 +18,7 @@ def with_wheel(switches: str = "[io.in]") -> str:
     return changed("[io.in]", switches, changed(PADS, PADS + WHEEL))
 
 
-def test_a_wheel_with_its_switches() -> None:
+def test_handwheel_with_switches_is_read() -> None:
     machine = parse_machine(with_wheel(SWITCHES), "can")
     assert machine.hardware.analog_inputs["handwheel"].counts_per_click == -4
     assert {"wheel_x", "wheel_x10"} <= set(machine.inputs)
@@ -39,21 +39,21 @@ def test_a_wheel_with_its_switches() -> None:
         ),
     ],
 )
-def test_counts_that_make_no_sense(old: str, new: str, path: str, expected: str) -> None:
+def test_invalid_handwheel_counts_are_rejected(old: str, new: str, path: str, expected: str) -> None:
     assert_refused(changed(old, new, with_wheel()), path, expected)
 
 
-def test_switches_of_a_wheel_that_is_not_there() -> None:
+def test_handwheel_switches_without_handwheel_are_rejected() -> None:
     text = changed("[io.in]", SWITCHES)
     assert_refused(text, "io.in.wheel_x", "add the handwheel under [io.analog]")
 
 
-def test_a_switch_that_selects_nothing() -> None:
+def test_switch_for_missing_axis_is_rejected() -> None:
     assert_refused(
         with_wheel('[io.in]\nwheel_y = { at = "401.6000.5.0" }'), "io.in.wheel_y", "one of wheel_enable"
     )
 
 
-def test_a_controller_that_counts_nothing() -> None:
+def test_handwheel_is_rejected_without_counter_input() -> None:
     text = resources.read_machine_file("gt75-grblhal.toml") + '\n[io.analog]\nhandwheel = { at = "in.0" }\n'
     assert_refused(text, "io.analog.handwheel", "does not have a counter input")

@@ -33,20 +33,20 @@ def press(completion: LineCompletion, *keys: str) -> str:
         (Dialect.SINUMERIK, "G0 X10 M1", 1, "G0 X10 M17"),
     ],
 )
-def test_what_is_typed_is_completed(dialect: Dialect, typed: str, down: int, written: str) -> None:
+def test_typed_text_is_completed(dialect: Dialect, typed: str, down: int, written: str) -> None:
     completion = line(dialect, typed)
     assert press(completion, "Tab", *(["Down"] * down), "Enter") == written
     assert completion.mdi_input.cursor_index == len(written)
     assert not completion.is_open
 
 
-def test_a_code_is_put_in_at_the_cursor() -> None:
+def test_selected_code_is_inserted_at_cursor() -> None:
     completion = line(Dialect.OMNITURN, "G0 X5", 2)
     assert press(completion, "Tab", "Down", "Tab") == "G01 X5"
     assert completion.mdi_input.cursor_index == 3
 
 
-def test_what_begins_no_code_is_looked_up_by_chapters() -> None:
+def test_code_list_opens_by_chapter_when_no_code_is_typed() -> None:
     """Behind a blank nothing is begun: the chapter of the code before, and the next ones by the arrows."""
     completion = line(Dialect.SINUMERIK, "G0 ")
     press(completion, "Tab")
@@ -59,7 +59,7 @@ def test_what_begins_no_code_is_looked_up_by_chapters() -> None:
     assert completion.code_help.title == first
 
 
-def test_a_block_that_goes_on_is_written_in_one_line() -> None:
+def test_block_of_several_lines_is_inserted_as_one_line() -> None:
     completion = line(Dialect.KLARTEXT, "CYCL DEF 240")
     written = press(completion, "Tab", "Enter")
     assert written.startswith("CYCL DEF 240 CENTERING Q200=2 Q343=+0")
@@ -67,7 +67,7 @@ def test_a_block_that_goes_on_is_written_in_one_line() -> None:
     assert "\n" not in written
 
 
-def test_of_what_does_not_fit_only_the_head_is_written() -> None:
+def test_only_head_is_inserted_when_whole_block_does_not_fit() -> None:
     assert press(line(Dialect.KLARTEXT, "CYCL DEF 251"), "Tab", "Enter") == "CYCL DEF 251"
     full = "M" * (MAX_LINE_LENGTH - 2) + " G"
     completion = line(Dialect.OMNITURN, full)
@@ -76,7 +76,7 @@ def test_of_what_does_not_fit_only_the_head_is_written() -> None:
     assert not completion.is_open
 
 
-def test_any_other_key_goes_to_the_line_and_closes_the_choices() -> None:
+def test_any_other_key_edits_line_and_closes_choices() -> None:
     completion = line(Dialect.OMNITURN, "G0")
     press(completion, "Tab")
     assert not completion.handle_key("X")
@@ -84,6 +84,6 @@ def test_any_other_key_goes_to_the_line_and_closes_the_choices() -> None:
     assert completion.mdi_input.text == "G0"
 
 
-def test_closed_it_takes_nothing_but_tab() -> None:
+def test_closed_completion_handles_only_tab() -> None:
     completion = line(Dialect.OMNITURN, "G0")
     assert not any(completion.handle_key(key) for key in ("Up", "Left", "Enter", "5"))

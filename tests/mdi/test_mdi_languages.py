@@ -69,7 +69,7 @@ def lathe() -> Mdi:
 # --- what stands between two lines ----------------------------------------------------------------------
 
 
-def test_a_line_begins_with_what_somebody_has_switched_by_hand_since(lathe: Mdi) -> None:
+def test_mdi_line_starts_with_manually_switched_state(lathe: Mdi) -> None:
     lathe.runs("M8")
     assert (lathe.point.modal.coolant, lathe.line("coolant")) == (True, "M8")
     by_hand = lathe.point.modal._replace(coolant=False, outputs=frozenset({"catcher"}))
@@ -79,7 +79,7 @@ def test_a_line_begins_with_what_somebody_has_switched_by_hand_since(lathe: Mdi)
     assert (lathe.line("coolant"), lathe.line("outputs")) == ("M9", "CATCHER")
 
 
-def test_a_mill_keeps_tool_plane_and_parameters_from_line_to_line(mill: Mdi) -> None:
+def test_mill_retains_tool_plane_and_parameters_between_lines(mill: Mdi) -> None:
     # Zero at 230, 210, -350; L 80: Z+100 is -350 + 100 + 80 = -170. A+30 about the line Y 250, Z -430 at X.
     mill.runs("TOOL CALL 5 Z S2000", "L Z+100 FMAX M3", "Q1 = 30", "PLANE AXIAL A+Q1 C+0 TURN FMAX")
     assert mill.at == pytest.approx((0.0, 0.0, -170.0, 30.0, 0.0))
@@ -89,34 +89,34 @@ def test_a_mill_keeps_tool_plane_and_parameters_from_line_to_line(mill: Mdi) -> 
     assert (mill.line("feed"), mill.line("spindle")) == ("F500", "M3")
 
 
-def test_a_cycle_that_was_told_is_called_by_a_later_line(mill: Mdi) -> None:
+def test_defined_cycle_can_be_called_by_later_line(mill: Mdi) -> None:
     drilling = "CYCL DEF 200 Q200=+2 Q201=-10 Q206=+150 Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0"
     mill.runs("TOOL CALL 5 Z S2000", "L X+0 Y+0 Z+50 FMAX M3", drilling, "CYCL CALL")
     assert mill.at[2] == pytest.approx(-350.0 + 50.0 + 80.0)  # Q204, the second set-up clearance
 
 
-def test_a_tool_that_was_measured_anew_counts_in_the_next_line(mill: Mdi) -> None:
+def test_tool_measured_again_is_used_by_next_line(mill: Mdi) -> None:
     mill.runs("TOOL CALL 5 Z S2000")
     mill.tools[5] = ToolOffset(z=81.5, nose_radius=6.0)
     mill.runs("L Z+100 FMAX")
     assert mill.at[2] == pytest.approx(-168.5)
 
 
-def test_slides_that_were_jogged_meanwhile_count_where_they_stand(mill: Mdi) -> None:
+def test_axes_jogged_between_lines_start_at_their_position(mill: Mdi) -> None:
     mill.runs("TOOL CALL 5 Z S2000", "L X+0 Y+0 FMAX")
     mill.at = (7.0, 8.0, -9.0, 0.0, 0.0)
     mill.runs("L IX+1 FMAX")
     assert mill.at == pytest.approx((8.0, 8.0, -9.0, 0.0, 0.0))
 
 
-def test_what_a_program_has_left_is_what_a_line_begins_with(mill: Mdi) -> None:
+def test_mdi_line_starts_with_state_left_by_program(mill: Mdi) -> None:
     mill.point = Checkpoint(make_modal_state_after_cancel(ModalState(tool=5, rpm=1200.0, spindle=1)))
     mill.runs("L Z+0 FMAX")
     assert mill.at[2] == pytest.approx(-270.0)
     assert (mill.line("tool"), mill.line("spindle"), mill.line("plane")) == ("T5 Z", "M5", "")
 
 
-def test_a_lathe_of_sinumerik_keeps_modes_and_parameters(lathe: Mdi) -> None:
+def test_sinumerik_lathe_retains_modes_and_parameters_between_lines(lathe: Mdi) -> None:
     lathe.runs("G0 X20 Z5", "R1=4", "G1 X=R1*2 F100", "M3 S500", "G91 G95 Z-1 F0.2", "X40")
     # DIAMON: X8 is a radius of 4; G91 X40 adds 20 to it.
     assert lathe.at == pytest.approx((24.0, 4.0, 0.0))
@@ -140,7 +140,7 @@ def test_a_lathe_stays_in_transmit_from_line_to_line() -> None:
     assert live.at == pytest.approx((40.0, 5.0, 90.0))
 
 
-def test_what_transmit_refuses_is_refused_in_mdi_too() -> None:
+def test_block_rejected_in_transmit_is_rejected_in_mdi() -> None:
     live = Mdi("sinumerik-live", {1: ToolOffset()})
     live.runs("T1 D1", "G0 DIAMOF G17 X30 Z5", "S300 M3")
     assert live.enters("TRANSMIT") == "transformation"
@@ -148,7 +148,7 @@ def test_what_transmit_refuses_is_refused_in_mdi_too() -> None:
     assert live.enters("C90") == "transformation"
 
 
-def test_a_tool_call_is_a_block_of_its_own(mill: Mdi) -> None:
+def test_tool_call_is_one_action_block(mill: Mdi) -> None:
     setup = replace(
         create_setup(mill.machine, tool_offsets=mill.tools, secondary_offsets={}),
         start=mill.at,
@@ -169,7 +169,7 @@ def test_a_tool_call_is_a_block_of_its_own(mill: Mdi) -> None:
         *("APPR LT X+0 Y+0 LEN10 RL", "DEP LT LEN10", "/ L X+10", "CYCL DEF 12.1 PGM A.H"),
     ],
 )
-def test_what_needs_other_blocks_is_refused_on_a_mill(mill: Mdi, text: str) -> None:
+def test_block_that_needs_other_blocks_is_rejected_on_mill(mill: Mdi, text: str) -> None:
     assert mill.enters(text) == "not-alone-mdi"
     assert mill.point.kept is None  # it has left nothing
 
@@ -178,18 +178,18 @@ def test_what_needs_other_blocks_is_refused_on_a_mill(mill: Mdi, text: str) -> N
     "text",
     ["GOTOF END1", "IF R1==1 GOTOF END1", "ENDIF", "WHILE R1<3", "RINGBORE P5", "/ X10", "G1 X9 RND=2"],
 )
-def test_what_needs_other_blocks_is_refused_on_a_lathe(lathe: Mdi, text: str) -> None:
+def test_block_that_needs_other_blocks_is_rejected_on_lathe(lathe: Mdi, text: str) -> None:
     assert lathe.enters(text) == "not-alone-mdi"
 
 
-def test_a_line_that_fails_leaves_what_stood_before(mill: Mdi) -> None:
+def test_failed_line_leaves_state_unchanged(mill: Mdi) -> None:
     mill.runs("TOOL CALL 5 Z S2000", "Q1 = 7")
     assert mill.enters("PLANE AXIAL A+500 TURN FMAX") != ""
     mill.runs("L X+Q1 FMAX")
     assert mill.at[0] == pytest.approx(237.0)
 
 
-def test_the_words_of_another_control_are_no_block_here(mill: Mdi, lathe: Mdi) -> None:
+def test_words_of_another_language_are_rejected(mill: Mdi, lathe: Mdi) -> None:
     assert mill.enters("G1 X10 F100") != ""
     assert lathe.enters("L X+10 Y+5 FMAX") != ""
 

@@ -15,7 +15,7 @@ def press(typing: MdiInput, keys: Iterable[str]) -> MdiInput:
     return typing
 
 
-def test_characters_go_in_at_the_cursor_and_are_taken_out_there() -> None:
+def test_characters_are_inserted_and_deleted_at_cursor() -> None:
     typing = press(MdiInput(), ["X", "5", "Left", ".", "Right", "0"])
     assert (typing.text, typing.cursor_index) == ("X.50", 4)
     press(typing, ["Back", "Left", "Left", "Delete"])
@@ -24,18 +24,18 @@ def test_characters_go_in_at_the_cursor_and_are_taken_out_there() -> None:
     assert (typing.text, typing.cursor_index) == ("X5", 0)
 
 
-def test_a_line_is_no_longer_than_the_screen_shows() -> None:
+def test_line_length_is_limited_to_screen_width() -> None:
     assert len(press(MdiInput(), ["X"] * (MAX_LINE_LENGTH + 5)).text) == MAX_LINE_LENGTH
 
 
-def test_keys_that_mean_nothing_here_are_left_alone() -> None:
+def test_unused_keys_are_not_handled() -> None:
     typing = MdiInput()
     assert not typing.handle_key("Tab")
     assert not typing.handle_key("F5")
     assert typing.text == ""
 
 
-def test_history_brings_lines_back_and_the_unfinished_one_too() -> None:
+def test_history_recalls_lines_and_unfinished_line() -> None:
     typing = MdiInput()
     for line in ("G90", "X1", "X2"):
         typing.set_text(line)
@@ -48,7 +48,7 @@ def test_history_brings_lines_back_and_the_unfinished_one_too() -> None:
     assert (typing.text, typing.recall_index) == ("Z", 0)
 
 
-def test_the_same_line_twice_is_kept_once_and_an_empty_one_never() -> None:
+def test_repeated_line_is_stored_once_and_empty_line_never() -> None:
     typing = MdiInput()
     for line in ("X1", "X1", "  ", "X2"):
         typing.set_text(line)
@@ -56,7 +56,7 @@ def test_the_same_line_twice_is_kept_once_and_an_empty_one_never() -> None:
     assert typing.history_lines == ["X1", "X2"]
 
 
-def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
+def test_history_is_stored_and_invalid_entries_are_dropped() -> None:
     keep = Persistence()
     typing = MdiInput(keep)
     for number in range(MAX_HISTORY_LINES + 3):
@@ -74,7 +74,7 @@ def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
     assert MdiInput(keep).history_lines == ["X1"]
 
 
-def test_a_store_that_fails_takes_no_line_away() -> None:
+def test_failed_store_does_not_lose_history() -> None:
     class Broken(Persistence):
         def setting(self, key: str) -> object:
             raise StoreError(f"{key} is gone")
@@ -88,7 +88,7 @@ def test_a_store_that_fails_takes_no_line_away() -> None:
     assert typing.history_lines == ["X1"]
 
 
-def test_a_refused_line_stays_in_the_history_with_its_place() -> None:
+def test_rejected_line_stays_in_history_with_error_position() -> None:
     typing = MdiInput()
     press(typing, "G01X")
     typing.add_rejected_line(4)

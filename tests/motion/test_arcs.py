@@ -14,7 +14,7 @@ from tests.motion.moves import LIMITS, A, V, arc
 from tests.motion.paths import build_path
 
 
-def test_clockwise_from_above_is_the_convex_corner_of_a_shaft() -> None:
+def test_clockwise_arc_is_convex_corner_of_shaft() -> None:
     """X.1 Z0 to X.25 Z-.15 round (.1, -.15), inches: halfway at 45 degrees outside the corner."""
     block = arc((2.54, 0.0), (6.35, -3.81), (2.54, -3.81), 20.0)
     profile = plan_motion(build_path([block], LIMITS))
@@ -23,7 +23,7 @@ def test_clockwise_from_above_is_the_convex_corner_of_a_shaft() -> None:
     assert halfway == pytest.approx([2.54 + side, -3.81 + side, 0.0], abs=1e-9)
 
 
-def test_counterclockwise_goes_the_other_way_round() -> None:
+def test_counterclockwise_arc_bulges_to_other_side() -> None:
     block = arc((2.54, 0.0), (6.35, -3.81), (2.54, -3.81), 20.0, clockwise=False)
     path = build_path([block], LIMITS)
     assert path.length == pytest.approx(3.81 * 1.5 * math.pi)
@@ -31,12 +31,12 @@ def test_counterclockwise_goes_the_other_way_round() -> None:
     assert middle[:2] == pytest.approx([2.54 - 3.81 / math.sqrt(2), -3.81 - 3.81 / math.sqrt(2)])
 
 
-def test_start_equal_to_end_is_a_full_circle() -> None:
+def test_arc_with_equal_ends_is_full_circle() -> None:
     path = build_path([arc((0, 10), (0, 10), (0, 0))], LIMITS)
     assert path.length == pytest.approx(20.0 * math.pi)
 
 
-def test_speed_and_vector_sum_stay_within_the_slides() -> None:
+def test_speed_and_total_acceleration_on_arc_stay_within_limits() -> None:
     radius = 2.0
     profile = plan_motion(build_path([arc((0, radius), (0, radius), (0, 0), 500.0)], LIMITS))
     limit = math.sqrt(0.8 * A * radius)
@@ -47,7 +47,7 @@ def test_speed_and_vector_sum_stay_within_the_slides() -> None:
     assert np.hypot(*felt.T).max() <= A * (1.0 + 1e-6)
 
 
-def test_a_wide_arc_is_held_by_the_slides_speed() -> None:
+def test_wide_arc_is_limited_by_axis_speed() -> None:
     profile = plan_motion(build_path([arc((0, 900), (900, 0), (0, 0), 500.0)], LIMITS))
     assert profile.phases.start_speeds.max() == pytest.approx(V)
 
@@ -59,7 +59,7 @@ def test_a_slow_arc_may_use_nearly_all_the_acceleration() -> None:
     )  # 15: half as much again
 
 
-def test_a_rounded_centre_still_meets_the_end_exactly() -> None:
+def test_arc_with_rounded_center_ends_exactly_at_end() -> None:
     block = arc((0, 10), (10, 0), (0.0005, -0.0008))
     profile = plan_motion(build_path([block], LIMITS))
     assert profile.positions_at(np.array([0.0, profile.duration_s]))[:, :2] == pytest.approx(
@@ -67,12 +67,12 @@ def test_a_rounded_centre_still_meets_the_end_exactly() -> None:
     )
 
 
-def test_a_wrong_centre_is_refused() -> None:
+def test_arc_with_wrong_center_is_rejected() -> None:
     with raises_code(MotionError, "arc-radii-differ", "Block 4", "10.0000", "9.9000"):
         build_path([arc((0, 10), (9.9, 0), (0, 0), n=4)], LIMITS)
 
 
-def test_an_arc_without_radius_is_no_motion() -> None:
+def test_arc_with_zero_radius_does_not_move() -> None:
     path = build_path([arc((0, 10), (0, 10), (0, 10))], LIMITS)
     assert len(path) == 0
     assert plan_motion(path).duration_s == 0.0

@@ -54,7 +54,7 @@ def test_rounded_chords_are_as_fast_as_their_circle(grid: float) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("grid", [0.001, 0.00127, 0.00254])
-def test_no_joint_leaves_its_word_by_more_than_a_step(grid: float) -> None:
+def test_smoothing_moves_no_joint_by_more_than_a_step(grid: float) -> None:
     blocks = rounded_chords(3000, 100.0, grid)
     off = joints(build_path(blocks, STEPPED)) - written(blocks)
     assert np.abs(off).max() <= GRAIN + 1e-12
@@ -64,7 +64,7 @@ def test_no_joint_leaves_its_word_by_more_than_a_step(grid: float) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("grid", [0.001, 0.00127, 0.00254])
-def test_the_path_is_nearer_to_the_curve_than_the_words(grid: float) -> None:
+def test_smoothed_path_is_nearer_to_curve_than_programmed_points(grid: float) -> None:
     blocks = rounded_chords(3000, 100.0, grid)
     off, before = (
         np.abs(np.hypot(*each[100:-100, :2].T) - 50.0)
@@ -81,14 +81,14 @@ def test_exact_chords_of_a_small_circle_hardly_move() -> None:
     assert off.max() < 0.4 * GRAIN
 
 
-def test_a_corner_between_chords_stays() -> None:
+def test_corner_between_chords_is_not_smoothed() -> None:
     there = [(0.0, 0.02 * i) for i in range(200)]
     across = [(0.02 * i, 0.02 * 199) for i in range(1, 200)]
     blocks = polyline([*there, *across], 100.0)
     assert joints(build_path(blocks, STEPPED)) == pytest.approx(written(blocks), abs=1e-12)
 
 
-def test_a_straight_line_of_uneven_chords_stays_where_it_is() -> None:
+def test_straight_line_of_uneven_chords_stays_straight() -> None:
     ends = np.cumsum(np.random.default_rng(1).uniform(0.01, 0.15, 300))
     blocks = polyline([(0.3 * z, z) for z in [0.0, *ends.tolist()]], 60.0)
     off = joints(build_path(blocks, STEPPED)) - written(blocks)
@@ -99,7 +99,7 @@ def test_a_straight_line_of_uneven_chords_stays_where_it_is() -> None:
 @pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(programs())
-def test_nothing_but_short_chords_is_touched(blocks: list[Block]) -> None:
+def test_only_joints_between_short_chords_are_smoothed(blocks: list[Block]) -> None:
     """Of lines and arcs of all lengths only a joint between two of 0.02 mm that hardly turn may move."""
     path, as_written = build_path(blocks, STEPPED), build_path(blocks, LIMITS)
     off = np.abs(joints(path) - joints(as_written)).max(axis=1)
@@ -112,7 +112,7 @@ def test_nothing_but_short_chords_is_touched(blocks: list[Block]) -> None:
 
 
 @pytest.mark.parametrize("kind", ["arc", "rapid", "long"])
-def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
+def test_chord_run_ends_at_other_element(kind: str) -> None:
     blocks = rounded_chords(300, 60.0, 0.001)
     last = blocks[-1]
     here, to = (last.x, last.z), (last.x + 0.4, last.z)
@@ -128,7 +128,7 @@ def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("window", [90, 300, 2000])
-def test_windows_equal_the_whole(window: int) -> None:
+def test_windowed_plan_equals_whole_plan(window: int) -> None:
     blocks = rounded_chords(1500, 100.0, 0.00127)
     whole = plan_motion(build_path(blocks, STEPPED))
     planner = WindowPlanner(STEPPED, window=window)
@@ -146,7 +146,7 @@ def test_windows_equal_the_whole(window: int) -> None:
 @pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10_000), st.sampled_from([0.001, 0.00127, 0.00254, 0.004]))
-def test_a_path_that_grows_does_not_move_under_the_slides(seed: int, grid: float) -> None:
+def test_growing_path_does_not_move_current_position(seed: int, grid: float) -> None:
     """Blocks come in and are dropped at any moment, also in the middle of the last braking."""
     chance = np.random.default_rng(seed)
     blocks = rounded_chords(700, 100.0, grid)
@@ -167,7 +167,7 @@ def test_a_path_that_grows_does_not_move_under_the_slides(seed: int, grid: float
     assert profile.positions_at(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
 
 
-def test_what_comes_in_late_still_smooths_the_old_end() -> None:
+def test_chords_added_later_smooth_previous_end() -> None:
     blocks = rounded_chords(600, 100.0, 0.00127)
     whole = joints(build_path(blocks, STEPPED))
     builder = PathBuilder(STEPPED)
@@ -178,7 +178,7 @@ def test_what_comes_in_late_still_smooths_the_old_end() -> None:
 
 
 @pytest.mark.parametrize("near", [0, 1, 5])
-def test_what_is_no_chord_comes_in_late_as_it_is(near: int) -> None:
+def test_other_elements_added_later_are_not_smoothed(near: int) -> None:
     """A half circle of R 2, a long line and a turn of C behind chords, the slides ``near`` chords before."""
     there = rounded_chords(200, 100.0, 0.00127)
     at = there[-1]
@@ -203,7 +203,7 @@ def test_what_is_no_chord_comes_in_late_as_it_is(near: int) -> None:
     assert path.positions_at(path.joint_distances[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
 
 
-def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> None:
+def test_path_close_to_current_position_is_not_changed() -> None:
     blocks = rounded_chords(400, 100.0, 0.00127)
     builder = PathBuilder(STEPPED)
     builder.add_blocks(blocks[:200])
@@ -214,7 +214,7 @@ def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> Non
     assert joints(builder.build_path())[:201] == pytest.approx(before, abs=0)
 
 
-def test_a_turn_of_c_behind_a_path_under_way_keeps_its_length() -> None:
+def test_c_rotation_added_during_motion_retains_its_length() -> None:
     """Its start differs from the end of the path by the noise of sums; a slide that stands has no chord."""
     builder = PathBuilder(STEPPED)
     builder.add_blocks([dataclasses.replace(line((10.0, 5.0), (20.0, 7.0)), c=-345.0)])
@@ -237,7 +237,7 @@ _short = st.lists(
 @pytest.mark.long
 @settings(max_examples=150, deadline=None)
 @given(_short, _short)
-def test_nothing_before_a_corner_moves_for_what_comes_behind_it(
+def test_joints_before_corner_do_not_depend_on_blocks_after_it(
     before: list[tuple[float, float]], behind: list[tuple[float, float]]
 ) -> None:
     """The slides may have passed it by then."""
@@ -247,7 +247,7 @@ def test_nothing_before_a_corner_moves_for_what_comes_behind_it(
     assert joints(build_path(blocks, STEPPED))[: len(alone)] == pytest.approx(alone, abs=1e-12)
 
 
-def test_no_joint_that_is_settled_moves_when_more_chords_come_in() -> None:
+def test_settled_joints_do_not_move_when_chords_are_added() -> None:
     blocks, builder = rounded_chords(400, 5.0, 0.00254), PathBuilder(STEPPED)
     builder.add_blocks(blocks[:200])
     path = builder.build_path()
@@ -259,7 +259,7 @@ def test_no_joint_that_is_settled_moves_when_more_chords_come_in() -> None:
     )
 
 
-def test_a_chord_of_two_steps_keeps_half_its_length() -> None:
+def test_chord_of_two_steps_retains_half_its_length() -> None:
     """Both of its ends may move by a quarter of it towards each other, not through each other."""
     zigzag = [(0.0013 * (i % 2), 0.0025 * i) for i in range(60)]
     blocks = polyline(zigzag, 60.0)

@@ -44,7 +44,7 @@ def moved(blocks: list[Block], tolerance: float) -> float:
     return float(np.hypot(off[:, 0], off[:, 1]).max())
 
 
-def test_coarse_words_run_as_the_curve_does_with_it_and_slowly_without() -> None:
+def test_corner_tolerance_lets_coarse_words_run_at_full_feed() -> None:
     blocks = rounded_chords(2000, 100.0, 0.005)
     assert plan_motion(build_path(blocks, limits(0.005))).duration_s < 1.01 * IDEAL
     assert plan_motion(build_path(blocks, limits(0.0))).duration_s > 3.0 * IDEAL
@@ -52,33 +52,33 @@ def test_coarse_words_run_as_the_curve_does_with_it_and_slowly_without() -> None
 
 @pytest.mark.parametrize("grid", [0.001, 0.00254, 0.005, 0.01])
 @pytest.mark.parametrize("tolerance", [0.002, 0.0036, 0.005])
-def test_no_joint_leaves_its_words_by_more(grid: float, tolerance: float) -> None:
+def test_no_joint_moves_by_more_than_corner_tolerance(grid: float, tolerance: float) -> None:
     assert moved(rounded_chords(2000, 100.0, grid), tolerance) <= tolerance + 1e-12
 
 
-def test_it_is_used_up_where_words_are_coarser() -> None:
+def test_corner_tolerance_is_used_for_coarse_words() -> None:
     assert moved(rounded_chords(2000, 100.0, 0.01), 0.005) > 0.004
 
 
-def test_exact_chords_do_not_move_for_it() -> None:
+def test_corner_tolerance_does_not_move_exact_chords() -> None:
     blocks = chords(50.0, 0.8, 2000, 100.0)
     off = build_path(blocks, limits(0.005)).pieces.start - build_path(blocks, MotionLimits()).pieces.start
     assert np.abs(off[100:-100]).max() < 1e-5
 
 
-def test_the_file_says_it_in_its_own_unit() -> None:
+def test_corner_tolerance_is_read_in_unit_of_file() -> None:
     lathe = machine("0.0002")
     assert lathe.limits.corner_tolerance == pytest.approx(0.00508)
     grain = MotionLimits.of(lathe.axes, lathe.timing.setpoint, lathe.limits.corner_tolerance).grain
     assert grain == pytest.approx(0.00508 / math.sqrt(2.0))
 
 
-def test_without_it_the_count_is_all() -> None:
+def test_grain_is_axis_count_without_corner_tolerance() -> None:
     assert machine().limits.corner_tolerance == 0.0
     assert limits(0.0).grain == pytest.approx(0.00127)
 
 
-def test_the_proof_shows_it() -> None:
+def test_proof_report_shows_corner_tolerance() -> None:
     lathe = machine("0.0002")
     setup = create_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("A", "G90G94F300\nT1\nX.5Z.1\nM30\n"), setup, lathe)
@@ -94,7 +94,7 @@ def test_the_proof_shows_it() -> None:
         ('"fine"', "a number"),
     ],
 )
-def test_what_cannot_be_kept_is_refused(said: str, expected: str) -> None:
+def test_invalid_corner_tolerance_is_rejected(said: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as refused:
         machine(said)
     assert any(

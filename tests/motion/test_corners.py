@@ -45,7 +45,7 @@ def test_a_reversal_is_a_stop() -> None:
 
 
 @pytest.mark.parametrize("degrees", [4.0, 20.0, 60.0])
-def test_a_bend_asks_for_little_more_than_the_acceleration(degrees: float) -> None:
+def test_bend_needs_little_more_than_axis_acceleration(degrees: float) -> None:
     bend = math.radians(degrees)
     points = [(0.0, 0.0), (0.0, 50.0), (50 * math.sin(bend), 50 + 50 * math.cos(bend))]
     along = A / max(math.sin(bend), math.cos(bend))  # of the slanted line
@@ -63,11 +63,11 @@ def test_two_corners_within_an_interval_share_it(apart: float) -> None:
     assert felt([(0.0, 0.0), (0.0, 20.0), middle, end]) < 1.25
 
 
-def test_going_straight_on_costs_nothing() -> None:
+def test_straight_joint_does_not_slow_motion() -> None:
     assert corner_speed([(0, 0), (0, 50), (0, 100)]) == pytest.approx(100.0)
 
 
-def test_a_tangential_joint_costs_nothing() -> None:
+def test_tangential_joint_does_not_slow_motion() -> None:
     blocks = [
         line((0, 0), (0, 30), 60.0, n=1),
         arc((0, 30), (10, 40), (10, 30), 60.0, n=2),  # from +Z to +X, which is clockwise
@@ -77,7 +77,7 @@ def test_a_tangential_joint_costs_nothing() -> None:
     assert profile.duration_s == pytest.approx((60.0 + 5.0 * math.pi) / 60.0 + 60.0 / A, rel=1e-9)
 
 
-def test_half_a_circle_in_short_chords_takes_no_longer_than_the_circle() -> None:
+def test_half_circle_in_short_chords_is_as_fast_as_arc() -> None:
     """R 50 mm in 0.02 mm chords at 100 mm/s: the way at full feed plus one ramp."""
     profile = plan_motion(build_path(chords(50.0, math.pi, 7854, 100.0), LIMITS))
     ideal = math.pi * 50.0 / 100.0 + 100.0 / A
@@ -85,7 +85,7 @@ def test_half_a_circle_in_short_chords_takes_no_longer_than_the_circle() -> None
 
 
 @pytest.mark.parametrize("chord", [0.002, 0.01, 0.05])
-def test_chords_run_at_the_centripetal_limit_however_short(chord: float) -> None:
+def test_chord_speed_is_centripetal_limit_for_any_chord_length(chord: float) -> None:
     """Axis by axis: at 45 degrees the acceleration is shared, so v² may be sqrt(2) of what an arc takes."""
     count = round(5.0 * math.pi / chord)
     profile = plan_motion(build_path(chords(5.0, math.pi, count, 127.0), LIMITS))
@@ -95,7 +95,7 @@ def test_chords_run_at_the_centripetal_limit_however_short(chord: float) -> None
     assert profile.phases.start_speeds.max() <= limit * 2**0.25
 
 
-def test_chords_do_not_ask_more_of_an_axis_than_it_has() -> None:
+def test_chords_do_not_exceed_axis_acceleration() -> None:
     """What a drive sees: second differences of setpoints, away from the start and the end."""
     profile = plan_motion(build_path(chords(5.0, math.pi, 3000, 127.0), LIMITS))
     t = np.arange(0.0, profile.duration_s, T)
@@ -117,7 +117,7 @@ def test_a_coarse_grid_slows_the_chords() -> None:
     assert profile.duration_s > 1.5 * (40.0 / 100.0 + 100.0 / A)
 
 
-def test_a_corner_between_short_chords_is_still_a_corner() -> None:
+def test_corner_between_short_chords_slows_motion() -> None:
     """A right angle in chords of 0.02 mm is passed as between long lines."""
     there = [(0.0, 0.02 * i) for i in range(200)]
     across = [(0.02 * i, 0.02 * 199) for i in range(1, 200)]
@@ -128,7 +128,7 @@ def test_a_corner_between_short_chords_is_still_a_corner() -> None:
     ) == pytest.approx(A * T / 2)
 
 
-def test_a_block_without_length_makes_no_corner() -> None:
+def test_zero_length_block_is_not_a_corner() -> None:
     straight = corner_speed([(0, 0), (0, 50), (0, 100)])
     path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS)
     assert plan_motion(path).distance_and_speed_at(

@@ -70,11 +70,11 @@ def off_line(profile: MotionProfile, move: PlaneMove, dt: float) -> float:
     ],
     ids=["flat", "near", "past the centre", "tool above the axis"],
 )
-def test_a_flat_is_flat(move: PlaneMove, dt: float) -> None:
+def test_flat_is_within_flatness_limit(move: PlaneMove, dt: float) -> None:
     assert off_line(plan_motion(build_path([milled(move)], LIMITS)), move, dt) < 0.5 * FLAT
 
 
-def test_what_the_drives_get_is_as_flat_and_ends_at_the_end() -> None:
+def test_drive_segments_are_flat_and_end_at_end_point() -> None:
     """Pieces of constant acceleration, looked at within them: the same chords."""
     move = face_line((2.0, -6.0), (2.0, 6.0))
     profile = plan_motion(build_path([milled(move)], LIMITS))
@@ -89,7 +89,7 @@ def test_what_the_drives_get_is_as_flat_and_ends_at_the_end() -> None:
     )
 
 
-def test_the_feed_is_that_of_the_mill() -> None:
+def test_feed_is_relative_to_milling_tool() -> None:
     """12 mm of a flat at 4 mm/s, 8 mm off the axis: 3 s, and a little for the ramps."""
     move = face_line((8.0, -6.0), (8.0, 6.0))
     profile = plan_motion(build_path([milled(move)], LIMITS))
@@ -98,7 +98,7 @@ def test_the_feed_is_that_of_the_mill() -> None:
     assert points[1, 1] - points[0, 1] == pytest.approx(4.0, abs=2e-3)
 
 
-def test_near_the_centre_c_slows_the_feed() -> None:
+def test_c_slows_feed_near_center() -> None:
     """A hundredth of a millimetre beside the axis C turns half round: over .4 s at 3600 degrees/s²."""
     move = face_line((3.0, 0.01), (-3.0, 0.01))
     profile = plan_motion(build_path([milled(move)], LIMITS))
@@ -118,7 +118,7 @@ def axis_speeds(profile: MotionProfile) -> FloatArray:
     st.floats(-12.0, 12.0), st.floats(-12.0, 12.0), st.floats(-12.0, 12.0), st.floats(-12.0, 12.0),
     st.sampled_from([1.0, 8.0, 120.0]),
 )  # fmt: skip
-def test_no_axis_goes_beyond_its_limits(x: float, y: float, u: float, v: float, feed: float) -> None:
+def test_no_axis_exceeds_its_limits(x: float, y: float, u: float, v: float, feed: float) -> None:
     move = face_line((x, y), (u, v))
     if move.length < 0.1 or move.compute_distance_from_axis(move.get_critical_fraction()) < 0.01:
         return
@@ -138,7 +138,7 @@ def joint_steps(profile: MotionProfile, path: MotionPath) -> FloatArray:
     return steps
 
 
-def test_chords_of_an_arc_on_the_side_stay_on_it() -> None:
+def test_arc_chords_on_side_stay_on_arc() -> None:
     move = PlaneMove(
         SidePlane(0.0, 0.0, 22.0), (0.0, 0.0, 10.0), (5.0, 5.0, 10.0), 0.0, (5.0, 0.0), clockwise=True
     )
@@ -152,7 +152,7 @@ def test_chords_of_an_arc_on_the_side_stay_on_it() -> None:
     assert path.length == pytest.approx(2.5 * math.pi)
 
 
-def test_a_line_on_the_side_is_one_piece() -> None:
+def test_line_on_side_is_one_piece() -> None:
     start, end = (0.0, 0.0, 11.0), (5.0, 5.0, 10.0)
     path = build_path([milled(PlaneMove(SidePlane(0.0, 0.0, 22.0), start, end))], LIMITS)
     assert len(path) == 1
@@ -166,12 +166,12 @@ def test_c_alone_turns_at_its_speed() -> None:
     assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx([10.0, 5.0, 100.0])
 
 
-def test_a_shifted_count_of_c_is_the_machines() -> None:
+def test_shifted_c_count_is_converted_to_machine() -> None:
     block = turned(-30.0, 0.0, 600.0, modal=ModalState(offset_c=-360.0))
     assert build_path([block], LIMITS).start_position.tolist() == pytest.approx([10.0, 5.0, -390.0])
 
 
-def test_the_slide_is_fed_by_the_turns_of_c() -> None:
+def test_linear_feed_follows_c_revolutions() -> None:
     """The worked slot: .1 in at .8 in/rev takes 45 of 45.1 degrees; C at 3.5 rpm all the way."""
     way = 0.1 * 25.4
     profile = plan_motion(build_path([fed_by_c(-way, -45.1, 0.8 * 25.4, -3.5)], LIMITS))
@@ -185,7 +185,7 @@ def test_the_slide_is_fed_by_the_turns_of_c() -> None:
     assert profile.duration_s == pytest.approx(45.1 / 21.0, abs=0.02)
 
 
-def test_a_c_of_its_own_drive_only_goes_along() -> None:
+def test_c_with_own_drive_moves_along_with_feed() -> None:
     """.2 mm a turn at 300 rpm is 1 mm/s: 10 mm take 10 s, however far C turns meanwhile."""
     block = replace(fed_by_c(-10.0, 5.0, 0.2, 300.0), modal=ModalState())
     profile = plan_motion(build_path([block], LIMITS))
@@ -194,27 +194,27 @@ def test_a_c_of_its_own_drive_only_goes_along() -> None:
     assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx([10.0, -10.0, 5.0])
 
 
-def test_exactly_enough_is_one_piece() -> None:
+def test_exactly_sufficient_c_rotation_is_one_piece() -> None:
     assert len(build_path([fed_by_c(-10.0, 360.0, 10.0, 5.0)], LIMITS)) == 1
 
 
-def test_too_little_turn_is_refused_with_what_is_needed() -> None:
+def test_insufficient_c_rotation_is_rejected_with_needed_angle() -> None:
     with raises_code(MotionError, "rotary-range", 432, 360):
         build_path([fed_by_c(-0.3 * 25.4, 360.0, 0.25 * 25.4, 5.0)], LIMITS)
 
 
-def test_a_broken_way_is_refused() -> None:
+def test_discontinuous_plane_path_is_rejected() -> None:
     first, second = face_line((8.0, 0.0), (8.0, 1.0)), face_line((8.0, 1.1), (8.0, 2.0))
     with raises_code(MotionError, "broken-path", "Block 2"):
         build_path([milled(first), milled(second, n=2)], LIMITS)
 
 
-def test_no_feed_is_refused() -> None:
+def test_zero_feed_is_rejected() -> None:
     with raises_code(MotionError, "no-feed"):
         build_path([milled(face_line((8.0, 0.0), (8.0, 1.0)), feed=0.0)], LIMITS)
 
 
-def test_no_way_at_all_is_no_piece() -> None:
+def test_zero_length_move_has_no_piece() -> None:
     spot: MillPoint = (8.0, 1.0, 0.0)
     stand = PlaneMove(FacePlane(0.0), spot, spot, math.atan2(1.0, 8.0))
     path = build_path([milled(stand), milled(face_line((8.0, 1.0), (8.0, 2.0)), n=2)], LIMITS)
@@ -222,7 +222,7 @@ def test_no_way_at_all_is_no_piece() -> None:
     assert path.first_pieces.tolist()[1] == 0
 
 
-def test_stopping_on_the_way_stays_on_the_way() -> None:
+def test_stop_and_restart_stay_on_path() -> None:
     move = face_line((8.0, -6.0), (8.0, 6.0))
     path = build_path([milled(move)], LIMITS)
     running = plan_motion(path)
@@ -237,7 +237,7 @@ def test_stopping_on_the_way_stays_on_the_way() -> None:
 
 
 @pytest.mark.parametrize("h", [0.5, -2.0])
-def test_to_the_nearest_that_the_tool_reaches_and_on(h: float) -> None:
+def test_tool_reaches_nearest_point_to_axis_and_continues(h: float) -> None:
     """At rho = |H| X stands on the axis of the lathe and its speed for any feed would be endless."""
     reached = (abs(h), 0.0)
     to, on = face_line((9.0, 3.0), reached, h), face_line(reached, (5.0, -1.0), h)
@@ -257,7 +257,7 @@ def test_to_the_nearest_that_the_tool_reaches_and_on(h: float) -> None:
     assert np.abs(v + a * dt).max() < 1e-6
 
 
-def test_a_stop_beside_the_axis_brakes_c_too() -> None:
+def test_stop_near_axis_decelerates_c() -> None:
     """The mill creeps there while C turns fast: no speed is too small to be braked."""
     path = build_path([milled(face_line((3.0, 0.001), (-3.0, 0.001)), 8.0)], LIMITS)
     running = plan_motion(path)
@@ -300,7 +300,7 @@ def circle(radius: float, length: float, *, seen: bool = True) -> Any:
     return Circle(radius, length, seen)
 
 
-def test_a_long_way_is_cut_as_finely_as_a_short_one() -> None:
+def test_long_path_has_same_chord_error_as_short_path() -> None:
     """A chord c leaves a circle by c²/8R: of 1e-4 mm at R 50 with chords of .2 mm."""
     way = circle(50.0, 300.0)
     ways = np.diff(divide_into_chords(way, 1.0, LIMITS)) * way.length
@@ -308,7 +308,7 @@ def test_a_long_way_is_cut_as_finely_as_a_short_one() -> None:
     assert ways.min() > 0.4 * math.sqrt(8.0 * MAX_CHORD_ERROR_MM * way.radius)
 
 
-def test_chords_are_cut_until_their_joints_cost_no_speed() -> None:
+def test_chords_are_divided_until_joints_do_not_slow_motion() -> None:
     """At 127 mm/s a joint turns by .5·3048·.001/127 = .012 at most: 16 chords of 22.5 mm turn .0225, 32 half.
 
     On a circle of 1000 mm the acceleration allows 1561 mm/s, so it is the speed of the axes that counts.

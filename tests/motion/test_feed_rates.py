@@ -32,18 +32,18 @@ def turning(start: Point, end: Point, **words: Any) -> Block:
     return replace(block, **words)
 
 
-def test_feed_per_revolution_follows_the_spindle_either_way_round() -> None:
+def test_feed_per_revolution_applies_in_both_spindle_directions() -> None:
     for rpm in (1200.0, -1200.0):
         block = replace(line((0, 0), (0, 50), 0.5), per_rev=True, rpm=rpm)
         assert build_path([block], LIMITS).pieces.rate == pytest.approx([10.0])
 
 
-def test_the_operators_limit_slows_the_feed_too() -> None:
+def test_operator_speed_limit_reduces_feed_per_revolution() -> None:
     block = replace(line((0, 0), (0, 50), 0.5), per_rev=True, rpm=1200.0)
     assert build_path([block], LIMITS, rpm_max=600.0).pieces.rate == pytest.approx([5.0])
 
 
-def test_facing_takes_the_time_of_the_growing_speed() -> None:
+def test_facing_time_follows_increasing_spindle_speed() -> None:
     """dt = dr / (f·S/(2·pi·r)): from r 100 to 50 the time is pi·(100² - 50²)/(f·S)."""
     profile = plan_motion(build_path([turning((100, 0), (50, 0))], LIMITS))
     ideal = math.pi * (100.0**2 - 50.0**2) / (0.1 * SURFACE)
@@ -58,34 +58,34 @@ def test_the_speed_changes_by_two_percent_at_most_within_a_piece() -> None:
     assert path.block_numbers.tolist() == [1]
 
 
-def test_at_the_clamp_the_feed_is_constant() -> None:
+def test_feed_is_constant_at_upper_speed_limit() -> None:
     """3000 rpm are reached at r = 2000·60/(2·pi·3000) = 6.366 mm: no split inside, through the axis."""
     path = build_path([turning((6.0, 0), (-6.0, 0))], LIMITS)
     assert path.pieces.rate == pytest.approx([0.1 * 3000.0 / 60.0] * len(path))
     assert len(path) <= 2
 
 
-def test_facing_to_the_centre_is_clamped_and_bounded() -> None:
+def test_facing_to_center_is_limited_in_speed_and_pieces() -> None:
     path = build_path([turning((100, 0), (0, 0))], LIMITS)
     assert path.pieces.rate.max() == pytest.approx(5.0)
     assert path.length == pytest.approx(100.0)
     assert len(path) <= 2 + math.log(100 / 6.366) / math.log(1.02)
 
 
-def test_the_lower_clamp_holds_far_out() -> None:
+def test_lower_speed_limit_applies_at_large_radius() -> None:
     path = build_path(
         [turning((100, 0), (200, 0), modal=ModalState(min_css_rpm=400.0, max_css_rpm=3000.0))], LIMITS
     )
     assert path.pieces.rate == pytest.approx([0.1 * 400.0 / 60.0])
 
 
-def test_the_radius_counts_from_the_program_axis() -> None:
+def test_radius_is_measured_from_program_axis() -> None:
     """X offsets move the machine, not the part: the tool stands at r 50 wherever the slide is."""
     path = build_path([turning((50, 0), (50, 20), offset_x=-300.0)], LIMITS)
     assert path.pieces.rate == pytest.approx([0.1 * SURFACE / (2 * math.pi * 50.0)])
 
 
-def test_an_arc_is_split_as_well_and_stays_the_arc() -> None:
+def test_arc_at_surface_speed_is_split_and_remains_arc() -> None:
     quarter = replace(turning((20, 50), (60, 10)), kind=BlockKind.ARC, cx=20.0, cz=10.0, clockwise=True)
     path = build_path([quarter], LIMITS)
     assert len(path) >= math.log(3) / math.log(1.02)
@@ -96,7 +96,7 @@ def test_an_arc_is_split_as_well_and_stays_the_arc() -> None:
     assert (ends / path.pieces.start[:, 0]).max() < 1.03
 
 
-def test_rapids_do_not_care_for_the_spindle() -> None:
+def test_rapids_do_not_depend_on_spindle() -> None:
     block = replace(line((0, 0), (0, 50), 100.0, kind=BlockKind.RAPID), per_rev=True, rpm=0.0)
     assert plan_motion(build_path([block], LIMITS)).duration_s == pytest.approx(0.5 + 100.0 / A)
 
@@ -107,14 +107,14 @@ def test_feed_per_revolution_with_the_spindle_stopped_is_refused() -> None:
         build_path([block], LIMITS)
 
 
-def test_surface_speed_on_the_axis_without_a_limit_is_refused() -> None:
+def test_surface_speed_at_axis_without_limit_is_rejected() -> None:
     with raises_code(MotionError, "no-speed-limit"):
         build_path([turning((0, 0), (0, 9), modal=ModalState())], LIMITS)
     with raises_code(MotionError, "no-speed-limit"):
         build_path([turning((9, 0), (0, 0), modal=ModalState())], LIMITS)
 
 
-def test_a_surface_speed_that_is_no_number_is_refused() -> None:
+def test_invalid_surface_speed_is_rejected() -> None:
     with raises_code(MotionError, "surface-speed", "Block 1"):
         build_path([turning((10, 0), (20, 0), css=math.nan)], LIMITS)
     with raises_code(MotionError, "surface-speed", "Block 1"):
@@ -122,7 +122,7 @@ def test_a_surface_speed_that_is_no_number_is_refused() -> None:
 
 
 @pytest.mark.parametrize("radius", [0.0, 1e-9, 5.0, -5.0, 20.0, 1e4])
-def test_arrays_and_numbers_agree(radius: float) -> None:
+def test_array_and_scalar_speeds_agree(radius: float) -> None:
     words = read_blocks(
         [turning((1, 0), (2, 0), modal=ModalState(min_css_rpm=30.0, max_css_rpm=2500.0))], 2000.0
     )
@@ -134,14 +134,14 @@ def test_an_arc_at_feed_per_minute_is_not_split() -> None:
     assert len(build_path([block], LIMITS)) == 1
 
 
-def test_nothing_slow_is_taken_for_nothing() -> None:
+def test_low_feed_is_not_rounded_to_zero() -> None:
     """.4 mm/s, and .5 mm a turn at .6 rpm, which is .005 mm/s: both above zero, and run as they are."""
     assert build_path([line((0, 0), (0, 5), 0.4)], LIMITS).pieces.rate == pytest.approx([0.4])
     block = replace(line((0, 0), (0, 0.1), 0.5), per_rev=True, rpm=0.6)
     assert build_path([block], LIMITS).pieces.rate == pytest.approx([0.005])
 
 
-def test_close_to_the_axis_is_not_on_it() -> None:
+def test_path_close_to_axis_is_not_at_axis() -> None:
     """From r .9 to .5 without an upper limit: the axis is not crossed, and nothing is refused.
 
     At r .9 and .5 mm the speed is S/(2·pi·r); at .1 mm a turn the feed grows as 1/r.
@@ -155,14 +155,14 @@ def test_close_to_the_axis_is_not_on_it() -> None:
     assert np.all(path.pieces.length > 0.0)
 
 
-def test_blocks_that_tell_of_all_axes_and_others_do_not_mix() -> None:
+def test_blocks_with_and_without_all_axes_cannot_be_mixed() -> None:
     whole = line((0, 0), (0, 5), n=4)
     travel = AxisMove((0.0, 0.0, 0.0), (0.0, 5.0, 0.0), 5.0)
     with raises_code(MotionError, "axes-differ", "Block 4"):
         read_blocks([replace(whole, travel=travel), line((0, 5), (0, 6), n=5)], 3000.0)
 
 
-def test_the_axis_is_that_of_the_program() -> None:
+def test_radius_of_surface_speed_uses_program_axis_offset() -> None:
     """Slides at 25 to 15 mm with the axis at 20: r 5 to -5, through it. With the axis at home: r 25 to 15."""
     modal = ModalState(max_css_rpm=None)
     through = turning((5, 0), (-5, 0), modal=modal, offset_x=20.0)
@@ -174,7 +174,7 @@ def test_the_axis_is_that_of_the_program() -> None:
 
 @pytest.mark.parametrize(("start", "end"), [((10, 0), (-10, 0)), ((-40, 0), (8, 3)), ((60, 0), (20, 0))])
 @pytest.mark.parametrize("offset", [20.0, -7.5])
-def test_an_x_offset_moves_the_slide_and_leaves_every_speed(start: Point, end: Point, offset: float) -> None:
+def test_x_offset_moves_path_without_changing_speeds(start: Point, end: Point, offset: float) -> None:
     """What is turned is the same part: the same pieces at the same feeds, by the offset further out."""
     plain = build_path([turning(start, end)], LIMITS)
     moved = build_path([turning(start, end, offset_x=offset)], LIMITS)
@@ -183,7 +183,7 @@ def test_an_x_offset_moves_the_slide_and_leaves_every_speed(start: Point, end: P
     assert moved.pieces.start[:, 0] == pytest.approx(plain.pieces.start[:, 0] + offset, abs=1e-9)
 
 
-def test_each_block_keeps_its_way_beside_one_that_is_split() -> None:
+def test_each_block_retains_its_span_next_to_split_block() -> None:
     """Facing from 100 to 50, 20 along, facing to 30, 5 along: 50, 20, 20 and 5 mm, in this order."""
     blocks = [
         turning((100, 0), (50, 0)),

@@ -17,19 +17,19 @@ from tests.motion.moves import LIMITS, A, V, line, polyline
 from tests.motion.paths import build_path
 
 
-def test_a_long_line_is_a_trapezoid() -> None:
+def test_long_line_has_trapezoidal_speed() -> None:
     profile = plan_motion(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
     assert profile.duration_s == pytest.approx(100.0 / 100.0 + 100.0 / A, rel=1e-12)
     assert profile.phases.start_speeds.max() == pytest.approx(100.0)
 
 
-def test_a_short_line_is_a_triangle() -> None:
+def test_short_line_has_triangular_speed() -> None:
     profile = plan_motion(build_path([line((0, 0), (1, 0), 100.0)], LIMITS))
     assert profile.duration_s == pytest.approx(2.0 * math.sqrt(1.0 / A), rel=1e-12)
     assert profile.distance_and_speed_at(profile.duration_s / 2)[1][0] == pytest.approx(math.sqrt(A))
 
 
-def test_a_diagonal_uses_both_slides() -> None:
+def test_diagonal_uses_speed_of_both_axes() -> None:
     """At 45 degrees the path may run and accelerate sqrt(2) faster than each slide."""
     rapid = line((0, 0), (200, 200), 10 * V, kind=BlockKind.RAPID)
     v, a = math.sqrt(2) * V, math.sqrt(2) * A
@@ -37,14 +37,14 @@ def test_a_diagonal_uses_both_slides() -> None:
     assert profile.duration_s == pytest.approx(200 * math.sqrt(2) / v + v / a, rel=1e-12)
 
 
-def test_the_slower_axis_rules() -> None:
+def test_slower_axis_limits_line() -> None:
     limits = MotionLimits(vmax=(10.0, 127.0, 1.0), amax=(100.0, 3048.0, 1.0))
     profile = plan_motion(build_path([line((0, 0), (30, 40), 127.0)], limits))
     v, a = 10.0 / 0.6, 100.0 / 0.6
     assert profile.duration_s == pytest.approx(50.0 / v + v / a, rel=1e-12)
 
 
-def test_offsets_lead_to_machine_coordinates() -> None:
+def test_offsets_convert_to_machine_coordinates() -> None:
     block = replace(line((1, 2), (3, 4)), offset_x=10.0, offset_z=-20.0)
     profile = plan_motion(build_path([block], LIMITS))
     assert profile.positions_at(np.array([0.0, profile.duration_s])) == pytest.approx(
@@ -58,7 +58,7 @@ def test_c_alone_turns_in_degrees() -> None:
     assert profile.duration_s == pytest.approx(360.0 / 600.0 + 600.0 / 12000.0, rel=1e-12)
 
 
-def test_c_holds_back_the_slide_that_moves_with_it() -> None:
+def test_c_limits_linear_axis_that_moves_with_it() -> None:
     """10 degrees per mm: 1200 degrees/s allow 120 mm/s, 12000 degrees/s² allow 1200 mm/s²."""
     block = replace(line((0, 0), (0, 100), 127.0), c=1000.0)
     profile = plan_motion(build_path([block], LIMITS))
@@ -66,7 +66,7 @@ def test_c_holds_back_the_slide_that_moves_with_it() -> None:
 
 
 @pytest.mark.parametrize("parts", [2, 7, 100])
-def test_cutting_a_line_in_pieces_changes_nothing(parts: int) -> None:
+def test_splitting_line_does_not_change_motion(parts: int) -> None:
     whole = plan_motion(build_path([line((0, 0), (30, 40), 80.0)], LIMITS))
     points = [(30.0 * i / parts, 40.0 * i / parts) for i in range(parts + 1)]
     cut = plan_motion(build_path(polyline(points, 80.0), LIMITS))
@@ -75,13 +75,13 @@ def test_cutting_a_line_in_pieces_changes_nothing(parts: int) -> None:
     assert cut.positions_at(t) == pytest.approx(whole.positions_at(t), abs=1e-9)
 
 
-def test_half_the_feed_takes_twice_the_time() -> None:
+def test_half_feed_doubles_time() -> None:
     path = build_path([line((0, 0), (0, 300), 20.0)], LIMITS)
     half = plan_motion(path, feed_scale=0.5)
     assert half.duration_s == pytest.approx(300.0 / 10.0 + 10.0 / A, rel=1e-12)
 
 
-def test_rapid_override_leaves_feeds_alone() -> None:
+def test_rapid_override_does_not_change_feeds() -> None:
     path = build_path([line((0, 0), (0, 50), 100.0, kind=BlockKind.RAPID)], LIMITS)
     assert plan_motion(path, feed_scale=0.1).duration_s == plan_motion(path).duration_s
     assert plan_motion(path, rapid_scale=0.5).duration_s == pytest.approx(50.0 / 50.0 + 50.0 / A, rel=1e-12)
@@ -103,7 +103,7 @@ def test_a_coordinate_must_be_a_number(word: str) -> None:
         build_path([replace(line((0, 0), (0, 1), n=3), **figures)], LIMITS)
 
 
-def test_a_kind_without_a_law_is_refused() -> None:
+def test_block_kind_without_motion_is_rejected() -> None:
     with raises_code(MotionError, "no-time-law", "Block 1"):
         build_path([line((0, 0), (0, 1), kind=BlockKind.DWELL)], LIMITS)
 

@@ -16,7 +16,7 @@ from tests.motion.moves import LIMITS, arc, line, polyline
 from tests.motion.paths import build_path
 
 
-def test_a_block_without_length_is_done_when_its_turn_comes() -> None:
+def test_zero_length_block_is_complete_when_it_is_reached() -> None:
     path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 50), (0, 90)], 100.0), LIMITS)
     assert len(path) == 2
     numbers, start, end = plan_motion(path).find_block_times()
@@ -25,7 +25,7 @@ def test_a_block_without_length_is_done_when_its_turn_comes() -> None:
     assert 0.0 < end[0] < end[3]
 
 
-def test_nothing_but_points_takes_no_time() -> None:
+def test_path_of_points_only_has_zero_duration() -> None:
     profile = plan_motion(build_path(polyline([(3, 4), (3, 4), (3, 4)]), LIMITS))
     numbers, start, end = profile.find_block_times()
     assert (profile.duration_s, numbers.tolist(), start.tolist(), end.tolist()) == (
@@ -36,7 +36,7 @@ def test_nothing_but_points_takes_no_time() -> None:
     )
 
 
-def test_the_block_at_a_time_is_the_one_that_moves() -> None:
+def test_block_at_time_is_the_moving_block() -> None:
     profile = plan_motion(build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS))
     middle = profile.duration_s / 2
     times = [-1.0, 0.0, middle - 0.01, middle + 0.01, 99.0]
@@ -44,7 +44,7 @@ def test_the_block_at_a_time_is_the_one_that_moves() -> None:
     assert [profile.block_number_at(t) for t in times] == [1, 1, 1, 3, 3]
 
 
-def test_blocks_behind_the_start_are_done() -> None:
+def test_blocks_before_start_are_complete() -> None:
     path = build_path(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]), LIMITS)
     _, start, end = plan_motion(path, start_distance=15.0).find_block_times()
     assert (start[0], end[0], start[1]) == (0.0, 0.0, 0.0)
@@ -57,7 +57,7 @@ def test_a_gap_is_refused() -> None:
         build_path(blocks, LIMITS)
 
 
-def test_a_gap_to_what_was_added_before_is_refused_and_nothing_is_added() -> None:
+def test_gap_to_previous_blocks_is_rejected_and_adds_nothing() -> None:
     builder = PathBuilder(LIMITS)
     builder.add_blocks([line((0, 0), (0, 10), n=1)])
     with raises_code(MotionError, "broken-path", "Block 2", "1.0000 mm"):
@@ -65,17 +65,17 @@ def test_a_gap_to_what_was_added_before_is_refused_and_nothing_is_added() -> Non
     assert builder.build_path().block_numbers.tolist() == [1]
 
 
-def test_another_offset_is_no_gap_while_the_machine_stays() -> None:
+def test_offset_change_without_machine_motion_is_not_a_gap() -> None:
     second = replace(line((5, 110), (5, 120), n=2), offset_x=-5.0, offset_z=-100.0)
     assert build_path([line((0, 0), (0, 10), n=1), second], LIMITS).length == pytest.approx(20.0)
 
 
-def test_without_blocks_there_is_no_path() -> None:
+def test_empty_path_is_rejected() -> None:
     with raises_code(MotionError, "no-block"):
         build_path([], LIMITS)
 
 
-def test_blocks_that_are_not_on_the_path() -> None:
+def test_block_not_on_path_is_rejected() -> None:
     builder = PathBuilder(LIMITS)
     builder.add_blocks(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]))
     builder.drop_blocks_before(3)
@@ -86,7 +86,7 @@ def test_blocks_that_are_not_on_the_path() -> None:
         builder.build_path().find_block_span(4)
 
 
-def test_a_full_arc_between_lines_is_met_exactly() -> None:
+def test_full_circle_between_lines_is_continuous() -> None:
     blocks = [
         line((0, 0), (0, 10), n=1),
         arc((0, 10), (0, 10), (5, 10), n=2),
@@ -98,6 +98,6 @@ def test_a_full_arc_between_lines_is_met_exactly() -> None:
     )
 
 
-def test_a_path_without_pieces_ends_in_no_chord() -> None:
+def test_empty_path_does_not_end_with_chord() -> None:
     pieces = build_path([line((0, 0), (0, 5))], LIMITS).pieces
     assert not ends_with_chord(pieces[:0], LIMITS)

@@ -82,7 +82,7 @@ some = settings(max_examples=150, deadline=None)
 @pytest.mark.long
 @some
 @given(mostly_nothing(), limits_of_both)
-def test_a_plan_ends_where_the_last_block_does(blocks: list[Block], limits: MotionLimits) -> None:
+def test_plan_ends_at_end_of_last_block(blocks: list[Block], limits: MotionLimits) -> None:
     profile = plan_motion(build_path(blocks, limits))
     demand_setpoints(profile, limits)
     assert profile.positions_at(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
@@ -95,7 +95,7 @@ def test_a_plan_ends_where_the_last_block_does(blocks: list[Block], limits: Moti
 @pytest.mark.long
 @some
 @given(mostly_nothing(), limits_of_both, st.sampled_from([1, 2, 5]))
-def test_windows_take_every_block_once(blocks: list[Block], limits: MotionLimits, window: int) -> None:
+def test_windows_contain_every_block_once(blocks: list[Block], limits: MotionLimits, window: int) -> None:
     planner = WindowPlanner(limits, window=window)
     chunks = [*planner.plan_blocks(blocks), *planner.finish_section()]
     assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == [block.n for block in blocks]
@@ -105,7 +105,7 @@ def test_windows_take_every_block_once(blocks: list[Block], limits: MotionLimits
 @pytest.mark.long
 @settings(max_examples=120, deadline=None)
 @given(mostly_nothing(), limits_of_both, st.randoms(use_true_random=False))
-def test_it_may_be_stopped_changed_and_continued_anywhere(
+def test_motion_can_be_stopped_changed_and_continued_anywhere(
     blocks: list[Block], limits: MotionLimits, chance: Random
 ) -> None:
     """Blocks come in, single block, holds and overrides (0 too) come at any moment, again and again."""
@@ -153,7 +153,7 @@ def _changed(path: MotionPath, s: float, v: float, chance: Random) -> MotionProf
 
 
 @pytest.mark.parametrize("limits", [LIMITS, STEPPED], ids=["written", "stepped"])
-def test_blocks_join_on_to_a_path_of_no_length(limits: MotionLimits) -> None:
+def test_blocks_can_be_added_to_zero_length_path(limits: MotionLimits) -> None:
     """The machine stands where the first move goes, and what comes behind it comes in later."""
     builder = PathBuilder(limits)
     builder.add_blocks([line((3, 4), (3, 4), n=1)])
@@ -168,7 +168,7 @@ def test_blocks_join_on_to_a_path_of_no_length(limits: MotionLimits) -> None:
     assert plan_motion(path).positions_at(99.0)[0, :2].tolist() == [3.0, 9.0]
 
 
-def test_single_block_stops_behind_a_block_of_no_length() -> None:
+def test_single_block_stops_after_zero_length_block() -> None:
     blocks = polyline([(0, 0), (0, 0), (0, 10)])
     path = build_path(blocks, LIMITS)
     still = dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=path.pieces.rate * 0.0))
@@ -177,7 +177,7 @@ def test_single_block_stops_behind_a_block_of_no_length() -> None:
     assert plan_motion(still, start_distance=0.0, stop_early=True).duration_s == 0.0
 
 
-def test_a_path_of_no_length_is_braked_planned_and_scaled_like_any_other() -> None:
+def test_zero_length_path_can_be_stopped_planned_and_scaled() -> None:
     path = build_path([line((1, 2), (1, 2))], LIMITS)
     for profile in (
         plan_motion(path),
@@ -190,7 +190,7 @@ def test_a_path_of_no_length_is_braked_planned_and_scaled_like_any_other() -> No
 
 
 @pytest.mark.parametrize("way", [1.2e-7, 1e-6, 5e-5])
-def test_a_turn_of_c_beside_a_way_of_no_step_is_a_turn_of_c(way: float) -> None:
+def test_c_rotation_with_move_below_resolution_is_planned_as_c_rotation(way: float) -> None:
     """Far along a path rounding of the distance would else be a jump of C."""
     far = line((0, 0), (0, 900.0), 126.0, n=1)
     turn = dataclasses.replace(line((0, 900.0), (way, 900.0), 100.0, n=2, kind=BlockKind.RAPID), c=-3600.0)
@@ -200,6 +200,6 @@ def test_a_turn_of_c_beside_a_way_of_no_step_is_a_turn_of_c(way: float) -> None:
     assert path.positions_at(np.array([span[1]]))[0] == pytest.approx([way, 900.0, -3600.0], abs=1e-9)
 
 
-def test_a_slow_turn_beside_a_real_way_is_measured_by_the_slides() -> None:
+def test_slow_c_rotation_with_real_move_is_measured_along_linear_axes() -> None:
     block = dataclasses.replace(line((0, 0), (0.002, 0.0), 1.0), c=90.0)
     assert build_path([block], LIMITS).length == pytest.approx(0.002)

@@ -27,7 +27,7 @@ REVERSAL = 1.0 / 10.0 + 10.0 / A  # s of one of them: its way, and half of speed
 # --- look-ahead ---------------------------------------------------------------------------------------------
 
 
-def test_what_is_reached_grows_from_the_lowest_limit_across_the_rows_of_the_sums() -> None:
+def test_reachable_speed_increases_from_lowest_limit_across_rows() -> None:
     """1 at the last place of the first row of 256, half of one more each step."""
     limit = np.full(600, 100.0)
     limit[255] = 1.0
@@ -37,7 +37,7 @@ def test_what_is_reached_grows_from_the_lowest_limit_across_the_rows_of_the_sums
     assert reached[500] == 100.0
 
 
-def test_a_corner_is_not_begun_faster_than_it_allows() -> None:
+def test_start_speed_above_corner_limit_is_rejected() -> None:
     """A right angle takes amax times the interval, 3.048 mm/s."""
     path = build_path(polyline([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)], 10.0), LIMITS)
     assert plan_motion(path, start_distance=1.0, start_speed=0.0).duration_s == pytest.approx(REVERSAL)
@@ -45,14 +45,14 @@ def test_a_corner_is_not_begun_faster_than_it_allows() -> None:
         plan_motion(path, start_distance=1.0, start_speed=8.0)
 
 
-def test_a_feed_override_of_0_rests_before_the_first_feed_and_lets_a_rapid_go() -> None:
+def test_zero_feed_override_stops_at_first_feed_after_rapid() -> None:
     rapid, feed = line((0.0, 0.0), (0.0, 1.0), 10.0, kind=BlockKind.RAPID), line((0.0, 1.0), (0.0, 2.0), n=2)
     assert plan_motion(build_path([feed], LIMITS), feed_scale=0.0).duration_s == 0.0
     before = plan_motion(build_path([rapid, feed], LIMITS), feed_scale=0.0)
     assert (before.end_distance, before.duration_s) == (1.0, pytest.approx(REVERSAL))
 
 
-def test_a_stop_that_has_no_room_is_refused() -> None:
+def test_stop_without_stopping_distance_is_rejected() -> None:
     """From 50 mm/s it takes 2500/2A = .41 mm."""
     path = build_path([line((0.0, 0.0), (0.0, 0.3))], LIMITS)
     with raises_code(MotionError, "cannot-stop", "0.3000 mm"):
@@ -62,7 +62,7 @@ def test_a_stop_that_has_no_room_is_refused() -> None:
 # --- what a path may yet become -----------------------------------------------------------------------------
 
 
-def test_joints_that_may_yet_be_moved_are_not_settled() -> None:
+def test_joints_that_may_be_smoothed_are_not_settled() -> None:
     """The last fifty of a run of chords that goes on; one interval of way before its end would be eight."""
     builder = PathBuilder(MotionLimits(LIMITS.vmax, LIMITS.amax, T, grain=0.001))
     builder.add_blocks(polyline([(0.0, 0.01 * i) for i in range(201)], 5.0))
@@ -79,9 +79,7 @@ def test_joints_within_an_interval_of_the_end_are_not_settled() -> None:
 
 
 @pytest.mark.parametrize("back", [2, 7, 1000])
-def test_the_settled_joint_is_found_however_far_back_is_looked(
-    back: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_settled_joint_is_found_for_any_backward_window(back: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Joint 60 is a full reversal; behind it .6 mm are left, and to rest from 100 mm/s takes 1.64 mm."""
     monkeypatch.setattr("core.motion.motion_plan._BACKWARD_PIECES", back)
     builder = PathBuilder(LIMITS)
@@ -94,7 +92,7 @@ def test_the_settled_joint_is_found_however_far_back_is_looked(
     ("chord", "before", "first"),
     [(0.01, 60, 47), (1.0, 60, 59)],  # .127 mm are twelve chords and a part of one; of long lines one is kept
 )
-def test_what_is_dropped_leaves_the_way_of_an_interval_and_a_neighbour(
+def test_dropping_blocks_retains_one_interval_of_path_and_one_neighbor(
     chord: float, before: int, first: int
 ) -> None:
     builder = PathBuilder(LIMITS)
@@ -107,7 +105,7 @@ def test_what_is_dropped_leaves_the_way_of_an_interval_and_a_neighbour(
 
 
 @pytest.mark.parametrize("window", [1, 3, 4, 10, 99])
-def test_a_program_in_windows_takes_its_time_once(window: int) -> None:
+def test_windowed_program_counts_time_once(window: int) -> None:
     planner = WindowPlanner(LIMITS, window=window)
     chunks = [*planner.plan_blocks(ZIGZAG), *planner.finish_section()]
     assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == list(range(1, 11))
@@ -127,13 +125,13 @@ def test_a_part_of_a_plan_ends_when_its_last_joint_is_reached() -> None:
     assert profile.cut_at_distance(0.0).duration_s == 0.0
 
 
-def test_outside_its_time_a_plan_has_no_setpoints() -> None:
+def test_plan_has_no_setpoints_outside_its_time() -> None:
     profile = plan_motion(build_path(ZIGZAG, LIMITS))
     for begin, end in ((0.5, 0.5), (-2.0, -1.0), (9.0, 10.0)):
         assert len(profile.make_segments(begin, end)[0]) == 0
 
 
-def test_parts_of_an_arc_join_on_it_and_are_as_short_as_its_jerk_wants() -> None:
+def test_arc_segments_are_continuous_and_short_enough_for_jerk() -> None:
     """R 3 at 300 mm/s: v/R = 100 and v²/R = 30000, so j = 3e6 and h³ = 40.5·2.5e-4/j is .0015 s cubed."""
     limits = MotionLimits(vmax=(400.0, 400.0, 1200.0), amax=(40000.0, 40000.0, 12000.0), interval=T)
     path = build_path([arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0), 300.0)], limits)
@@ -148,7 +146,7 @@ def test_parts_of_an_arc_join_on_it_and_are_as_short_as_its_jerk_wants() -> None
     assert ends[-1] == pytest.approx(profile.positions_at(t[-1] + dt[-1])[0], abs=1e-9)
 
 
-def test_a_place_is_reached_when_the_ramps_bring_it_there() -> None:
+def test_time_at_distance_follows_acceleration_ramps() -> None:
     """Up to 100 mm/s: s = At²/2; on; and down as it went up. Beyond the end it is never."""
     profile = plan_motion(build_path([line((0.0, 0.0), (0.0, 50.0), 100.0)], LIMITS))
     ramp = 100.0 / A
@@ -165,7 +163,7 @@ def test_a_place_is_reached_when_the_ramps_bring_it_there() -> None:
     ]
 
 
-def test_a_creep_at_the_end_of_the_path_is_rounding_and_2_hundredths_are_not() -> None:
+def test_tiny_speed_at_end_is_rounding_but_0_02_mm_s_is_rejected() -> None:
     """Over the 1e-9 mm that are rounding sqrt(2e-9·A) = .0025 mm/s come to rest."""
     path = build_path([line((0.0, 0.0), (0.0, 1.0))], LIMITS)
     assert plan_motion(path, start_distance=1.0, start_speed=0.0024).duration_s == 0.0
@@ -176,7 +174,7 @@ def test_a_creep_at_the_end_of_the_path_is_rounding_and_2_hundredths_are_not() -
 # --- chords -------------------------------------------------------------------------------------------------
 
 
-def test_chords_of_a_straight_line_stay_where_they_are_however_uneven() -> None:
+def test_uneven_chords_of_straight_line_are_not_smoothed() -> None:
     ways = np.cumsum([0.0, *([0.01, 0.03, 0.02, 0.005] * 8)]).tolist()
     limits = MotionLimits(LIMITS.vmax, LIMITS.amax, T, grain=0.001)
     pieces = build_path(polyline([(0.0, z) for z in ways]), LIMITS).pieces
@@ -195,7 +193,7 @@ def bent(turned: tuple[float, float] = DIRECTION) -> list[Block]:
     return polyline([*first, *more])
 
 
-def test_an_interval_asks_of_one_bend_what_the_bend_turns() -> None:
+def test_speed_limit_of_single_bend_depends_on_its_angle() -> None:
     """v·Δu over an interval of .8 amax: (.8·3048·.001/.1)², whatever the speed."""
     pieces = build_path(bent(), LIMITS).pieces
     alone = JointLimits(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
@@ -203,7 +201,7 @@ def test_an_interval_asks_of_one_bend_what_the_bend_turns() -> None:
     assert asked.squared_speeds == pytest.approx([(0.8 * A * T / BEND) ** 2], rel=1e-6)
 
 
-def test_one_bend_an_interval_is_left_to_its_own_limit() -> None:
+def test_single_bend_per_interval_has_no_additional_limit() -> None:
     """Bends there and back by .2, .05 mm apart: at 20 mm/s an interval has one of them, so it asks nothing.
 
     Else each would be held to (.8·3048·.001/.2)² = 148.6 mm²/s².
@@ -216,7 +214,7 @@ def test_one_bend_an_interval_is_left_to_its_own_limit() -> None:
     assert asked.squared_speeds.tolist() == [math.inf]
 
 
-def test_chords_on_both_sides_of_a_bend_keep_room_for_it() -> None:
+def test_chords_on_both_sides_of_bend_have_reduced_acceleration() -> None:
     """A bend about 45 degrees at 1.5 times the feed asks v·Δu over an interval; the rest is along both."""
     half = 0.5 * math.asin(0.02)
     before, after = math.pi / 4 - half, math.pi / 4 + half
@@ -250,7 +248,7 @@ class Columns:
         raise NotImplementedError
 
 
-def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
+def test_move_series_is_added_to_table_with_offsets() -> None:
     like = line((7.0, 7.0), (8.0, 8.0), 20.0)
     shifted = Block(**{**{f: getattr(like, f) for f in like.__slots__}, "offset_x": 10.0, "offset_z": 20.0})
     table = build_table([Columns(shifted)], 3500.0)
@@ -260,13 +258,13 @@ def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
     assert table.feed.tolist() == [20.0, 20.0]
 
 
-def test_a_row_of_moves_has_its_own_feeds() -> None:
+def test_move_series_has_its_own_feeds() -> None:
     row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0), feed=np.array([20.0, 30.0]))
     before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0), line((5.0, 8.0), (9.0, 9.0), 6.0)
     assert build_table([[before], row, [behind]], 3500.0).feed.tolist() == [5.0, 20.0, 30.0, 6.0]
 
 
-def test_a_row_of_one_move_goes_where_it_says_and_not_where_its_pattern_does() -> None:
+def test_series_of_one_move_uses_its_own_coordinates() -> None:
     row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0))
     single = Columns(row.pattern, row.n[:1], row.x0[:1], row.z0[:1], row.x[:1], row.z[:1])
     table = build_table([single], 3500.0)
@@ -274,7 +272,7 @@ def test_a_row_of_one_move_goes_where_it_says_and_not_where_its_pattern_does() -
     assert table.end[:, :2].tolist() == [[2.0, 4.0]]
 
 
-def test_blocks_before_and_behind_a_row_stand_in_their_places() -> None:
+def test_blocks_around_series_are_in_order_in_table() -> None:
     before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0, n=3), line((5.0, 8.0), (6.0, 8.0), 7.0, n=6)
     table = build_table([[before], Columns(line((7.0, 7.0), (8.0, 8.0), 20.0)), [behind]], 3500.0)
     assert table.n.tolist() == [3.0, 4.0, 5.0, 6.0]

@@ -51,7 +51,7 @@ def test_no_speed_is_above_a_limit(blocks: list[Block]) -> None:
 
 @few
 @given(programs())
-def test_no_slide_accelerates_beyond_its_limit(blocks: list[Block]) -> None:
+def test_no_axis_accelerates_beyond_its_limit(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     path, (_, dt, _, v, a, piece) = profile.path, profile.phases
     pieces = path.pieces[piece]
@@ -63,7 +63,7 @@ def test_no_slide_accelerates_beyond_its_limit(blocks: list[Block]) -> None:
 
 @few
 @given(programs())
-def test_a_corner_steps_no_axis_by_more_than_one_interval(blocks: list[Block]) -> None:
+def test_corner_velocity_step_is_within_one_interval_of_acceleration(blocks: list[Block]) -> None:
     path = build_path(blocks, LIMITS)
     profile = plan_motion(path)
     for piece in range(len(path) - 1):
@@ -73,7 +73,7 @@ def test_a_corner_steps_no_axis_by_more_than_one_interval(blocks: list[Block]) -
 
 @few
 @given(programs())
-def test_setpoints_ask_little_more_than_the_acceleration(blocks: list[Block]) -> None:
+def test_setpoints_need_little_more_than_maximum_acceleration(blocks: list[Block]) -> None:
     """Sampled at the interval; what is over comes from several corners of tiny pieces within one."""
     profile = plan_motion(build_path(blocks, LIMITS))
     changes = np.append(profile.phases.start_times_s, profile.duration_s)
@@ -91,7 +91,7 @@ def test_setpoints_ask_little_more_than_the_acceleration(blocks: list[Block]) ->
 
 @few
 @given(programs())
-def test_it_meets_every_corner_exactly_and_ends_at_rest(blocks: list[Block]) -> None:
+def test_motion_meets_every_corner_exactly_and_ends_at_rest(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     numbers, start, end = profile.find_block_times()
     assert numbers.tolist() == [b.n for b in blocks]
@@ -113,7 +113,7 @@ def test_distance_and_speed_are_continuous(blocks: list[Block]) -> None:
 
 @few
 @given(programs())
-def test_every_point_lies_on_the_programmed_path(blocks: list[Block]) -> None:
+def test_every_point_is_on_programmed_path(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     t = np.linspace(0.0, profile.duration_s, 200)
     by_number = {b.n: b for b in blocks}
@@ -131,7 +131,7 @@ def test_every_point_lies_on_the_programmed_path(blocks: list[Block]) -> None:
 
 @few
 @given(programs())
-def test_it_is_never_faster_than_feeds_and_axes_allow(blocks: list[Block]) -> None:
+def test_motion_is_not_faster_than_feeds_and_axes_allow(blocks: list[Block]) -> None:
     path = build_path(blocks, LIMITS)
     least = float(np.sum(path.pieces.length / np.minimum(path.pieces.rate, math.sqrt(2) * V)))
     assert plan_motion(path).duration_s >= least * (1.0 - 1e-9)
@@ -139,7 +139,7 @@ def test_it_is_never_faster_than_feeds_and_axes_allow(blocks: list[Block]) -> No
 
 @few
 @given(programs())
-def test_the_way_back_takes_as_long(blocks: list[Block]) -> None:
+def test_reversed_path_has_same_duration(blocks: list[Block]) -> None:
     there, back = plan_motion(build_path(blocks, LIMITS)), plan_motion(build_path(backwards(blocks), LIMITS))
     assert back.duration_s == pytest.approx(there.duration_s, rel=1e-9)
 
@@ -167,7 +167,7 @@ def test_running_minima_equal_the_plain_loop(nodes: list[tuple[float, float]]) -
     assert mirrored[::-1] == pytest.approx(plain, rel=1e-9, abs=1e-7)
 
 
-def test_running_minima_over_many_rows() -> None:
+def test_running_minima_are_correct_over_many_rows() -> None:
     """A stop far away is felt from row to row: 5000 pieces of gain 1 from 0 up to 3000."""
     limit = np.full(5001, 3000.0)
     limit[0] = 0.0

@@ -25,7 +25,7 @@ moment = st.floats(0.0, 1.0)
 @pytest.mark.long
 @few
 @given(programs(), moment)
-def test_nothing_changed_gives_the_same_future(blocks: list[Block], when: float) -> None:
+def test_replanning_without_change_gives_same_motion(blocks: list[Block], when: float) -> None:
     path = build_path(blocks, LIMITS)
     before = plan_motion(path)
     t0 = when * before.duration_s
@@ -41,7 +41,7 @@ def test_nothing_changed_gives_the_same_future(blocks: list[Block], when: float)
 @pytest.mark.long
 @few
 @given(programs(), moment, st.sampled_from([0.2, 0.7, 1.5]))
-def test_a_hold_rests_within_the_braking_distance(blocks: list[Block], when: float, scale: float) -> None:
+def test_hold_stops_within_braking_distance(blocks: list[Block], when: float, scale: float) -> None:
     path = build_path(blocks, LIMITS)
     before = plan_motion(path, feed_scale=scale)
     (s,), (v,) = before.distance_and_speed_at(when * before.duration_s)
@@ -59,7 +59,7 @@ def test_a_hold_rests_within_the_braking_distance(blocks: list[Block], when: flo
 @pytest.mark.long
 @few
 @given(programs(), moment, st.sampled_from([0.0, 0.05, 0.5, 1.5]), st.sampled_from([0.0, 0.3, 1.0]))
-def test_an_override_never_jumps_and_keeps_the_corners(
+def test_override_change_is_continuous_and_respects_corner_limits(
     blocks: list[Block], when: float, feed: float, rapid: float
 ) -> None:
     path = build_path(blocks, LIMITS)
@@ -88,7 +88,7 @@ def test_a_lower_feed_brakes_at_full_acceleration_and_then_cruises() -> None:
     assert after.duration_s == pytest.approx(by_hand, rel=1e-12)
 
 
-def test_braking_reaches_over_short_pieces_into_slower_ones() -> None:
+def test_braking_spans_short_pieces_into_slower_ones() -> None:
     path = build_path(polyline([(0, 0), (0, 1), (0, 1.1), (0, 1.2), (0, 100)], 100.0), LIMITS)
     after = plan_motion(path, start_distance=0.5, start_speed=100.0, feed_scale=0.1)
     whole = (100.0**2 - 10.0**2) / (2 * A)
@@ -103,7 +103,7 @@ def test_zero_override_is_a_hold_in_a_feed() -> None:
     assert after.duration_s == pytest.approx(100.0 / A)
 
 
-def test_zero_feed_override_lets_a_rapid_come_to_the_feed() -> None:
+def test_zero_feed_override_lets_rapid_reach_start_of_feed() -> None:
     blocks = [line((0, 0), (0, 50), 100.0, n=1, kind=BlockKind.RAPID), line((0, 50), (0, 90), 10.0, n=2)]
     after = plan_motion(build_path(blocks, LIMITS), feed_scale=0.0)
     assert after.end_distance == 50.0
@@ -114,7 +114,7 @@ def test_zero_feed_override_lets_a_rapid_come_to_the_feed() -> None:
 
 
 @pytest.mark.long
-def test_a_stop_far_from_the_end_of_a_long_path() -> None:
+def test_stop_far_from_end_of_long_path_is_short_plan() -> None:
     points = [(0.0, 0.01 * i) for i in range(20_000)]
     path = build_path(polyline(points, 100.0), LIMITS)
     hold = plan_motion(path, start_distance=50.0, start_speed=100.0, stop_early=True)
@@ -122,14 +122,14 @@ def test_a_stop_far_from_the_end_of_a_long_path() -> None:
     assert len(hold) < 200
 
 
-def test_at_rest_a_stop_stays() -> None:
+def test_stop_at_rest_does_not_move() -> None:
     path = build_path([line((0, 0), (0, 1))], LIMITS)
     hold = plan_motion(path, start_distance=0.4, stop_early=True)
     assert (hold.duration_s, hold.end_distance) == (0.0, 0.4)
     assert hold.positions_at(1.0)[0] == pytest.approx([0.0, 0.4, 0.0])
 
 
-def test_too_fast_for_the_end_is_refused() -> None:
+def test_start_speed_at_end_of_path_is_rejected() -> None:
     path = build_path([line((0, 0), (0, 100), 100.0)], LIMITS)
     with raises_code(MotionError, "cannot-stop", "100.000 mm/s", "1.0000 mm"):
         plan_motion(path, start_distance=99.0, start_speed=100.0)
@@ -139,7 +139,7 @@ def test_too_fast_for_the_end_is_refused() -> None:
         plan_motion(path, start_distance=100.0, start_speed=1.0)
 
 
-def test_too_fast_for_a_corner_is_refused() -> None:
+def test_start_speed_too_high_for_corner_is_rejected() -> None:
     path = build_path(polyline([(0, 0), (0, 50), (50, 50)], 100.0), LIMITS)
     with raises_code(MotionError, "too-fast", "1.524"):
         plan_motion(path, start_distance=49.5, start_speed=100.0)
@@ -147,7 +147,7 @@ def test_too_fast_for_a_corner_is_refused() -> None:
         plan_motion(path, start_distance=49.5, start_speed=100.0, stop_early=True)
 
 
-def test_too_fast_for_an_arc_is_refused() -> None:
+def test_start_speed_too_high_for_arc_is_rejected() -> None:
     path = build_path([arc((0, 1), (0, -1), (0, 0), 100.0)], LIMITS)
     allowed = math.sqrt(0.8 * A)
     with raises_code(MotionError, "too-fast", f"{allowed:.3f}"):
@@ -155,18 +155,18 @@ def test_too_fast_for_an_arc_is_refused() -> None:
 
 
 @pytest.mark.parametrize("v", [-1.0, math.nan, math.inf])
-def test_the_present_speed_must_be_a_speed(v: float) -> None:
+def test_invalid_start_speed_is_rejected(v: float) -> None:
     with raises_code(MotionError, "negative-speed"):
         plan_motion(build_path([line((0, 0), (0, 1))], LIMITS), start_speed=v)
 
 
 @pytest.mark.parametrize("s", [-0.1, 1.1, math.nan])
-def test_the_start_must_lie_on_the_path(s: float) -> None:
+def test_start_distance_off_the_path_is_rejected(s: float) -> None:
     with raises_code(MotionError, "not-on-path"):
         plan_motion(build_path([line((0, 0), (0, 1))], LIMITS), start_distance=s)
 
 
-def test_more_blocks_are_taken_up_without_a_stop() -> None:
+def test_added_blocks_continue_without_stop() -> None:
     """The executor's way: blocks arrive while moving, what lies behind is dropped, the distance counts on."""
     builder = PathBuilder(LIMITS)
     blocks = polyline([(0.0, 10.0 * i) for i in range(11)], 100.0)
@@ -184,9 +184,7 @@ def test_more_blocks_are_taken_up_without_a_stop() -> None:
 @pytest.mark.long
 @settings(max_examples=100, deadline=None)
 @given(programs(most=20), st.lists(moment, min_size=20, max_size=20))
-def test_a_growing_path_never_leads_into_a_state_without_a_future(
-    blocks: list[Block], moments: list[float]
-) -> None:
+def test_growing_path_can_always_be_replanned(blocks: list[Block], moments: list[float]) -> None:
     """Each block comes in at any moment of the plan so far, also in the middle of its last braking."""
     builder = PathBuilder(LIMITS)
     builder.add_blocks(blocks[:1])
@@ -205,7 +203,7 @@ def test_a_growing_path_never_leads_into_a_state_without_a_future(
 @pytest.mark.long
 @pytest.mark.parametrize("grid", [0.001, 0.00127, 0.004])
 @pytest.mark.parametrize("seed", range(4))
-def test_chords_on_the_step_may_come_in_and_be_dropped_at_any_moment(grid: float, seed: int) -> None:
+def test_rounded_chords_can_be_added_and_dropped_at_any_time(grid: float, seed: int) -> None:
     chance = np.random.default_rng(seed)
     blocks = rounded_chords(900, 100.0, grid)
     builder, at = PathBuilder(LIMITS), 40
@@ -223,7 +221,7 @@ def test_chords_on_the_step_may_come_in_and_be_dropped_at_any_moment(grid: float
     assert profile.positions_at(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
 
 
-def test_a_corner_that_comes_in_late_takes_nothing_from_the_braking_under_way() -> None:
+def test_corner_added_late_does_not_affect_current_braking() -> None:
     """At the start of a last chord of 0.05 mm, braking for its end, a right angle into another is added."""
     builder = PathBuilder(LIMITS)
     blocks = polyline([(0, 0), (0, 10), (0, 10.05), (0.05, 10.05)], 100.0)
@@ -238,7 +236,7 @@ def test_a_corner_that_comes_in_late_takes_nothing_from_the_braking_under_way() 
     ).end_distance == pytest.approx(10.1)
 
 
-def test_less_feed_than_before_is_braked_down_to_even_beyond_the_override() -> None:
+def test_start_speed_above_reduced_feed_is_braked_to_the_feed() -> None:
     """The operator's spindle limit takes a feed per revolution to a tenth while the slide runs at 50 mm/s."""
     block = replace(line((0, 0), (0, 100), 1.0), per_rev=True, rpm=3000.0)
     slow = build_path([block], LIMITS, rpm_max=300.0)
@@ -247,7 +245,7 @@ def test_less_feed_than_before_is_braked_down_to_even_beyond_the_override() -> N
     assert after.duration_s > 79.0 / 5.0
 
 
-def test_nothing_can_be_added_behind_the_end() -> None:
+def test_blocks_after_end_of_path_are_rejected() -> None:
     builder = PathBuilder(LIMITS)
     builder.add_blocks([line((0, 0), (0, 10), n=1)])
     builder.end_path()
@@ -255,7 +253,7 @@ def test_nothing_can_be_added_behind_the_end() -> None:
         builder.add_blocks([line((0, 10), (0, 20), n=2)])
 
 
-def test_dropping_keeps_the_corner_behind() -> None:
+def test_dropping_blocks_retains_previous_corner() -> None:
     blocks = polyline([(0, 0), (0, 50), (50, 50), (50, 90)], 100.0)
     builder = PathBuilder(LIMITS)
     builder.add_blocks(blocks)

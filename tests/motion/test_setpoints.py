@@ -37,7 +37,7 @@ def evaluate(segments: SegmentArrays, t: FloatArray) -> FloatArray:
     return played
 
 
-def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
+def test_line_is_three_segments_in_driver_order() -> None:
     profile = plan_motion(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
     segments = MotionSegments(*profile.make_segments(0.0, math.inf, 7.0))
     assert segments.start_times_s == pytest.approx([7.0, 7.0 + 100 / A, 8.0])
@@ -48,7 +48,7 @@ def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
 @pytest.mark.long
 @few
 @given(programs())
-def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
+def test_segments_are_continuous_and_end_at_rest(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     segments = profile.make_segments(0.0, profile.duration_s)
     t, dt, p, v, _ = segments
@@ -65,7 +65,7 @@ def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
 @pytest.mark.long
 @few
 @given(programs())
-def test_they_follow_the_exact_motion_within_half_a_micrometre(blocks: list[Block]) -> None:
+def test_segments_follow_exact_motion_within_half_a_micrometer(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     t = np.linspace(0.0, profile.duration_s, 3000, endpoint=False)
     played = evaluate(profile.make_segments(0.0, profile.duration_s), t)
@@ -73,7 +73,7 @@ def test_they_follow_the_exact_motion_within_half_a_micrometre(blocks: list[Bloc
 
 
 @pytest.mark.parametrize("radius", [0.002, 0.05, 0.16, 1.0, 6.6, 300.0])
-def test_arcs_of_every_size_stay_on_the_arc(radius: float) -> None:
+def test_segments_of_any_arc_stay_on_arc(radius: float) -> None:
     profile = plan_motion(build_path([arc((0, radius), (0, -radius), (0, 0), 500.0)], LIMITS))
     segments = profile.make_segments(0.0, profile.duration_s)
     assert segments[1].max() <= 0.002 * (1 + 1e-9)
@@ -83,7 +83,7 @@ def test_arcs_of_every_size_stay_on_the_arc(radius: float) -> None:
     assert jumps.max(initial=0.0) < 0.3 * A * T
 
 
-def test_a_faster_machine_gets_shorter_parts() -> None:
+def test_faster_machine_gets_shorter_segments() -> None:
     """R 1 mm at 30 m/s²: parts of 2 ms, or of a quarter radian, would leave the arc by 0.9 µm and more."""
     limits = MotionLimits(vmax=(500.0, 500.0, 1.0), amax=(30_000.0, 30_000.0, 1.0))
     profile = plan_motion(build_path([arc((0, 1), (0, -1), (0, 0), 500.0)], limits))
@@ -97,7 +97,7 @@ def test_a_faster_machine_gets_shorter_parts() -> None:
 @pytest.mark.long
 @few
 @given(programs(), st.lists(st.floats(0.0, 1.0), max_size=4))
-def test_windows_put_together_are_the_whole(blocks: list[Block], cuts: list[float]) -> None:
+def test_joined_windows_equal_whole_motion(blocks: list[Block], cuts: list[float]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     times = sorted({0.0, profile.duration_s, *(c * profile.duration_s for c in cuts)})
     windows = [profile.make_segments(a, b) for a, b in pairwise(times)]
@@ -108,7 +108,7 @@ def test_windows_put_together_are_the_whole(blocks: list[Block], cuts: list[floa
     assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 5e-4
 
 
-def test_a_window_of_a_long_plan_converts_only_itself() -> None:
+def test_window_of_long_plan_converts_only_its_own_part() -> None:
     profile = plan_motion(build_path(polyline([(0, 0.02 * i) for i in range(20_000)], 100.0), LIMITS))
     t, dt, *_ = profile.make_segments(1.0, 1.01)
     assert t[0] == 1.0
@@ -128,7 +128,7 @@ def test_a_window_outside_the_motion_is_empty(t_from: float, t_to: float) -> Non
     ]
 
 
-def test_no_motion_gives_no_pieces() -> None:
+def test_zero_length_motion_has_no_segments() -> None:
     profile = plan_motion(build_path([line((3, 4), (3, 4))], LIMITS))
     assert len(profile.make_segments(0.0, 1.0)[0]) == 0
     assert profile.positions_at(0.0)[0] == pytest.approx([3.0, 4.0, 0.0])

@@ -20,12 +20,12 @@ def thread(end: Point, rpm: float = 600.0) -> Block:
     return replace(line((0, 0), end, 2.0, kind=BlockKind.THREAD), rpm=rpm)
 
 
-def test_a_lead_is_fed_per_turn() -> None:
+def test_thread_feed_is_lead_times_speed() -> None:
     path = build_path([thread((0, -40))], LIMITS)
     assert path.pieces.rate.tolist() == pytest.approx([20.0])
 
 
-def test_a_taper_keeps_its_lead_along_z() -> None:
+def test_tapered_thread_has_its_lead_along_z() -> None:
     path = build_path([thread((30, -40))], LIMITS)
     assert path.pieces.rate.tolist() == pytest.approx([20.0 * 50 / 40])
     profile = plan_motion(path)
@@ -36,7 +36,7 @@ def test_a_taper_keeps_its_lead_along_z() -> None:
 @pytest.mark.parametrize(
     ("start", "end"), [((7.0, 5.0), (7.0, 0.0)), ((0.0, -3.0), (4.0, 0.0)), ((6.0, 0.0), (3.0, -4.0))]
 )
-def test_a_lead_counts_along_z_wherever_the_thread_begins(start: Point, end: Point) -> None:
+def test_lead_is_measured_along_z_at_any_start(start: Point, end: Point) -> None:
     """Ways of 5 mm along 5, 3 and 4 mm of Z."""
     block = replace(line(start, end, 2.0, kind=BlockKind.THREAD), rpm=600.0)
     way = 5.0 if start[0] == end[0] else float(np.hypot(end[0] - start[0], end[1] - start[1]))
@@ -45,16 +45,16 @@ def test_a_lead_counts_along_z_wherever_the_thread_begins(start: Point, end: Poi
 
 
 @pytest.mark.parametrize("z", [0.0, 4.0])
-def test_a_thread_across_z_is_refused_wherever_it_lies(z: float) -> None:
+def test_thread_perpendicular_to_z_is_rejected(z: float) -> None:
     with raises_code(MotionError, "no-lead"):
         build_path([replace(line((1.0, z), (5.0, z), 2.0, kind=BlockKind.THREAD), rpm=600.0)], LIMITS)
 
 
-def test_a_thread_that_does_not_advance_is_refused() -> None:
+def test_thread_without_z_travel_is_rejected() -> None:
     with raises_code(MotionError, "no-lead", "Block 1"):
         build_path([thread((5, 0))], LIMITS)
 
 
-def test_a_thread_with_the_spindle_still_is_refused() -> None:
+def test_thread_with_stopped_spindle_is_rejected() -> None:
     with raises_code(MotionError, "spindle-stopped", "Block 1"):
         build_path([thread((0, -5), 0.0)], LIMITS)

@@ -29,7 +29,7 @@ def planned(blocks: list[Block], window: int) -> list[PlannedChunk]:
 @pytest.mark.long
 @settings(max_examples=80, deadline=None)
 @given(programs(most=40), st.integers(1, 12))
-def test_windows_equal_the_whole(blocks: list[Block], window: int) -> None:
+def test_windowed_plan_equals_whole_plan(blocks: list[Block], window: int) -> None:
     whole = plan_motion(build_path(blocks, LIMITS))
     numbers, start, end = whole.find_block_times()
     chunks = planned(blocks, window)
@@ -44,7 +44,7 @@ def test_windows_equal_the_whole(blocks: list[Block], window: int) -> None:
 @pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(programs(most=40), st.integers(1, 12))
-def test_chunks_continue_each_other(blocks: list[Block], window: int) -> None:
+def test_chunks_are_continuous(blocks: list[Block], window: int) -> None:
     chunks = planned(blocks, window)
     for a, b in pairwise(chunks):
         assert b.start_time_s == pytest.approx(a.start_time_s + a.profile.duration_s, rel=1e-12)
@@ -53,7 +53,7 @@ def test_chunks_continue_each_other(blocks: list[Block], window: int) -> None:
         )
 
 
-def test_chords_longer_to_brake_on_than_a_window() -> None:
+def test_window_grows_when_chords_are_shorter_than_braking_distance() -> None:
     """100 mm/s need 1.64 mm to stop; windows of 20 chords hold 0.4 mm and have to grow."""
     blocks = chords(50.0, 0.5, 1250, 100.0)
     whole = plan_motion(build_path(blocks, LIMITS))
@@ -64,7 +64,7 @@ def test_chords_longer_to_brake_on_than_a_window() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("window", [3, 40, 300])
-def test_windows_of_chords_on_the_step_equal_the_whole(window: int) -> None:
+def test_windowed_plan_of_rounded_chords_equals_whole_plan(window: int) -> None:
     """The limit of a joint looks an interval back and ahead, over what is dropped and what is to come."""
     blocks = rounded_chords(1500, 100.0, 0.001)
     whole = plan_motion(build_path(blocks, LIMITS))
@@ -73,7 +73,7 @@ def test_windows_of_chords_on_the_step_equal_the_whole(window: int) -> None:
     assert chunks[-1].block_ends_s[-1] == pytest.approx(whole.duration_s, rel=1e-3)
 
 
-def test_blocks_are_taken_lazily_and_memory_stays_bounded() -> None:
+def test_blocks_are_read_lazily_with_bounded_memory() -> None:
     taken = 0
 
     def source() -> Iterator[Block]:
@@ -102,7 +102,7 @@ def test_an_exact_stop_is_the_end_of_a_path() -> None:
     assert planner.planned_time_s == pytest.approx(2 * each)
 
 
-def test_finishing_nothing_yields_nothing() -> None:
+def test_finishing_empty_section_yields_nothing() -> None:
     planner = WindowPlanner(LIMITS)
     assert [*planner.plan_blocks([]), *planner.finish_section(), *planner.finish_section()] == []
 
@@ -113,7 +113,7 @@ def test_blocks_without_length_are_reported_once() -> None:
     assert np.concatenate([c.block_numbers for c in chunks]).tolist() == list(range(1, 60))
 
 
-def test_a_bad_block_is_refused_where_it_comes() -> None:
+def test_invalid_block_is_rejected_when_it_is_reached() -> None:
     planner = WindowPlanner(LIMITS, window=2)
     blocks = polyline([(0, 0), (0, 50), (0, 100), (0, 150)])
     bad = [*blocks, line((0, 150), (0, 160), -3.0, n=4)]
@@ -126,7 +126,7 @@ def test_an_empty_window_is_refused() -> None:
         WindowPlanner(MotionLimits(), window=0)
 
 
-def test_samples_of_chunks_lie_on_one_grid() -> None:
+def test_samples_of_chunks_are_on_one_time_grid() -> None:
     """What a trace does: the first sample of a chunk is the next multiple of dt."""
     blocks = chords(5.0, 3.0, 700, 90.0)
     whole = plan_motion(build_path(blocks, LIMITS))
@@ -144,7 +144,7 @@ def test_samples_of_chunks_lie_on_one_grid() -> None:
     assert len(table) == math.ceil(whole.duration_s / 0.001)
 
 
-def test_samples_need_an_interval() -> None:
+def test_zero_sampling_interval_is_rejected() -> None:
     profile = plan_motion(build_path([line((0, 0), (0, 1))], LIMITS))
     with raises_code(MotionError, "sampling-interval"):
         sample_positions(profile, 0.0)

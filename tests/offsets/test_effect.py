@@ -43,7 +43,7 @@ def settled(effect: OffsetEffect) -> ComparedPaths | None:
     return effect.compared_paths
 
 
-def test_a_tool_that_moves_moves_its_own_path_alone(effect: OffsetEffect) -> None:
+def test_changed_tool_offset_moves_only_its_own_path(effect: OffsetEffect) -> None:
     after = {**TOOLS, 1: ToolOffset(-1.0 + 0.03, -50.0 - 0.04)}
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(after))
     pair = settled(effect)
@@ -59,7 +59,7 @@ def test_a_tool_that_moves_moves_its_own_path_alone(effect: OffsetEffect) -> Non
     assert dz[second] == pytest.approx(0.0)
 
 
-def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: OffsetEffect) -> None:
+def test_changed_secondary_offset_moves_only_its_own_moves(effect: OffsetEffect) -> None:
     correction = {1: SecondaryOffset(-0.01, 0.0)}
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(TOOLS, correction))
     pair = settled(effect)
@@ -69,14 +69,14 @@ def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: Offset
     assert set(pair.picture_before.x[moved].round(6)) == {round(0.6 * INCH, 6)}
 
 
-def test_no_difference_is_said(effect: OffsetEffect) -> None:
+def test_unused_offset_change_is_reported_as_no_effect(effect: OffsetEffect) -> None:
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables({**TOOLS, 9: ToolOffset(5.0, 5.0)}))
     pair = settled(effect)
     assert pair is not None
     assert pair.has_no_effect
 
 
-def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
+def test_program_of_different_length_is_drawn_without_comparison() -> None:
     longer = ProgramSource("part.nc", PROGRAM)
 
     def draw(of: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
@@ -94,7 +94,7 @@ def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
     effect.close()
 
 
-def test_a_worker_that_fails_is_told() -> None:
+def test_worker_failure_is_reported() -> None:
     def broken(_job: Job, _frame: Mapping[int, ToolOffset], _watch: ProgressCallback) -> ProgramPicture:
         raise ValueError("no such path")
 
@@ -105,7 +105,7 @@ def test_a_worker_that_fails_is_told() -> None:
     effect.close()
 
 
-def test_what_nobody_looks_at_any_more_is_forgotten(effect: OffsetEffect) -> None:
+def test_cleared_request_gives_no_result(effect: OffsetEffect) -> None:
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(TOOLS))
     effect.clear_results()
     assert settled(effect) is None

@@ -59,7 +59,7 @@ def kept(room: Room, tool: int = 1) -> MillRow:
 # --- typed ----------------------------------------------------------------------------------------------
 
 
-def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
+def test_lengths_radii_and_teeth_are_entered_in_millimeters(room: Room) -> None:
     mill(room)
     page = MillToolTable(room.desk)
     typed = {"length": "80.5", "radius": "12/2", "dl": "-.02", "teeth": "4", "life": "90"}
@@ -73,7 +73,7 @@ def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
     assert kept(room, 20).life == 0.0
 
 
-def test_a_name_takes_letters_once_return_has_opened_it(room: Room) -> None:
+def test_tool_name_accepts_letters_after_return(room: Room) -> None:
     mill(room)
     page = MillToolTable(room.desk)
     page.choose(4, 0)
@@ -99,7 +99,7 @@ def test_a_preset_is_in_force_until_it_is_chosen_again(room: Room) -> None:
 # --- touched off ----------------------------------------------------------------------------------------
 
 
-def test_a_length_follows_from_a_tip_on_the_part(room: Room) -> None:
+def test_tool_length_is_set_from_tip_on_part(room: Room) -> None:
     mill(room, 250.0, 220.0, -265.0)  # zero lies at Z -350: the nose is 85 over it, the tip 5
     page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
@@ -111,7 +111,7 @@ def test_a_length_follows_from_a_tip_on_the_part(room: Room) -> None:
     assert kept(room).length == pytest.approx(80.0)
 
 
-def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
+def test_workpiece_datum_is_set_from_touching_tip(room: Room) -> None:
     room.store.offsets.get_table(MillToolTable.kind).change_row(
         7, "", {"length": 60.0, "radius": 5.0}
     ).result(LIMIT)
@@ -129,7 +129,7 @@ def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
     assert room.store.offsets.presets.read_rows()[1] == PresetRow(x=105.0, y=50.0, z=-262.0)
 
 
-def test_a_turned_table_is_reckoned_back_to_zero(room: Room) -> None:
+def test_rotated_table_position_is_converted_to_zero_rotation(room: Room) -> None:
     # C at 180 about X 300, Y 252: what touches at 340, 252 lies at 260, 252 with C at 0.
     room.store.offsets.get_table(MillToolTable.kind).change_row(7, "", {"length": 60.0}).result(LIMIT)
     room.desk.offset_book.read_store()
@@ -149,7 +149,7 @@ def touches(room: Room, page: MillToolTable | PresetTable, name: str, reads: str
     settle(room, page)
 
 
-def test_a_rotary_axis_reads_what_is_typed_where_it_stands(room: Room) -> None:
+def test_rotary_axis_datum_is_set_from_entered_reading(room: Room) -> None:
     """C at 130 shall read 40: its zero is 90, and the part's zero goes along, 40 to the right of the table's
     line at X 300, Y 252, a quarter turn back."""
     room.store.offsets.presets.change_row(1, "", {"x": 340.0, "y": 252.0, "z": 7.0}).result(LIMIT)
@@ -168,7 +168,7 @@ def at(room: Room, x: float, y: float) -> None:
     room.now[0] = replace(room.now[0], actual=(x, y, -200.0, 0.0, 0.0))
 
 
-def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> None:
+def test_basic_rotation_is_set_from_two_points_of_edge(room: Room) -> None:
     """10 up on 100 along is atan .1 = 5.7106 degrees, from whichever end; an edge along Y reads 90."""
     room.store.offsets.mill_tools.change_row(7, "", {"length": 60.0}).result(LIMIT)
     room.desk.offset_book.read_store()
@@ -191,7 +191,7 @@ def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> No
         assert room.store.offsets.presets.read_rows()[1].rotation == pytest.approx(wanted, abs=1e-6)
 
 
-def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first(room: Room) -> None:
+def test_coincident_edge_points_are_rejected_and_cell_change_clears_first(room: Room) -> None:
     room.store.offsets.mill_tools.change_row(7, "", {"length": 60.0}).result(LIMIT)
     room.desk.offset_book.read_store()
     mill(room, 100.0, 50.0, -200.0, tool=7)
@@ -210,7 +210,7 @@ def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first
 # --- tool life ------------------------------------------------------------------------------------------
 
 
-def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None:
+def test_cur_time_shows_cutting_time_and_edit_goes_to_counter(room: Room) -> None:
     room.store.offsets.mill_tools.change_row(1, "", {"length": 60.0, "life": 30.0}).result(LIMIT)
     room.desk.offset_book.read_store()
     mill(room)
@@ -230,7 +230,7 @@ def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None
     assert told == [(1, 0.0)]
 
 
-def test_return_turns_stop_on_and_off(room: Room) -> None:
+def test_return_toggles_stop_setting(room: Room) -> None:
     mill(room)
     page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("stops"))
@@ -249,7 +249,7 @@ def test_return_turns_stop_on_and_off(room: Room) -> None:
     ("name", "text"),
     [("radius", "-1"), ("length", "1001"), ("teeth", "2.5"), ("dl", "100"), ("point", "181")],
 )
-def test_what_is_no_tool_is_refused(room: Room, name: str, text: str) -> None:
+def test_invalid_tool_value_is_rejected(room: Room, name: str, text: str) -> None:
     mill(room)
     page = MillToolTable(room.desk)
     types(room, page, text, name=name)
@@ -257,7 +257,7 @@ def test_what_is_no_tool_is_refused(room: Room, name: str, text: str) -> None:
     assert room.store.offsets.mill_tools.read_rows() == {}
 
 
-def test_nothing_changes_under_a_program(room: Room) -> None:
+def test_changes_are_rejected_while_program_runs(room: Room) -> None:
     mill(room)
     room.at(MachineState.RUN)
     page = PresetTable(room.desk)
@@ -267,7 +267,7 @@ def test_nothing_changes_under_a_program(room: Room) -> None:
     assert text("offsets.between-cycles") in room.desk.prompt_notice
 
 
-def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
+def test_tool_length_is_not_set_with_tilted_tool(room: Room) -> None:
     mill(room, 250.0, 220.0, -265.0, 30.0)
     page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
@@ -276,7 +276,7 @@ def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
     assert room.store.offsets.mill_tools.read_rows() == {}
 
 
-def test_a_workpiece_is_not_touched_with_a_tool_of_unknown_length(room: Room) -> None:
+def test_workpiece_is_not_set_with_tool_of_unknown_length(room: Room) -> None:
     mill(room, 1.0, 2.0, 3.0, tool=9)
     page = PresetTable(room.desk)
     page.set_from_position()
@@ -284,7 +284,7 @@ def test_a_workpiece_is_not_touched_with_a_tool_of_unknown_length(room: Room) ->
     assert room.store.offsets.presets.read_rows() == {}
 
 
-def test_an_axis_that_was_not_homed_touches_nothing_off(room: Room) -> None:
+def test_position_is_not_set_from_unhomed_axis(room: Room) -> None:
     mill(room)
     room.now[0] = replace(room.now[0], homed=(True, True, False, True, True))
     MillToolTable(room.desk).set_from_position()
@@ -294,7 +294,7 @@ def test_an_axis_that_was_not_homed_touches_nothing_off(room: Room) -> None:
     assert text("offsets.not-homed", axes="Z") in room.desk.prompt_notice
 
 
-def test_a_preset_that_was_never_set_is_not_put_in_force(room: Room) -> None:
+def test_unset_preset_cannot_be_activated(room: Room) -> None:
     mill(room)
     page = PresetTable(room.desk)
     page.activate_preset()
@@ -305,7 +305,7 @@ def test_a_preset_that_was_never_set_is_not_put_in_force(room: Room) -> None:
 # --- what the interpreter counts with -------------------------------------------------------------------
 
 
-def test_tables_become_lengths_names_and_the_preset_in_force() -> None:
+def test_setup_has_lengths_names_and_active_preset_of_tables() -> None:
     plain = create_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
     tools = {5: MillRow("Mill 12", length=80.0, radius=6.0, dl=-0.1, dr=0.02, point=118.0)}
     made = add_mill_offsets(plain, MillOffsets(tools, {3: PresetRow(1.0, 2.0, 3.0, 15.0)}, 3))
@@ -316,7 +316,7 @@ def test_tables_become_lengths_names_and_the_preset_in_force() -> None:
     assert made.presets[0].origin == (230.0, 210.0, -350.0)  # of the machine file
 
 
-def test_what_the_tool_table_does_not_show_does_not_count() -> None:
+def test_setup_has_only_tools_of_mill_tool_table() -> None:
     """A store may have rows of a lathe: their Z counted as lengths while the tool table showed 0."""
     plain = create_setup(
         load_named_machine("ac-table-mill"), tool_offsets={20: ToolOffset(z=76.2)}, secondary_offsets={}
@@ -325,7 +325,7 @@ def test_what_the_tool_table_does_not_show_does_not_count() -> None:
     assert {number: tool.z for number, tool in made.tools.items()} == {5: 80.0}
 
 
-def test_tools_of_an_offsets_file_stand_in_the_tool_table(tmp_path: Path) -> None:
+def test_tools_of_offsets_file_are_read_only_in_tool_table(tmp_path: Path) -> None:
     file = tmp_path / "tools.toml"
     file.write_text('[tool.20]\nz = 3.0\nnose_radius = 0.25\nwear_z = -0.01\nremark = "Mill"\n')
     offsets = read_offsets(file)
@@ -339,7 +339,7 @@ def test_tools_of_an_offsets_file_stand_in_the_tool_table(tmp_path: Path) -> Non
     assert "READ-ONLY" in book.change_fields(OffsetKind.MILL_TOOL, 20, {"length": 1.0}, "typed")
 
 
-def test_a_lathe_and_a_preset_that_has_gone_are_left_as_they_were() -> None:
+def test_mill_offsets_do_not_change_lathe_setup_or_use_missing_preset() -> None:
     lathe = create_setup(load_named_machine("gt75"), tool_offsets={}, secondary_offsets={})
     assert add_mill_offsets(lathe, MillOffsets({5: MillRow(length=1.0)})) is lathe
     plain = create_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})

@@ -38,9 +38,7 @@ def test_a_program_that_is_ready_starts(room: Room, posted: list[Command]) -> No
     assert posted == [CycleStart()]
 
 
-def test_no_start_while_a_change_is_saved_and_until_the_program_is_read_anew(
-    room: Room, posted: list[Command]
-) -> None:
+def test_start_waits_for_saved_change_and_reloaded_program(room: Room, posted: list[Command]) -> None:
     assert room.desk.offset_book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "X .2") == ""
     room.desk.station_keys.press_start()
     assert (posted, room.desk.prompt_notice) == ([], RELOAD_IN_PROGRESS)
@@ -53,14 +51,14 @@ def test_no_start_while_a_change_is_saved_and_until_the_program_is_read_anew(
     assert start == CycleStart()
 
 
-def test_an_interrupted_job_goes_on_with_its_own_offsets(room: Room, posted: list[Command]) -> None:
+def test_interrupted_job_continues_with_its_own_offsets(room: Room, posted: list[Command]) -> None:
     room.at(MachineState.HOLD)
     room.desk.offset_book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "X .2")
     room.desk.station_keys.press_start()
     assert posted == [CycleStart()]
 
 
-def test_no_start_when_the_program_cannot_be_read_again(room: Room, posted: list[Command]) -> None:
+def test_start_is_rejected_when_program_cannot_be_reloaded(room: Room, posted: list[Command]) -> None:
     def gone(path: Path) -> None:
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
@@ -74,7 +72,7 @@ def test_no_start_when_the_program_cannot_be_read_again(room: Room, posted: list
     assert re.fullmatch(pattern("offsets.cannot-load", program="part.nc"), room.desk.prompt_notice)
 
 
-def test_no_start_beside_the_automatic_page(room: Room, posted: list[Command]) -> None:
+def test_start_is_rejected_outside_automatic_page(room: Room, posted: list[Command]) -> None:
     room.desk.window_state.set_page(can_start=False)
     room.desk.station_keys.press_start()
     assert (posted, room.desk.prompt_notice) == ([], START_ON_AUTOMATIC)

@@ -60,7 +60,7 @@ def types(room: Room, shown: EffectDisplay, *answers: str) -> None:
             assert shown.offset_table.handle_key("Enter")
 
 
-def test_a_thousandth_of_x_takes_two_off_each_diameter_and_leaves_shoulders(
+def test_diameter_changes_by_twice_x_correction_and_shoulder_is_unchanged(
     room: Room, shown: EffectDisplay
 ) -> None:
     types(room, shown, "1", "0-.501")
@@ -75,7 +75,7 @@ def test_a_thousandth_of_x_takes_two_off_each_diameter_and_leaves_shoulders(
     assert shown.words == text("offsets.one-feature")
 
 
-def test_in_mm_the_same_is_told_in_mm(room: Room, shown: EffectDisplay) -> None:
+def test_part_effect_is_shown_in_millimeters(room: Room, shown: EffectDisplay) -> None:
     types(room, shown, "1", "0-.501")
     turned_to_part(shown)
     part = shown.compared_part
@@ -84,7 +84,7 @@ def test_in_mm_the_same_is_told_in_mm(room: Room, shown: EffectDisplay) -> None:
     assert [each[3] for each in cells if each[1] == "20.3200"] == ["−0.0508"]
 
 
-def test_after_the_part_comes_the_table_and_escape_leads_there_at_once(
+def test_next_view_after_part_is_offset_table_and_escape_closes_part(
     room: Room, shown: EffectDisplay
 ) -> None:
     types(room, shown, "1", "0-.501")
@@ -96,7 +96,7 @@ def test_after_the_part_comes_the_table_and_escape_leads_there_at_once(
     assert shown.compared_part is None
 
 
-def test_a_program_that_makes_no_part_says_so(room: Room, shown: EffectDisplay) -> None:
+def test_program_without_part_shows_message(room: Room, shown: EffectDisplay) -> None:
     put(room.desk, "G90G94F100\nM03S1500\nT1\nX2Z2\nX2.5\nM30\n")
     types(room, shown, "1", "0-.501")
     turned_to_part(shown)
@@ -104,7 +104,7 @@ def test_a_program_that_makes_no_part_says_so(room: Room, shown: EffectDisplay) 
     assert text("offsets.no-part") in shown.words
 
 
-def test_of_a_program_that_is_too_long_no_part_is_compared(room: Room, shown: EffectDisplay) -> None:
+def test_part_of_too_long_program_is_not_compared(room: Room, shown: EffectDisplay) -> None:
     now = room.desk.program_loader.loaded
     assert now.picture is not None
     long = replace(now.picture, part=None, no_part="70000 blocks: too many")

@@ -17,7 +17,7 @@ from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import text
 
 
-def test_the_questions_in_their_order(room: Room) -> None:
+def test_questions_are_asked_in_order(room: Room) -> None:
     page = room.page()
     asked = []
     for key in ("1", "", "", ""):
@@ -39,7 +39,7 @@ def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
     )
 
 
-def test_an_empty_row_reads_as_on_the_control() -> None:
+def test_empty_offset_row_is_formatted_as_on_original_control() -> None:
     assert format_offset(SecondaryRow(), ValueMode()) == "X +0.00000  Z +0.00000  R 0.00000"
     assert (
         format_offset(SecondaryRow(0.0, -0.01, 0.4), ValueMode(is_metric=True))
@@ -47,14 +47,14 @@ def test_an_empty_row_reads_as_on_the_control() -> None:
     )
 
 
-def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
+def test_ten_small_corrections_equal_one_large_one(room: Room) -> None:
     page = room.page()
     for _ in range(10):
         room.enter(page, "1", ".0001", "", "")
     assert room.store.offsets.secondary_offsets.read_rows()[1].x == 0.0005 * 25.4
 
 
-def test_bare_return_keeps(room: Room) -> None:
+def test_return_without_value_leaves_offset_unchanged(room: Room) -> None:
     page = room.page()
     room.enter(page, "2", ".1", ".2", ".3", asked=True)
     room.enter(page, "2", "", ".01", "")
@@ -66,7 +66,7 @@ def test_bare_return_keeps(room: Room) -> None:
     assert len(room.store.offsets.read_history()) == 2
 
 
-def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
+def test_entry_evaluates_arithmetic_and_shows_old_and_new_values(room: Room) -> None:
     page = room.page()
     room.enter(page, "1")
     for key in ".5-.002":
@@ -101,7 +101,7 @@ def would_become(name: str, value: str, low: str, high: str) -> str:
         (("1", "", "", "-.01"), would_become("D1 R", "−0.01000", "0", "2")),
     ],
 )
-def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str, ...], why: str) -> None:
+def test_rejected_value_shows_reason_and_asks_again(room: Room, answers: tuple[str, ...], why: str) -> None:
     page = room.page()
     room.enter(page, *answers)
     assert room.desk.prompt_notice == text("offsets.refused", why=why)
@@ -109,7 +109,7 @@ def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str,
     assert room.store.offsets.secondary_offsets.read_rows() == {}
 
 
-def test_metric_when_the_control_is_metric(room: Room) -> None:
+def test_entry_is_metric_when_control_is_metric(room: Room) -> None:
     room.at(metric=True)
     page = room.page()
     room.enter(page, "1", ".02", "-.5", ".4", asked=True)
@@ -117,7 +117,7 @@ def test_metric_when_the_control_is_metric(room: Room) -> None:
     assert room.store.offsets.read_history()[0].why == "MM X .02 Z -.5 R .4"
 
 
-def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> None:
+def test_unit_change_cancels_entry(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".02")
     room.at(metric=True)
@@ -127,7 +127,7 @@ def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> Non
     assert room.store.offsets.secondary_offsets.read_rows() == {}
 
 
-def test_escape_goes_back_step_by_step(room: Room) -> None:
+def test_escape_returns_one_step_at_a_time(room: Room) -> None:
     page = room.page()
     room.enter(page, "4", ".1")
     assert page.handle_escape()
@@ -137,7 +137,7 @@ def test_escape_goes_back_step_by_step(room: Room) -> None:
     assert room.store.offsets.secondary_offsets.read_rows() == {}
 
 
-def test_clear_asks_once_more(room: Room) -> None:
+def test_clear_asks_for_confirmation(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "9", "", ".1", "", asked=True)
@@ -164,7 +164,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     assert sorted(room.store.offsets.secondary_offsets.read_rows()) == [1, 9]
 
 
-def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
+def test_clear_is_rejected_during_entry(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "1")
@@ -175,7 +175,7 @@ def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.only-at-number")
 
 
-def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
+def test_undo_affects_only_secondary_offsets(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.store.offsets.tool_offsets.change_row(1, "touched off", {"x": 5.0}).result(LIMIT)
@@ -190,7 +190,7 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
 
 
-def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(room: Room) -> None:
+def test_undo_after_number_is_for_that_offset_and_cancels_typed_value(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "2", ".2", "", "", asked=True)
@@ -207,7 +207,7 @@ def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(roo
     assert page.entry_step is SecondaryOffsetStep.NUMBER
 
 
-def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
+def test_history_lists_time_old_and_new_values_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "", asked=True)
     page.offset_history.toggle_list()
@@ -220,7 +220,7 @@ def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     assert page.offset_history.listed_changes is None
 
 
-def test_a_change_loads_the_program_again(room: Room) -> None:
+def test_offset_change_reloads_program(room: Room) -> None:
     room.desk.program_loader.start_loading(Path("part.nc"), block_delete=True)
     room.desk.program_loader.wait_until_loaded(LIMIT)
     page = room.page()
@@ -242,7 +242,7 @@ UNDER_WAY = [
 
 @pytest.mark.parametrize("state", UNDER_WAY)
 @pytest.mark.parametrize(("repeat", "when"), [(True, "next-part"), (False, "next-start")])
-def test_a_correction_while_parts_run_counts_from_the_next_one(
+def test_correction_during_run_applies_to_next_part(
     room: Room, state: MachineState, repeat: bool, when: str
 ) -> None:
     page = room.page()
@@ -259,7 +259,7 @@ def test_a_correction_while_parts_run_counts_from_the_next_one(
 
 
 @pytest.mark.parametrize("state", UNDER_WAY)
-def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: MachineState) -> None:
+def test_clear_all_is_rejected_while_program_runs(room: Room, state: MachineState) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.at(state)
@@ -271,14 +271,14 @@ def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: 
 
 
 @pytest.mark.parametrize("state", [MachineState.JOG, MachineState.HOMING])
-def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: MachineState) -> None:
+def test_correction_is_rejected_while_axes_are_jogged(room: Room, state: MachineState) -> None:
     page = room.page()
     room.at(state)
     room.enter(page, "1")
     assert room.desk.prompt_notice == text("offsets.moving")
 
 
-def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(room: Room) -> None:
+def test_diameter_mode_change_of_next_part_does_not_cancel_entry(room: Room) -> None:
     """Every part begins with G73 and goes over to its G72; the correction is a diameter all the same."""
     page = room.page()
     room.at(MachineState.RUN, diameter=True)
@@ -288,7 +288,7 @@ def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(r
     assert room.store.offsets.secondary_offsets.read_rows()[3].x == pytest.approx(-0.0001 * 25.4)
 
 
-def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
+def test_unit_change_of_next_part_cancels_entry(room: Room) -> None:
     page = room.page()
     room.at(MachineState.RUN)
     room.enter(page, "3", "-.0002")
@@ -298,7 +298,7 @@ def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
     assert 3 not in room.store.offsets.secondary_offsets.read_rows()
 
 
-def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> None:
+def test_correction_at_program_stop_applies_after_job_ends(room: Room) -> None:
     room.desk.program_loader.start_loading(Path("part.nc"))
     room.desk.program_loader.wait_until_loaded(LIMIT)
     page = room.page()
@@ -335,7 +335,7 @@ def test_offsets_of_a_file_are_read_only(read_only: Room) -> None:
     assert page.offset_book.secondary_offsets.get(1) == (0.0, 0.1, 0.0)
 
 
-def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
+def test_change_is_rejected_until_previous_one_is_saved(room: Room) -> None:
     book = OffsetBook(room.store)
     assert book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "one") == ""
     assert book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
@@ -345,13 +345,13 @@ def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     assert book.secondary_offsets.get(1) == (0.1, 0.0, 0.0)
 
 
-def test_a_store_that_is_closed_is_told(room: Room) -> None:
+def test_closed_store_is_reported(room: Room) -> None:
     book = OffsetBook(room.store)
     room.store.close()
     assert "closed" in book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "late")
 
 
-def test_a_page_left_before_the_disk_answers_builds_the_program_all_the_same(room: Room) -> None:
+def test_program_is_reloaded_when_page_is_left_before_save_completes(room: Room) -> None:
     room.desk.program_loader.start_loading(Path("part.nc"))
     room.desk.program_loader.wait_until_loaded(LIMIT)
     page = room.page()

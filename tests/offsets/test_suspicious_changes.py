@@ -54,11 +54,13 @@ TOOL = ToolRow(10.0, -50.0, wear_x=0.05)
         (MillRow("A", 80.0), MillRow("A", 80.0, dl=0.3), [("dl", SuspicionKind.LARGE_CHANGE)]),
     ],
 )
-def test_doubts(old: OffsetRow | None, new: OffsetRow, doubts: list[tuple[str, SuspicionKind]]) -> None:
+def test_suspicious_offset_changes_are_found(
+    old: OffsetRow | None, new: OffsetRow, doubts: list[tuple[str, SuspicionKind]]
+) -> None:
     assert [(each.name, each.kind) for each in find_suspicions(1, old, new, TRAVEL)] == doubts
 
 
-def test_a_new_master_names_itself_only_where_set_tools_follow() -> None:
+def test_new_master_tool_is_suspicious_only_with_set_tools() -> None:
     master = {1: {"x": 1.0, "z": 1.0, "master": True}}
     assert find_table_suspicions(OffsetKind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
     found = find_table_suspicions(OffsetKind.TOOL, {2: TOOL}, master, TRAVEL)
@@ -69,17 +71,17 @@ def test_a_new_master_names_itself_only_where_set_tools_follow() -> None:
     )
 
 
-def test_a_value_that_the_store_refuses_is_not_questioned() -> None:
+def test_value_rejected_by_store_is_not_suspicious() -> None:
     assert find_table_suspicions(OffsetKind.TOOL, {1: TOOL}, {1: {"x": 5000.0}}, TRAVEL) == ()
     assert find_table_suspicions(OffsetKind.TOOL, {1: TOOL}, {1: {"colour": 1.0}}, TRAVEL) == ()
 
 
-def test_datums_are_not_questioned() -> None:
+def test_datum_changes_are_not_suspicious() -> None:
     assert find_table_suspicions(OffsetKind.ZERO, {54: ZeroRow(1.0)}, {54: {"x": 900.0}}, TRAVEL) == ()
     assert find_table_suspicions(OffsetKind.PRESET, {1: PresetRow(1.0)}, {1: {"x": 900.0}}, TRAVEL) == ()
 
 
-def test_a_typed_x_of_a_tool_is_asked_and_esc_keeps_it(room: Room) -> None:
+def test_tool_x_with_changed_sign_needs_confirmation_and_escape_cancels_it(room: Room) -> None:
     room.store.offsets.tool_offsets.change_row(1, "touched off", {"x": 12.7, "z": -76.2}).result(60)
     room.desk.offset_book.read_store()
     grid = room.grid()
@@ -95,7 +97,7 @@ def test_a_typed_x_of_a_tool_is_asked_and_esc_keeps_it(room: Room) -> None:
     assert room.store.offsets.tool_offsets.read_rows()[1].x == 12.7
 
 
-def test_undo_takes_back_the_chosen_row_only(room: Room) -> None:
+def test_undo_affects_only_selected_row(room: Room) -> None:
     for number in (1, 2):
         room.store.offsets.tool_offsets.change_row(number, "touched off", {"x": 12.7, "z": -76.2})
     room.store.offsets.tool_offsets.change_row(1, "moved", {"x": 12.8})

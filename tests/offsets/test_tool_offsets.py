@@ -53,7 +53,7 @@ def write(grid: ToolOffsetTable, text: str) -> None:
         (False, "z", "-3-.01", -3.01 * INCH),
     ],
 )
-def test_a_length_is_read_as_the_control_shows_it(
+def test_length_is_read_in_displayed_units(
     room: Room, diameter: bool, name: str, typed: str, mm: float
 ) -> None:
     set_tools(room)
@@ -64,7 +64,7 @@ def test_a_length_is_read_as_the_control_shows_it(
     assert room.desk.prompt_notice == "T1 SAVED"
 
 
-def test_f2_adds_to_what_is_there(room: Room) -> None:
+def test_f2_adds_to_current_value(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "wear_x")
     for _ in range(10):
@@ -77,7 +77,7 @@ def test_f2_adds_to_what_is_there(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.add-first")
 
 
-def test_quadrant_remark_and_the_sum_that_the_control_gets(room: Room) -> None:
+def test_quadrant_remark_and_total_offset_are_stored(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "quadrant")
     room.enter(grid, "3")
@@ -94,7 +94,7 @@ def test_quadrant_remark_and_the_sum_that_the_control_gets(room: Room) -> None:
     assert row.offset == pytest.approx((-12.7, -76.2508))
 
 
-def test_a_remark_takes_letters_only_once_it_is_open(room: Room) -> None:
+def test_remark_accepts_letters_only_when_open(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "remark")
     assert not grid.accepts_key("H")
@@ -117,7 +117,7 @@ def test_a_tool_that_was_never_set_needs_x_and_z_together(room: Room) -> None:
     assert room.store.offsets.tool_offsets.read_rows() == {7: ToolRow(INCH, -2 * INCH)}
 
 
-def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
+def test_incomplete_tool_is_discarded_when_left(room: Room) -> None:
     grid = at(room, 7, "z")
     room.enter(grid, "1")
     grid.handle_key("Down")
@@ -127,14 +127,14 @@ def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
 
 
 @pytest.mark.parametrize("name", ["nose_radius", "wear_x", "quadrant"])
-def test_no_other_field_of_a_tool_that_was_never_set(room: Room, name: str) -> None:
+def test_other_fields_of_unset_tool_are_rejected(room: Room, name: str) -> None:
     grid = at(room, 7, name)
     room.enter(grid, "0")
     assert room.desk.prompt_notice == text("offsets.never-set", number=7)
     assert room.store.offsets.tool_offsets.read_rows() == {}
 
 
-def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> None:
+def test_tools_are_shown_relative_to_selected_master(room: Room) -> None:
     set_tools(room)
     grid = at(room, 2, "master")
     grid.toggle_relative_display()
@@ -155,7 +155,7 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     assert room.store.offsets.tool_offsets.read_rows()[1].x == -12.7
 
 
-def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
+def test_cursor_does_not_leave_unfinished_entry(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "x")
     write(grid, "1")
@@ -183,7 +183,7 @@ GEOMETRY = ("x", "z", "nose_radius", "quadrant", "master")
     ],
 )
 @pytest.mark.parametrize("name", GEOMETRY)
-def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: MachineState, name: str) -> None:
+def test_geometry_change_is_rejected_during_cycle(room: Room, state: MachineState, name: str) -> None:
     set_tools(room)
     before = room.store.offsets.tool_offsets.read_rows()
     room.at(state)
@@ -214,7 +214,7 @@ def test_while_a_part_runs_only_wear_may_change(room: Room, state: MachineState,
     assert room.store.offsets.tool_offsets.read_rows()[1].wear_x == pytest.approx(-0.0127)
 
 
-def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
+def test_start_during_entry_rejects_its_completion(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "x")
     write(grid, "1")
@@ -224,7 +224,7 @@ def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
     assert room.store.offsets.tool_offsets.read_rows()[1].x == -12.7
 
 
-def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
+def test_unit_change_cancels_entry(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "x")
     write(grid, "1")
@@ -234,7 +234,7 @@ def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.units-changed")
 
 
-def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: Room) -> None:
+def test_diameter_mode_change_does_not_cancel_wear_entry(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "wear_x")
     room.at(MachineState.RUN)
@@ -270,7 +270,7 @@ def would_become(field: str, value: str, low: str, high: str) -> str:
         ),
     ],
 )
-def test_what_is_no_value_is_refused_and_stays_to_be_mended(
+def test_invalid_value_is_rejected_and_remains_for_editing(
     room: Room, name: str, typed: str, why: str
 ) -> None:
     set_tools(room)
@@ -284,7 +284,7 @@ def test_what_is_no_value_is_refused_and_stays_to_be_mended(
     assert room.store.offsets.tool_offsets.read_rows() == before
 
 
-def test_undo_and_history(room: Room) -> None:
+def test_undo_restores_values_and_history_lists_changes(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "wear_x")
     room.enter(grid, "-.001")
@@ -302,7 +302,7 @@ def test_undo_and_history(room: Room) -> None:
     assert grid.handle_escape()
 
 
-def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> None:
+def test_undo_of_incomplete_tool_does_not_undo_older_change(room: Room) -> None:
     set_tools(room)
     before = room.store.offsets.tool_offsets.read_rows()
     grid = at(room, 5, "x")
@@ -318,13 +318,13 @@ def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> 
     assert "UNDONE" not in room.desk.prompt_notice
 
 
-def test_c_and_letters_are_not_taken(room: Room) -> None:
+def test_c_and_letter_keys_are_not_handled(room: Room) -> None:
     grid = room.grid()
     assert not grid.handle_key("C")
     assert not grid.handle_key("H")
 
 
-def test_d_is_no_key_where_the_language_has_no_edges(room: Room) -> None:
+def test_d_key_is_ignored_in_language_without_edges(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "z")
     assert not grid.handle_key("D")
@@ -357,7 +357,7 @@ def test_d_opens_another_cutting_edge(with_edges: Room) -> None:
     assert grid.question_text.startswith("T1 D2 ")
 
 
-def test_an_edge_that_nobody_has_typed_goes_again(with_edges: Room) -> None:
+def test_unedited_cutting_edge_is_discarded(with_edges: Room) -> None:
     room = with_edges
     set_tools(room)
     grid = at(room, 1, "x")
@@ -366,7 +366,7 @@ def test_an_edge_that_nobody_has_typed_goes_again(with_edges: Room) -> None:
     assert (grid.tool_number, grid.tool_numbers[:2]) == (2, (1, 2))
 
 
-def test_no_edge_of_a_tool_that_was_never_set(with_edges: Room) -> None:
+def test_unset_tool_has_no_other_edge(with_edges: Room) -> None:
     room = with_edges
     set_tools(room)
     grid = at(room, 5, "x")

@@ -63,7 +63,7 @@ def save(room: Room, page: ToolShapeTable) -> None:
     page.update(room.now[0])
 
 
-def test_fields_are_those_of_the_kind(room: Room) -> None:
+def test_fields_depend_on_tool_kind(room: Room) -> None:
     page = shape_of(room, 1)
     assert page.field_names[:4] == ("kind", "hand", "quadrant", "nose_radius")
     assert "diameter" not in page.field_names
@@ -89,7 +89,7 @@ def test_every_kind_has_its_fields_on_the_page(room: Room, kind: str) -> None:
     assert ToolKind(kind)
 
 
-def test_kind_is_turned_to_and_set(room: Room) -> None:
+def test_tool_kind_is_selected_and_saved(room: Room) -> None:
     page = shape_of(room, 2)
     write(page, "Right")
     assert page.entered_text == "TURNING"
@@ -122,7 +122,7 @@ def test_angle_is_typed_in_degrees(room: Room) -> None:
     assert page.format_field("point") == "118°"
 
 
-def test_text_is_opened_written_and_kept(room: Room) -> None:
+def test_text_is_opened_edited_and_saved(room: Room) -> None:
     page = shape_of(room, 1, "insert")
     assert not page.accepts_key("D")
     write(page, "Enter")
@@ -133,7 +133,7 @@ def test_text_is_opened_written_and_kept(room: Room) -> None:
     assert page.format_field("insert") == "DNMG 442"
 
 
-def test_nose_radius_and_tip_are_those_of_the_offset(room: Room) -> None:
+def test_nose_radius_and_tip_come_from_offset(room: Room) -> None:
     page = shape_of(room, 1, "nose_radius")
     assert page.format_field("nose_radius") == "0.03125"
     write(page, ".0156", "Enter")
@@ -145,7 +145,7 @@ def test_nose_radius_and_tip_are_those_of_the_offset(room: Room) -> None:
     assert page.tool_outline.cutting_outlines[0][:, 1].min() == pytest.approx(0.0, abs=1e-9)
 
 
-def test_page_keys_go_to_the_next_tool_and_the_table_stands_there_too(room: Room) -> None:
+def test_page_keys_select_next_tool_in_page_and_table(room: Room) -> None:
     page = shape_of(room, 1)
     write(page, "Page down", "Page down")
     assert (page.tool_number, room.grid().tool_number) == (3, 3)
@@ -153,7 +153,7 @@ def test_page_keys_go_to_the_next_tool_and_the_table_stands_there_too(room: Room
     assert page.tool_number == 1
 
 
-def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room) -> None:
+def test_f3_deletes_shape_after_confirmation_and_undo_restores_it(room: Room) -> None:
     page = shape_of(room, 3)
     page.delete_shape()
     assert text("offsets.forget-shape", number=3) in room.desk.prompt_notice
@@ -203,7 +203,7 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
         (1, "quadrant", ("10", "Enter"), text("offsets.takes", field="tip quadrant", range="0…9")),
     ],
 )
-def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
+def test_invalid_value_is_rejected_and_remains_for_editing(
     room: Room, number: int, name: str, keys: tuple[str, ...], says: str
 ) -> None:
     page = shape_of(room, number, name)
@@ -225,7 +225,7 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
     ) == before
 
 
-def test_letters_are_no_figures(room: Room) -> None:
+def test_letters_are_rejected_in_number_field(room: Room) -> None:
     page = shape_of(room, 3, "diameter")
     assert not page.handle_key("q")
     write(page, "Up")
@@ -235,14 +235,14 @@ def test_letters_are_no_figures(room: Room) -> None:
     assert page.text == ""
 
 
-def test_text_takes_nothing_before_it_is_opened(room: Room) -> None:
+def test_text_field_accepts_nothing_before_it_is_opened(room: Room) -> None:
     page = shape_of(room, 1, "insert")
     write(page, "5")
     assert room.desk.prompt_notice == text("offsets.write-it")
     assert page.text == ""
 
 
-def test_what_is_not_entered_keeps_the_cursor(room: Room) -> None:
+def test_cursor_does_not_leave_unfinished_entry(room: Room) -> None:
     page = shape_of(room, 3, "diameter")
     write(page, ".3", "Down")
     assert page.name == "diameter"
@@ -254,7 +254,7 @@ def test_what_is_not_entered_keeps_the_cursor(room: Room) -> None:
     assert not page.handle_escape()
 
 
-def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
+def test_changes_are_rejected_while_program_runs(room: Room) -> None:
     page = shape_of(room, 3, "diameter")
     room.at(MachineState.RUN)
     write(page, ".3", "Enter")
@@ -269,7 +269,7 @@ def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
     assert len(room.store.offsets.tool_shapes.read_history()) == 2
 
 
-def test_there_is_no_shape_to_take_away(room: Room) -> None:
+def test_missing_shape_cannot_be_deleted(room: Room) -> None:
     page = shape_of(room, 2)
     page.delete_shape()
     assert room.desk.prompt_notice == text("offsets.no-shape", number=2)

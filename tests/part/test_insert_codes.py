@@ -50,7 +50,7 @@ PAIRS = (
 
 
 @pytest.mark.parametrize(("code", "angle", "circle", "edge", "thick", "nose", "clearance"), CATALOGUE)
-def test_metric_code_is_the_catalogues_insert(
+def test_metric_code_gives_catalog_dimensions(
     code: str, angle: float, circle: float, edge: float, thick: float, nose: float, clearance: float
 ) -> None:
     insert = decode_insert_code(code)
@@ -61,7 +61,7 @@ def test_metric_code_is_the_catalogues_insert(
 
 
 @pytest.mark.parametrize(("inch", "metric"), PAIRS)
-def test_inch_code_is_the_metric_insert(inch: str, metric: str) -> None:
+def test_inch_code_equals_metric_insert(inch: str, metric: str) -> None:
     one, other = decode_insert_code(inch), decode_insert_code(metric)
     assert one.corner_angles == other.corner_angles
     assert one.inscribed_circle == pytest.approx(other.inscribed_circle, abs=0.001)
@@ -69,17 +69,17 @@ def test_inch_code_is_the_metric_insert(inch: str, metric: str) -> None:
     assert one.nose_radius == pytest.approx(other.nose_radius, abs=0.01)  # .8 for 1/32 in
 
 
-def test_inch_corner_is_sixty_fourths_of_an_inch() -> None:
+def test_inch_nose_radius_is_in_64ths_of_an_inch() -> None:
     assert decode_insert_code("CNMG432").nose_radius == pytest.approx(25.4 / 32)
     assert decode_insert_code("VCGT 22.50.5").nose_radius == pytest.approx(0.2032)
 
 
 @pytest.mark.parametrize("code", ["cnmg 12 04 08", "CNMG 120408-PM", "CNMG120408 EN", "CNMG_120408"])
-def test_writing_and_makers_marks_change_nothing(code: str) -> None:
+def test_spacing_and_maker_suffix_do_not_change_insert(code: str) -> None:
     assert decode_insert_code(code) == decode_insert_code("CNMG 120408")
 
 
-def test_round_insert_is_all_nose() -> None:
+def test_round_insert_has_nose_radius_of_half_its_diameter() -> None:
     assert decode_insert_code("RCMT 10T3M0").nose_radius == 5.0
     assert decode_insert_code("RNMG 120400").nose_radius == pytest.approx(6.35)
     assert decode_insert_code("RCMT 1204M0").nose_radius == 6.0, "with M0 the size is metric"
@@ -96,7 +96,7 @@ def test_knux_is_the_only_parallelogram() -> None:
 
 
 @pytest.mark.parametrize("shape", [shape for shape in CORNER_ANGLES if shape not in "RK"])
-def test_size_is_the_edge_in_whole_millimetres(shape: str) -> None:
+def test_metric_size_is_edge_length_in_whole_millimeters(shape: str) -> None:
     """ISO 1832, symbol 5; the standard's tables list 16 for T 3/8 in, 22 for 1/2 in, 08 for W 1/2 in."""
     for figures, circle in list_metric_circle_sizes(shape).items():
         edge = decoded_edge(shape, circle)
@@ -136,7 +136,7 @@ def decoded_edge(shape: str, circle: float) -> float:
         ("", "character-missing", "1"),
     ],
 )
-def test_code_that_means_nothing_says_which_character(insert: str, code: str, value: str) -> None:
+def test_invalid_code_names_the_wrong_character(insert: str, code: str, value: str) -> None:
     with raises_code(InsertCodeError, code, value) as caught:
         decode_insert_code(insert)
     assert str(caught.value).startswith(f"{insert}: ")
@@ -155,12 +155,12 @@ def test_code_that_means_nothing_says_which_character(insert: str, code: str, va
         (22.225, ("22", "27", "22", "38", "38", "15")),
     ],
 )
-def test_sizes_are_those_of_the_catalogues(circle: float, figures: tuple[str, ...]) -> None:
+def test_inscribed_circles_match_catalogs(circle: float, figures: tuple[str, ...]) -> None:
     for shape, name in zip("CDSTVW", figures, strict=True):
         assert list_metric_circle_sizes(shape)[name] == pytest.approx(circle)
 
 
-def test_thin_inserts_of_small_bars_have_makers_circles() -> None:
+def test_thin_small_inserts_have_maker_dimensions() -> None:
     assert decode_insert_code("CCMT 040204").inscribed_circle == pytest.approx(4.7625)
     assert decode_insert_code("CCGT 04T002").inscribed_circle == 4.3
     assert decode_insert_code("CCGT 030102").inscribed_circle == 3.5

@@ -68,7 +68,7 @@ def check(metal: np.ndarray, depth: FloatArray) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_mill_parallel_to_the_axis(seed: int) -> None:
+def test_axial_mill_removes_points_within_its_path(seed: int) -> None:
     random, part = np.random.default_rng(seed), tube()
     path = np.column_stack([random.uniform(-12.0, 12.0, (4, 2)), random.uniform(-15.0, 1.0, 4)])
     radius, length = random.uniform(0.5, 4.0), random.choice([6.0, 100.0])
@@ -81,7 +81,7 @@ def test_mill_parallel_to_the_axis(seed: int) -> None:
 
 @pytest.mark.parametrize("height", [0.0, 1.5])
 @pytest.mark.parametrize("seed", range(6))
-def test_mill_on_a_radius(seed: int, height: float) -> None:
+def test_radial_mill_removes_points_within_its_path(seed: int, height: float) -> None:
     random, part = np.random.default_rng(seed), tube()
     path = np.column_stack(
         [
@@ -101,7 +101,7 @@ def test_mill_on_a_radius(seed: int, height: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_meets_takes_and_what_does_not_leaves(seed: int) -> None:
+def test_collision_check_agrees_with_material_removal(seed: int) -> None:
     random, part = np.random.default_rng(seed), tube()
     for _ in range(5):
         place = random.uniform(-14.0, 14.0, 2)

@@ -28,7 +28,7 @@ def bar() -> MilledPart:
 @pytest.mark.parametrize(
     ("c", "x", "y"), [(0.0, 7.0, 0.0), (90.0, 0.0, -7.0), (-90.0, 0.0, 7.0), (180.0, -7.0, 0.0)]
 )
-def test_tool_at_minus_x_stands_at_minus_c(c: float, x: float, y: float) -> None:
+def test_tool_at_x_minus_is_at_negative_c_angle_on_part(c: float, x: float, y: float) -> None:
     """C turns the part from X towards Y; what comes under a tool that stands still goes the other way."""
     assert make_axial_path(np.array([[-7.0, -1.0, c]]))[0] == pytest.approx([x, y, -1.0])
     r, z, angle = make_radial_path(np.array([[-7.0, -1.0, c]]))[0]
@@ -36,19 +36,19 @@ def test_tool_at_minus_x_stands_at_minus_c(c: float, x: float, y: float) -> None
     assert (r * math.cos(math.radians(angle)), r * math.sin(math.radians(angle))) == pytest.approx((x, y))
 
 
-def test_tool_at_plus_x_stands_opposite() -> None:
+def test_tool_at_x_plus_is_on_opposite_side() -> None:
     assert make_axial_path(np.array([[7.0, 0.0, 90.0]]))[0] == pytest.approx([0.0, 7.0, 0.0])
     assert make_radial_path(np.array([[7.0, 0.0, 90.0]]), is_far_side=True)[0] == pytest.approx(
         [7.0, 0.0, 90.0]
     )
 
 
-def test_tool_above_the_axis_stands_towards_y() -> None:
+def test_tool_above_center_is_toward_y() -> None:
     assert make_axial_path(np.array([[-4.0, 0.0, 0.0]]), height=3.0)[0] == pytest.approx([4.0, 3.0, 0.0])
     assert make_axial_path(np.array([[-4.0, 0.0, 90.0]]), height=3.0)[0] == pytest.approx([3.0, -4.0, 0.0])
 
 
-def test_line_on_the_face_lies_on_the_part_as_c_stood_when_xc_was_entered() -> None:
+def test_face_line_is_rotated_by_c_at_plane_entry() -> None:
     move = PlaneMove(FacePlane(90.0), (5.0, 0.0, -1.0), (5.0, 3.0, -1.0))
     way = make_plane_path(move, z_offset=0.5)
     assert way == pytest.approx(np.array([[0.0, -5.0, -0.5], [3.0, -5.0, -0.5]]))
@@ -56,7 +56,7 @@ def test_line_on_the_face_lies_on_the_part_as_c_stood_when_xc_was_entered() -> N
 
 @pytest.mark.parametrize("h", [0.0, 0.75, -2.0])
 @pytest.mark.parametrize("c0", [0.0, 30.0])
-def test_path_on_the_face_is_where_the_slides_bring_the_mill(c0: float, h: float) -> None:
+def test_face_path_matches_machine_positions(c0: float, h: float) -> None:
     move = PlaneMove(
         FacePlane(c0, h), (8.0, -3.0, 0.0), (5.0, 6.0, -2.0), start_angle_rad=math.atan2(-3.0, 8.0)
     )
@@ -64,7 +64,7 @@ def test_path_on_the_face_is_where_the_slides_bring_the_mill(c0: float, h: float
     assert make_plane_path(move) == pytest.approx(make_axial_path(move.compute_machine_positions(share), h))
 
 
-def test_line_past_the_axis_nearer_than_the_mill_stands_high_goes_round_it() -> None:
+def test_face_line_closer_to_axis_than_tool_height_goes_around_it() -> None:
     move = PlaneMove(
         FacePlane(0.0, 1.0), (8.0, 0.5, 0.0), (-8.0, 0.5, 0.0), start_angle_rad=math.atan2(0.5, 8.0)
     )
@@ -74,7 +74,7 @@ def test_line_past_the_axis_nearer_than_the_mill_stands_high_goes_round_it() -> 
 
 
 @pytest.mark.parametrize("radius", [0.05, 1.0, 12.7, 200.0])
-def test_chords_of_an_arc_lie_within_their_error(radius: float) -> None:
+def test_arc_chords_are_within_chord_error(radius: float) -> None:
     move = PlaneMove(FacePlane(0.0), (radius, 0.0, 0.0), (-radius, 0.0, 0.0), center=(0.0, 0.0))
     way = make_plane_path(move)
     middle = 0.5 * (way[1:] + way[:-1])
@@ -91,7 +91,7 @@ def test_side_is_unrolled_at_its_diameter() -> None:
     )
 
 
-def test_full_turn_with_the_mill_held_off_the_centre_leaves_a_ring() -> None:
+def test_full_revolution_off_center_cuts_a_ring() -> None:
     part = bar()
     way = make_locked_path(np.array([-6.0, -2.0, 0.0]), np.array([-6.0, -2.0, 360.0]))
     told = part.mill_axial(make_axial_path(way), 1.0)
@@ -99,14 +99,14 @@ def test_full_turn_with_the_mill_held_off_the_centre_leaves_a_ring() -> None:
     assert part.field.volume_mm3 == pytest.approx(math.pi * (2000.0 - 48.0), rel=1e-3)
 
 
-def test_chords_of_a_move_with_c_lie_within_their_error() -> None:
+def test_chords_of_move_with_c_are_within_chord_error() -> None:
     way = make_axial_path(make_locked_path(np.array([-10.0, 0.0, 0.0]), np.array([-10.0, 0.0, 200.0])))
     middle = 0.5 * (way[1:] + way[:-1])
     assert 10.0 - np.hypot(middle[:, 0], middle[:, 1]).min() <= MAX_CHORD_ERROR_MM
     assert len(make_locked_path(np.array([-10.0, 0.0, 5.0]), np.array([-3.0, 0.0, 5.0]))) == 2
 
 
-def test_hexagon_by_xc_stands_as_it_was_entered() -> None:
+def test_hexagon_in_face_plane_has_programmed_orientation() -> None:
     """Across flats 16 with a mill of 6: the first flat looks along the part's -Y, as C stood at 90."""
     part = bar()
     corner = 11.0 / math.cos(math.pi / 6.0)

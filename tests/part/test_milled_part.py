@@ -67,7 +67,7 @@ def check(part: MilledPart, removed: float, told: float, *, share: float = PER_C
     ("sides", "apothem", "area"),
     [(6, 8.0, 2.0 * math.sqrt(3.0) * 64.0), (4, 7.0, 196.0), (8, 9.0, 8.0 * 81.0 * math.tan(math.pi / 8.0))],
 )
-def test_prism_milled_at_the_end_of_a_bar(sides: int, apothem: float, area: float) -> None:
+def test_prism_is_milled_at_end_of_bar(sides: int, apothem: float, area: float) -> None:
     part = bar()
     told = sum(
         part.mill_axial(past(360.0 / sides * k, apothem, 3.0, -6.0), 3.0).volume_mm3 for k in range(sides)
@@ -75,7 +75,7 @@ def test_prism_milled_at_the_end_of_a_bar(sides: int, apothem: float, area: floa
     check(part, (math.pi * R * R - area) * 6.0, told, share=THOUSANDTH)
 
 
-def test_flat_milled_along_the_side_by_the_end_of_the_mill() -> None:
+def test_flat_is_milled_along_side_with_end_of_mill() -> None:
     part = bar()
     told = part.mill_radial(path((8.0, 10.0, 90.0), (8.0, -30.0, 90.0)), 6.5)
     check(part, segment(R, 8.0) * LENGTH, told.volume_mm3, share=THOUSANDTH)
@@ -84,7 +84,7 @@ def test_flat_milled_along_the_side_by_the_end_of_the_mill() -> None:
     assert part.field.outer_radii[0, 0, 540] == pytest.approx(10.0)
 
 
-def test_two_flats_turned_by_c_in_between() -> None:
+def test_two_flats_are_milled_with_c_rotation_between() -> None:
     part = bar()
     told = sum(part.mill_radial(path((8.5, 10.0, c), (8.5, -5.0, c)), 7.0).volume_mm3 for c in (0.0, 180.0))
     # The mill's round stands in the bar where it stops: its half circle at Z -5.
@@ -96,14 +96,14 @@ def test_two_flats_turned_by_c_in_between() -> None:
 # --- holes
 
 
-def test_cross_hole_through_a_bar() -> None:
+def test_cross_hole_through_bar_has_expected_volume() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -10.0, 37.0), (-12.0, -10.0, 37.0)), 3.0)
     hole = 8.0 * integral(lambda x: np.sqrt((R * R - x * x) * (9.0 - x * x)), 0.0, 3.0)
     check(part, hole, told.volume_mm3)
 
 
-def test_cross_hole_through_both_walls_of_a_tube() -> None:
+def test_cross_hole_through_tube_has_expected_volume() -> None:
     part = bar(bore=6.0)
     told = part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0)
     walls = 8.0 * integral(
@@ -112,7 +112,7 @@ def test_cross_hole_through_both_walls_of_a_tube() -> None:
     check(part, walls, told.volume_mm3)
 
 
-def test_cross_hole_beside_the_axis() -> None:
+def test_off_center_cross_hole_leaves_other_side_uncut() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0, axis_offset=5.0)
     hole = 4.0 * integral(lambda v: np.sqrt(R * R - (5.0 + v) ** 2) * np.sqrt(4.0 - v * v), -2.0, 2.0)
@@ -121,7 +121,7 @@ def test_cross_hole_beside_the_axis() -> None:
     assert part.field.outer_radii[0, :, 660].min() == pytest.approx(R)
 
 
-def test_blind_hole_on_the_side_with_the_point_of_a_drill() -> None:
+def test_blind_hole_on_side_has_drill_point() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -10.0, 200.0), (4.0, -10.0, 200.0)), 2.0, cone_height=1.2)
     above = integral(lambda u: 2.0 * np.sqrt(4.0 - u * u) * (np.sqrt(R * R - u * u) - 4.0), -2.0, 2.0)
@@ -129,13 +129,13 @@ def test_blind_hole_on_the_side_with_the_point_of_a_drill() -> None:
 
 
 @pytest.mark.parametrize("point", [0.0, 1.2])
-def test_hole_in_the_face_off_the_centre(point: float) -> None:
+def test_off_center_face_hole_has_expected_volume(point: float) -> None:
     part = bar()
     told = part.mill_axial(path((5.0, -1.0, 2.0), (5.0, -1.0, -12.0)), 2.0, cone_height=point)
     check(part, math.pi * 4.0 * (12.0 - point * 2.0 / 3.0), told.volume_mm3, share=0.003)
 
 
-def test_hole_in_the_face_over_the_axis() -> None:
+def test_face_hole_on_axis_has_expected_volume() -> None:
     part = bar()
     told = part.mill_axial(path((0.5, 0.0, 2.0), (0.5, 0.0, -12.0)), 2.0)
     check(part, math.pi * 4.0 * 12.0, told.volume_mm3, share=THOUSANDTH)
@@ -145,20 +145,20 @@ def test_hole_in_the_face_over_the_axis() -> None:
 # --- slots and pockets
 
 
-def test_key_slot_with_round_ends() -> None:
+def test_key_slot_has_round_ends() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -14.0, 45.0), (7.0, -14.0, 45.0), (7.0, -6.0, 45.0)), 2.0)
     slot = integral(lambda u: (np.sqrt(R * R - u * u) - 7.0) * (8.0 + 2.0 * np.sqrt(4.0 - u * u)), -2.0, 2.0)
     check(part, slot, told.volume_mm3)
 
 
-def test_slot_round_the_part_is_a_groove() -> None:
+def test_full_revolution_slot_is_a_groove() -> None:
     part = bar()
     told = part.mill_radial(path((8.0, -10.0, 0.0), (8.0, -10.0, 360.0)), 1.5)
     check(part, math.pi * (R * R - 64.0) * 3.0, told.volume_mm3)
 
 
-def test_slot_over_a_sector_by_turning_c() -> None:
+def test_slot_over_sector_by_c_rotation_has_expected_volume() -> None:
     part = bar(radius=20.0)
     told = part.mill_radial(path((17.0, -10.0, 10.0), (17.0, -10.0, 100.0)), 1.0)
     # Unrolled at each r it is as wide as the mill, with round ends; (1/17)² is left out.
@@ -166,14 +166,14 @@ def test_slot_over_a_sector_by_turning_c() -> None:
     check(part, 2.0 * math.radians(90.0) * r + math.pi * 3.0, told.volume_mm3)
 
 
-def test_helical_slot() -> None:
+def test_helical_slot_has_expected_volume() -> None:
     part = bar(radius=20.0)
     told = part.mill_radial(path((17.0, -16.0, 0.0), (17.0, -4.0, 120.0)), 1.0)
     turn = math.radians(120.0)
     check(part, integral(lambda r: 2.0 * np.hypot(r * turn, 12.0) + math.pi, 17.0, 20.0), told.volume_mm3)
 
 
-def test_slot_across_the_face() -> None:
+def test_slot_across_face_has_expected_volume() -> None:
     part = bar()
     told = part.mill_axial(path((0.0, -15.0, -4.0), (0.0, 15.0, -4.0)), 2.5)
     check(
@@ -181,7 +181,7 @@ def test_slot_across_the_face() -> None:
     )
 
 
-def test_round_pocket_in_the_face_off_the_centre() -> None:
+def test_off_center_round_pocket_in_face_has_expected_volume() -> None:
     part = bar()
     turn = np.linspace(0.0, 2.0 * math.pi, 361)
     circle = np.column_stack([4.0 + 1.5 * np.cos(turn), 1.0 + 1.5 * np.sin(turn), np.full(361, -3.0)])
@@ -190,7 +190,7 @@ def test_round_pocket_in_the_face_off_the_centre() -> None:
     assert told.back_z_mm == pytest.approx(-3.0)
 
 
-def test_slot_with_a_ramp_down_is_as_deep_as_the_end_of_the_mill_came() -> None:
+def test_ramped_slot_is_as_deep_as_end_of_mill() -> None:
     part = bar()
     told = part.mill_axial(path((-4.0, 3.0, 0.0), (4.0, 3.0, -4.0)), 2.0)
     # Each spot is as deep as the mill's rear edge leaves it: half a millimetre a millimetre along X.
@@ -201,7 +201,7 @@ def test_slot_with_a_ramp_down_is_as_deep_as_the_end_of_the_mill_came() -> None:
     check(part, float(depth.sum()) * 0.005 * 0.005, told.volume_mm3)
 
 
-def test_end_mill_no_longer_than_its_flutes_leaves_what_stands_above() -> None:
+def test_end_mill_cuts_only_along_its_flute_length() -> None:
     part = bar()
     told = part.mill_axial(path((15.0, 0.0, -6.0), (9.0, 0.0, -6.0)), 2.0, cutting_length=3.0)
     other = bar()
@@ -213,7 +213,7 @@ def test_end_mill_no_longer_than_its_flutes_leaves_what_stands_above() -> None:
 # --- one after the other
 
 
-def test_hexagon_turned_afterwards() -> None:
+def test_hexagon_is_turned_after_milling() -> None:
     part = bar()
     for k in range(6):
         part.mill_axial(past(60.0 * k, 8.0, 3.0, -30.0), 3.0)
@@ -223,7 +223,7 @@ def test_hexagon_turned_afterwards() -> None:
     assert part.field.volume_mm3 == pytest.approx(area * LENGTH, rel=THOUSANDTH)
 
 
-def test_bore_turned_through_a_cross_hole() -> None:
+def test_bore_is_turned_through_cross_hole() -> None:
     part = bar()
     part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0)
     count = len(part.field.column_centers)
@@ -235,7 +235,7 @@ def test_bore_turned_through_a_cross_hole() -> None:
     assert part.field.volume_mm3 == pytest.approx(left, rel=THOUSANDTH)
 
 
-def test_two_holes_behind_each_other_on_a_ray_leave_three_layers() -> None:
+def test_two_holes_across_one_ray_leave_three_layers() -> None:
     part = bar()
     for x in (3.0, 7.0):
         part.mill_axial(path((x, 0.0, -5.0)), 1.0)
@@ -248,7 +248,7 @@ def test_two_holes_behind_each_other_on_a_ray_leave_three_layers() -> None:
     assert field.outer_radii[there, -1, 0] == pytest.approx([2.0, 10.0])
 
 
-def test_same_cut_again_meets_nothing() -> None:
+def test_repeated_cut_removes_nothing() -> None:
     part = bar()
     way = path((7.0, -14.0, 45.0), (7.0, -6.0, 45.0))
     assert part.mill_radial(way, 2.0)
@@ -263,7 +263,7 @@ def test_same_cut_again_meets_nothing() -> None:
     ("x", "z", "met"),
     [(14.0, -5.0, False), (11.999, -5.0, False), (11.99, -5.0, True), (5.0, 0.0, False), (5.0, -0.01, True)],
 )
-def test_rapid_of_a_mill_parallel_to_the_axis_meets_the_bar(x: float, z: float, met: bool) -> None:
+def test_rapid_of_axial_mill_collides_with_bar(x: float, z: float, met: bool) -> None:
     part = bar()
     assert part.has_axial_collision(path((14.0, 0.0, z), (x, 0.0, z)) if z else path((x, 0.0, z)), 2.0) is met
     assert part.field.volume_mm3 == pytest.approx(BAR, rel=1e-4)
@@ -273,13 +273,13 @@ def test_rapid_of_a_mill_parallel_to_the_axis_meets_the_bar(x: float, z: float, 
     ("r", "z", "met"),
     [(10.0, -5.0, False), (9.99, -5.0, True), (5.0, 2.001, False), (5.0, 1.99, True), (5.0, -22.0, False)],
 )
-def test_rapid_of_a_mill_on_a_radius_meets_the_bar(r: float, z: float, met: bool) -> None:
+def test_rapid_of_radial_mill_collides_with_bar(r: float, z: float, met: bool) -> None:
     part = bar()
     assert part.has_radial_collision(path((r, z, 10.0), (r, z, 70.0)), 2.0) is met
     assert part.field.volume_mm3 == pytest.approx(BAR, rel=1e-4)
 
 
-def test_mill_short_of_the_bar_takes_nothing() -> None:
+def test_mill_clear_of_bar_removes_nothing() -> None:
     part = bar()
     assert not part.mill_axial(path((0.0, 0.0, 1.0), (5.0, 0.0, 0.0)), 3.0)
     assert not part.mill_radial(path((11.0, -5.0, 0.0), (10.0, -5.0, 300.0)), 3.0)
@@ -287,7 +287,7 @@ def test_mill_short_of_the_bar_takes_nothing() -> None:
 
 
 @pytest.mark.parametrize("wrong", [np.zeros((3, 2)), np.zeros(3), np.zeros((0, 3))])
-def test_path_without_three_figures_a_point_is_refused(wrong: FloatArray) -> None:
+def test_path_without_three_coordinates_is_rejected(wrong: FloatArray) -> None:
     with raises_code(PartError, "points-not-xyz"):
         bar().mill_axial(wrong, 1.0)
     with raises_code(PartError, "points-not-xyz"):

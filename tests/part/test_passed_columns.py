@@ -35,14 +35,16 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return count
 
 
-def test_the_greatest_radius_is_that_of_the_columns_between() -> None:
+def test_max_radius_is_that_of_columns_in_range() -> None:
     assert part().find_max_radius(-15.0, -1.0) == 5.0
     assert part().find_max_radius(-30.0, -1.0) == 10.0
     assert part().find_max_radius(1.0, 5.0) == 0.0
 
 
 @pytest.mark.parametrize("end", [(-15.0, 5.5), (-19.0, 5.1)])
-def test_a_holder_beside_a_smaller_diameter_is_not_swept(end: Point, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_holder_clear_of_smaller_diameter_is_not_checked_in_detail(
+    end: Point, monkeypatch: pytest.MonkeyPatch
+) -> None:
     count = counted(monkeypatch)
     assert not Cutter([EDGE], [HOLDER], CutSide.OUTSIDE).cut_with_body(part(), (5.0, 5.5), end)
     assert count[0] == 0
@@ -54,11 +56,11 @@ def test_a_holder_in_the_part_is_found(end: Point, depth: float) -> None:
     assert met.depth_mm == pytest.approx(depth, abs=1e-9)
 
 
-def test_an_edge_behind_the_axis_is_found_too() -> None:
+def test_edge_of_rear_tool_is_found() -> None:
     rear = Cutter([EDGE * [1.0, -1.0]], (), CutSide.OUTSIDE, is_rear=True)
     assert rear.find_cut(part(), (-10.0, -4.0), (-12.0, -4.0)).depth_mm == pytest.approx(1.0)
     assert not rear.find_cut(part(), (-10.0, -5.5), (-12.0, -5.5))
 
 
-def test_a_tool_without_edges_meets_nothing() -> None:
+def test_tool_without_edges_removes_nothing() -> None:
     assert not Cutter((), [HOLDER], CutSide.OUTSIDE).find_cut(part(), (-10.0, 1.0), (-12.0, 1.0))

@@ -31,7 +31,7 @@ def take(
 
 
 @pytest.mark.parametrize("columns", [8, 100, 900])
-def test_cone_keeps_its_volume_in_few_columns(columns: int) -> None:
+def test_cone_has_expected_volume_in_few_columns(columns: int) -> None:
     edges = np.linspace(-30.0, 0.0, 30_001)
     high = -0.4 * 0.5 * (edges[1:] + edges[:-1])
     field = make_field_from_section(edges, np.zeros((1, 30_000)), high[None], columns)
@@ -39,7 +39,7 @@ def test_cone_keeps_its_volume_in_few_columns(columns: int) -> None:
     assert field.volume_mm3 == pytest.approx(math.pi * 144.0 * 30.0 / 3.0, rel=1e-6)
 
 
-def test_shoulder_stands_where_it_was_turned() -> None:
+def test_shoulder_is_at_turned_position() -> None:
     edges = np.linspace(-20.0, 0.0, 2001)
     high = np.where(0.5 * (edges[1:] + edges[:-1]) > -7.33, 4.0, 9.0)
     field = make_field_from_section(edges, np.zeros((1, 2000)), high[None], 12)
@@ -55,7 +55,7 @@ def test_air_at_both_ends_has_no_columns() -> None:
     assert (field.column_edges[0], field.column_edges[-1]) == pytest.approx((-15.0, 0.0))
 
 
-def test_layers_come_in_any_order_and_leave_in_that_of_r() -> None:
+def test_layers_are_sorted_by_radius() -> None:
     low = np.array([[7.0, 0.0], [1.0, 3.0]])
     high = np.array([[9.0, 0.0], [2.0, 4.0]])
     low, high = sort_intervals(low, high)
@@ -66,7 +66,7 @@ def test_layers_come_in_any_order_and_leave_in_that_of_r() -> None:
 # --- cuts
 
 
-def test_ring_taken_from_the_middle_leaves_two() -> None:
+def test_ring_removed_from_middle_leaves_two_layers() -> None:
     field = ring()
     whole = field.volume_mm3
     assert take(field, 3.0, 4.0) == pytest.approx(math.pi * 7.0 * 10.0)
@@ -75,7 +75,7 @@ def test_ring_taken_from_the_middle_leaves_two() -> None:
     assert field.outer_radii[:, 0, 0].tolist() == [3.0, 5.0]
 
 
-def test_looking_takes_nothing() -> None:
+def test_query_does_not_remove_material() -> None:
     field = ring()
     assert take(field, 3.0, 4.0, cut=False) == pytest.approx(math.pi * 7.0 * 10.0)
     assert field.change_count == 0
@@ -83,19 +83,19 @@ def test_looking_takes_nothing() -> None:
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.0, 2.0), (5.0, 9.0), (4.0, 3.0), (math.inf, math.inf)])
-def test_cut_beside_the_metal_or_turned_about_takes_nothing(start: float, end: float) -> None:
+def test_cut_outside_material_or_with_reversed_bounds_removes_nothing(start: float, end: float) -> None:
     field = ring()
     assert take(field, start, end) == 0.0
     assert field.change_count == 0
 
 
-def test_cut_tells_where_it_was_and_how_deep() -> None:
+def test_cut_reports_position_and_depth() -> None:
     field = ring()
     told = field.intersect(slice(3, 6), ALL, np.full((3, 1), 4.5), np.full((3, 1), math.inf))
     assert (told.back_z_mm, told.front_z_mm, told.depth_mm) == pytest.approx((-7.0, -4.0, 0.5))
 
 
-def test_copy_does_not_feel_what_is_cut_afterwards() -> None:
+def test_copy_is_not_changed_by_later_cuts() -> None:
     field = ring()
     copy = field.copy()
     take(field, 0.0, 9.0)
@@ -106,7 +106,7 @@ def test_copy_does_not_feel_what_is_cut_afterwards() -> None:
 # --- columns that divide
 
 
-def test_dividing_moves_no_metal() -> None:
+def test_dividing_columns_preserves_volume() -> None:
     field = ring()
     take(field, 4.0, 9.0, slice(2, 5))
     before = field.volume_mm3
@@ -116,13 +116,13 @@ def test_dividing_moves_no_metal() -> None:
 
 
 @pytest.mark.parametrize("place", [-10.0, 0.0, 3.0, -4.0, -4.001, -math.inf])
-def test_no_column_divides_at_its_edge_or_beside_the_part(place: float) -> None:
+def test_column_is_not_divided_at_edge_or_outside_part(place: float) -> None:
     field = ring()
     field.divide_columns(np.array([place]))
     assert len(field.column_centers) == 10
 
 
-def test_field_has_no_more_columns_than_it_may() -> None:
+def test_column_count_is_limited() -> None:
     field = ring(most=15)
     field.divide_columns(np.linspace(-9.9, -0.1, 500))
     assert len(field.column_centers) == 15
@@ -133,7 +133,7 @@ def test_field_has_no_more_columns_than_it_may() -> None:
 # --- what is refused
 
 
-def test_section_without_metal_is_refused() -> None:
+def test_section_without_material_is_rejected() -> None:
     with raises_code(PartError, "no-stock"):
         make_field_from_section(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
 
@@ -147,11 +147,11 @@ def test_section_without_metal_is_refused() -> None:
         ([0.0, 0.0, 1.0], "edges-not-rising"),
     ],
 )
-def test_edges_that_do_not_fit_or_do_not_rise_are_refused(edges: list[float], code: str) -> None:
+def test_invalid_column_edges_are_rejected(edges: list[float], code: str) -> None:
     with raises_code(PartError, code):
         PolarField(np.array(edges), np.zeros((1, 2, 8)), np.ones((1, 2, 8)))
 
 
-def test_layers_that_differ_are_refused() -> None:
+def test_layers_of_different_shape_are_rejected() -> None:
     with raises_code(PartError, "columns-and-edges"):
         PolarField(np.array([0.0, 1.0]), np.zeros((1, 1, 8)), np.ones((2, 1, 8)))

@@ -41,7 +41,7 @@ def test_a_rapid_along_a_cone_is_found(slope: float) -> None:
 
 
 @pytest.mark.parametrize("place", [0.0, 0.001, 0.003, 0.005, 0.007])
-def test_a_rapid_along_a_shoulder_is_found_wherever_its_columns_lie(place: float) -> None:
+def test_rapid_along_shoulder_is_found_at_any_column_position(place: float) -> None:
     wall = -10.0 - place
     step = Stock("", ((-40.0, 10.0), (wall, 10.0), (wall, 5.0), (0.0, 5.0)))
     cutter = Cutter(make_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)

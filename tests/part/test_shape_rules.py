@@ -38,13 +38,13 @@ SOUND = {
         ("holder", "0,0 4,4 4,0 0,5", "crosses-itself"),
     ],
 )
-def test_contradiction_is_named_and_its_twin_is_none(field: str, value: object, code: str) -> None:
+def test_contradictory_field_is_reported_and_valid_one_is_not(field: str, value: object, code: str) -> None:
     assert find_shape_mistakes(SOUND[field]) == ()
     (mistake,) = find_shape_mistakes(replace(SOUND[field], **{field: value}))  # type: ignore[arg-type]
     assert (mistake.field_name, mistake.code) == (field, code)
 
 
-def test_nose_larger_than_its_insert_or_mill() -> None:
+def test_nose_radius_larger_than_insert_or_mill_is_reported() -> None:
     assert not find_shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.3))
     assert (
         find_shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.4))[0].field_name
@@ -61,14 +61,14 @@ def test_nose_larger_than_its_insert_or_mill() -> None:
     ("kind", "right", "wrong"),
     [(ToolKind.TURNING, 2, 3), (ToolKind.PARTING, 6, 8), (ToolKind.BORING, 3, 2)],
 )
-def test_tip_of_a_tool_behind_the_spindle(kind: ToolKind, right: int, wrong: int) -> None:
+def test_tip_of_rear_tool_must_match_its_side(kind: ToolKind, right: int, wrong: int) -> None:
     assert find_shape_mistakes(ToolShape(kind, tip=right, rear=True)) == ()
     (mistake,) = find_shape_mistakes(ToolShape(kind, tip=wrong, rear=True))
     assert (mistake.field_name, mistake.code) == ("tip", "tool-in-front")
     assert find_shape_mistakes(ToolShape(kind, tip=wrong)) == ()
 
 
-def test_entry_of_the_holder_counts_too() -> None:
+def test_entering_angle_of_holder_is_checked() -> None:
     assert find_shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MSRNR 2020K12")) == ()
     assert (
         find_shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MCLNR 2020K12"))[0].field_name
@@ -77,12 +77,12 @@ def test_entry_of_the_holder_counts_too() -> None:
 
 
 @pytest.mark.parametrize("letter", list("CDEMSVTWPHO"))
-def test_usual_holders_leave_every_insert_its_clearance(letter: str) -> None:
+def test_standard_holders_give_clearance_to_every_insert(letter: str) -> None:
     for kind, tip in ((ToolKind.TURNING, 3), (ToolKind.BORING, 2)):
         assert find_shape_mistakes(ToolShape(kind, tip=tip, insert=f"{letter}NMG432")) == ()
 
 
-def test_kinds_ask_for_fields_that_a_shape_has() -> None:
+def test_every_tool_kind_has_valid_fields() -> None:
     assert set(FIELDS_BY_KIND) == set(ToolKind)
     for fields in FIELDS_BY_KIND.values():
         assert set(fields) <= set(ToolShape.__slots__)
@@ -100,7 +100,7 @@ def test_kinds_ask_for_fields_that_a_shape_has() -> None:
         (ToolKind.DRILL, Hand.RIGHT, False, (-1, 0)),
     ],
 )
-def test_without_a_quadrant_kind_and_hand_say_where_the_tip_points(
+def test_kind_and_hand_set_tip_direction_without_quadrant(
     kind: ToolKind, hand: Hand, rear: bool, points: tuple[int, int]
 ) -> None:
     assert ToolShape(kind, hand, rear=rear).direction == points
@@ -122,7 +122,7 @@ def test_without_a_quadrant_kind_and_hand_say_where_the_tip_points(
         ("MTJNR 16-3", 25.4, 31.75, 93.0),
     ],
 )
-def test_holder_by_size_and_by_code(text: str, width: float, reach: float, entry: float) -> None:
+def test_holder_is_parsed_from_size_or_code(text: str, width: float, reach: float, entry: float) -> None:
     """ISO 5608: shank 20 has f 25, 25 has 32; ANSI B212.5: 3/4 in has 1 in, 1 in has 1 1/4 in."""
     holder = parse_holder(text)
     assert holder is not None
@@ -131,7 +131,7 @@ def test_holder_by_size_and_by_code(text: str, width: float, reach: float, entry
     )
 
 
-def test_boring_bars_by_code() -> None:
+def test_boring_bar_is_parsed_from_code() -> None:
     assert parse_holder("S16R-SCLCR09") == ToolHolder(bar_diameter_mm=16.0, entering_angle_deg=95.0)
     assert parse_holder("A10-SCLCR2") == ToolHolder(bar_diameter_mm=15.875, entering_angle_deg=95.0), (
         "ten sixteenths of an inch"
@@ -142,7 +142,7 @@ def test_boring_bars_by_code() -> None:
 @pytest.mark.parametrize(
     "text", ["", "20", "the old one", "3/0", "0x0", "1,2 3,4", "1..2,3 4,5 6,7", "999mm", "MCLNR"]
 )
-def test_other_texts_are_names(text: str) -> None:
+def test_other_texts_are_holder_names(text: str) -> None:
     assert parse_holder(text) is None
 
 
@@ -160,7 +160,5 @@ def test_other_texts_are_names(text: str) -> None:
         (ToolKind.END_MILL, 8, False, False),
     ],
 )
-def test_tool_behind_the_spindle_is_known_by_its_tip(
-    kind: ToolKind, tip: int, rear: bool, behind: bool
-) -> None:
+def test_tip_quadrant_sets_front_or_rear_side(kind: ToolKind, tip: int, rear: bool, behind: bool) -> None:
     assert ToolShape(kind, tip=tip, rear=rear).is_rear_tool is behind

@@ -45,7 +45,7 @@ def like(image: ImageArray, colour: int) -> np.ndarray:
     return near & (image >> 24 > 0) & (g > 20)
 
 
-def test_a_tool_is_seen_from_above_as_it_is_drawn() -> None:
+def test_tool_is_drawn_from_above_at_its_position() -> None:
     """Four by six mm before the shaft: X+ is down."""
     found = like(drawn(ABOVE, ToolBody((at(-12.0, 5.0),), ())), GOLD)
     rows, columns = np.nonzero(found)
@@ -54,7 +54,7 @@ def test_a_tool_is_seen_from_above_as_it_is_drawn() -> None:
     assert (rows.min(), rows.max()) == pytest.approx((150 + 40, 150 + 88), abs=1)
 
 
-def test_from_the_side_it_hides_the_shaft_and_from_behind_the_shaft_hides_it() -> None:
+def test_tool_hides_shaft_from_side_and_shaft_hides_tool_from_rear() -> None:
     tool = ToolBody((at(-12.0, 5.0),), ())
     before = np.count_nonzero(like(drawn(SIDE, tool), GOLD))
     assert before == pytest.approx(4.0 * 4.0 * 64.0, rel=0.1)  # as thick as it is wide, below the rake face
@@ -71,7 +71,7 @@ def test_a_drill_is_round() -> None:
         assert (columns.min(), columns.max()) == pytest.approx((200 + 80, 200 + 159), abs=2)
 
 
-def test_a_holder_that_nobody_has_described_lets_the_part_shine_through() -> None:
+def test_assumed_holder_is_drawn_transparent() -> None:
     solid, ghost = (drawn(ABOVE, ToolBody((), (at(-12.0, 0.0),), is_ghost=ghost)) for ghost in (False, True))
     bare = drawn(ABOVE)
     there = like(solid, GREY)
@@ -81,7 +81,7 @@ def test_a_holder_that_nobody_has_described_lets_the_part_shine_through() -> Non
     assert 0 < far < np.abs((solid[there] & 255).astype(int) - (bare[there] & 255).astype(int)).max()
 
 
-def test_the_chuck_stands_behind_its_face_and_hides_the_bar() -> None:
+def test_chuck_is_drawn_at_its_face_and_hides_bar() -> None:
     chuck = make_chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), make_bar(10.0, 0.0, -20.0))
     found = like(drawn(SIDE, chuck=chuck), BROWN)
     _, columns = np.nonzero(found)
@@ -91,7 +91,7 @@ def test_the_chuck_stands_behind_its_face_and_hides_the_bar() -> None:
     assert math.isclose(float(chuck.inner_radii.max()), 5.0)
 
 
-def test_a_centre_stands_before_the_face() -> None:
+def test_center_is_drawn_in_front_of_face() -> None:
     """Its tip 2 mm in the part; 60 degrees: 8 mm of quill begin 4 / tan 30 = 6.93 mm further on."""
     held = Clamping(0.0, 0.0, quill_diameter=8.0, center_angle_deg=60.0, center_z_mm=-2.0)
     found = like(drawn(SIDE, chuck=make_chuck_solid(held, make_bar(10.0, 0.0, -20.0))), BROWN)
@@ -102,7 +102,7 @@ def test_a_centre_stands_before_the_face() -> None:
     assert np.ptp(np.flatnonzero(found[:, 200 + 140])) + 1 == pytest.approx(64, abs=3)
 
 
-def test_a_tool_far_off_is_no_matter() -> None:
+def test_distant_tool_does_not_change_picture() -> None:
     bare = drawn(SIDE)
     for z in (-500.0, 500.0):
         tool = ToolBody((at(z, 5.0),), (at(z, 11.0),))

@@ -52,7 +52,7 @@ def orange(image: ImageArray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 25.0, -25.0, 60.0, -80.0, 89.0])
-def test_outline_of_a_cylinder(azimuth: float) -> None:
+def test_cylinder_outline_has_its_size(azimuth: float) -> None:
     image = draw(turned((30.0, 8.0)), SolidView(azimuth_deg=azimuth, pixels_per_mm=7.0, center_z_mm=-15.0))
     cos, sin = math.cos(math.radians(azimuth)), abs(math.sin(math.radians(azimuth)))
     area = 30.0 * 16.0 * cos + math.pi * 64.0 * sin
@@ -66,7 +66,7 @@ def test_outline_of_a_cylinder(azimuth: float) -> None:
     ("azimuth", "least", "most"),
     [(40.0, 0.98, 1.02), (0.0, 0.98, 1.02), (-40.0, 0.60, 0.80)],
 )
-def test_flange_hides_the_pin_and_the_pin_the_flange(azimuth: float, least: float, most: float) -> None:
+def test_flange_and_pin_hide_each_other_by_view(azimuth: float, least: float, most: float) -> None:
     """From its face the flange is seen whole; from behind half as thick a pin stands before its middle.
 
     That takes half the strip of 10 mm across its ellipse, and half the pin's own ellipse: 80 of 278 mm².
@@ -80,7 +80,7 @@ def test_flange_hides_the_pin_and_the_pin_the_flange(azimuth: float, least: floa
     assert least * flange < np.count_nonzero(red(image)) < most * flange
 
 
-def test_half_section_shows_what_is_metal() -> None:
+def test_half_section_shows_cut_area() -> None:
     solid = turned((20.0, 9.0), (10.0, 6.0), bore=4.0, deep=12.0)
     image = draw(
         solid, SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-15.0, open_range_deg=(-90.0, 90.0))
@@ -89,13 +89,13 @@ def test_half_section_shows_what_is_metal() -> None:
     assert np.count_nonzero(orange(image)) == pytest.approx(area * 81.0, rel=0.02)
 
 
-def test_nothing_is_cut_open_that_was_not_asked_for() -> None:
+def test_picture_without_section_shows_no_cut_faces() -> None:
     image = draw(turned((20.0, 9.0), bore=4.0, deep=12.0), SolidView(pixels_per_mm=9.0, center_z_mm=-10.0))
     assert not orange(image).any()
     assert not red(image).any()
 
 
-def test_bore_is_seen_from_the_face_and_not_from_behind() -> None:
+def test_bore_is_visible_only_from_its_open_end() -> None:
     solid = turned((20.0, 9.0), bore=5.0, deep=12.0)
     bore = PartColors(outside=0x0000FF, bore=0x00FF00)
 
@@ -132,7 +132,9 @@ def hole_at(angle: float, end: float = 2.0) -> Solid:
         (0.0, 0.0, 0.0, "hidden"),
     ],
 )
-def test_hole_stands_where_c_and_tilt_bring_it(angle: float, tilt: float, roll: float, place: str) -> None:
+def test_hole_position_follows_c_rotation_and_tilt(
+    angle: float, tilt: float, roll: float, place: str
+) -> None:
     view = SolidView(azimuth_deg=0.0, tilt_deg=tilt, roll_deg=roll, pixels_per_mm=12.0, center_z_mm=-10.0)
     plain = draw(make_milled_solid(milled().field), view)
     blind, through = draw(hole_at(angle), view), draw(hole_at(angle, -12.0), view)
@@ -146,7 +148,7 @@ def test_hole_stands_where_c_and_tilt_bring_it(angle: float, tilt: float, roll: 
 
 @pytest.mark.parametrize("azimuth", [0.0, 35.0, -50.0])
 @pytest.mark.parametrize("roll", [0.0, 77.0])
-def test_point_on_the_screen_is_where_the_picture_has_it(azimuth: float, roll: float) -> None:
+def test_projected_point_matches_picture(azimuth: float, roll: float) -> None:
     """The middle of a blind hole that looks at the viewer as far as it can."""
     view = SolidView(azimuth_deg=azimuth, tilt_deg=20.0, roll_deg=roll, pixels_per_mm=11.0, center_z_mm=-9.0)
     angle = 180.0 - 20.0 - roll
@@ -157,7 +159,7 @@ def test_point_on_the_screen_is_where_the_picture_has_it(azimuth: float, roll: f
     assert columns.mean() == pytest.approx(rim[0], abs=8.0)
 
 
-def test_field_that_no_mill_has_touched_looks_as_the_turned_part() -> None:
+def test_unmilled_field_looks_like_turned_part() -> None:
     view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
     one, other = draw(turned((20.0, 10.0)), view), draw(make_milled_solid(milled().field), view)
     assert np.count_nonzero((one == 0) != (other == 0)) < 0.006 * np.count_nonzero(one)
@@ -182,7 +184,7 @@ def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
 # --- what is not there
 
 
-def test_part_beside_the_picture_leaves_the_ground() -> None:
+def test_part_outside_picture_leaves_background() -> None:
     view = SolidView(pixels_per_mm=10.0, center_z_mm=200.0)
     assert not draw(turned((20.0, 5.0)), view).any()
     ground = SolidPicture(PartColors(background=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
@@ -194,7 +196,7 @@ def test_part_larger_than_the_picture_fills_it() -> None:
     assert np.count_nonzero(image) == WIDTH * HEIGHT
 
 
-def test_hits_are_red_where_they_are_and_nowhere_else() -> None:
+def test_collisions_are_red_only_at_their_positions() -> None:
     solid, view = turned((20.0, 5.0)), SolidView(azimuth_deg=0.0, pixels_per_mm=10.0, center_z_mm=-10.0)
     image = draw(solid, view, hits=((-12.0, -8.0),))
     columns = np.flatnonzero(red(image).any(axis=0))
@@ -203,7 +205,7 @@ def test_hits_are_red_where_they_are_and_nowhere_else() -> None:
     assert red(draw(solid, view, RED))[image != 0].mean() > 0.9
 
 
-def test_picture_changes_with_the_version_of_the_metal() -> None:
+def test_picture_changes_with_part_version() -> None:
     part, picture = milled(), SolidPicture()
     view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
     before = picture.draw(make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count)
@@ -213,7 +215,7 @@ def test_picture_changes_with_the_version_of_the_metal() -> None:
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 30.0, 90.0])
-def test_fitted_part_lies_within_the_picture(azimuth: float) -> None:
+def test_fitted_part_is_within_picture(azimuth: float) -> None:
     scale, centre = fit_view(-40.0, 2.0, 9.0, WIDTH, HEIGHT, azimuth)
     image = draw(
         turned((42.0, 9.0)), SolidView(azimuth_deg=azimuth, pixels_per_mm=scale, center_z_mm=centre - 2.0)

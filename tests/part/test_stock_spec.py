@@ -8,7 +8,7 @@ from core.part.stock_spec import StockError, parse_profile, parse_specification
 from tests.coded import raises_code
 
 
-def test_a_bar_is_as_long_as_the_program_needs() -> None:
+def test_bar_without_length_is_as_long_as_program_needs() -> None:
     stock = parse_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit_mm=25.4)
     assert stock.specification == "bar:1.0+.02"
     assert stock.max_radius_mm == pytest.approx(12.7)
@@ -16,7 +16,7 @@ def test_a_bar_is_as_long_as_the_program_needs() -> None:
     assert stock.back_z_mm < -25.4
 
 
-def test_a_length_counts_from_the_face() -> None:
+def test_stock_length_is_measured_from_face() -> None:
     stock = parse_specification("bar:25mm:60mm+1mm").stock(back_z_mm=-500.0, unit_mm=25.4)
     assert (stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm) == (
         pytest.approx(-59.0),
@@ -31,7 +31,7 @@ def test_a_tube_has_its_bore() -> None:
     assert stock.outside_profile[0] == (pytest.approx(-50.8), pytest.approx(19.05))
 
 
-def test_files_are_named_with_an_allowance_or_with_a_plus_in_the_name() -> None:
+def test_file_stock_is_parsed_with_allowance_and_plus_in_name() -> None:
     assert parse_specification("after:op 10+.5.nc").after == "op 10+.5.nc"
     spec = parse_specification("after:op10.nc+.02")
     assert (spec.after, spec.allowance) == ("op10.nc", pytest.approx(0.508))
@@ -59,12 +59,12 @@ def test_files_are_named_with_an_allowance_or_with_a_plus_in_the_name() -> None:
         ("profile:", "no-file"),
     ],
 )
-def test_what_is_no_stock_is_refused(text: str, code: str) -> None:
+def test_invalid_stock_is_rejected(text: str, code: str) -> None:
     with raises_code(StockError, code, text):
         parse_specification(text)
 
 
-def test_a_profile_is_read_either_way_with_and_without_a_head() -> None:
+def test_profile_is_read_in_either_order_with_or_without_header() -> None:
     rising = parse_profile("p", "z,r\n-2,1\n-1,1\n-1,.5\n0,.5\n", 25.4, 0.0)
     falling = parse_profile("p", "0,.5\n-1,.5\n-1,1\n-2,1\n", 25.4, 0.0)
     assert rising.outside_profile == falling.outside_profile
@@ -91,6 +91,6 @@ def test_a_profile_is_read_either_way_with_and_without_a_head() -> None:
         ("0,1,2\n-1,1,.5\n", "radius"),
     ],
 )
-def test_a_profile_that_is_none_is_refused(text: str, code: str) -> None:
+def test_invalid_profile_is_rejected(text: str, code: str) -> None:
     with raises_code(StockError, code):
         parse_profile("p", text, 25.4, 0.0)

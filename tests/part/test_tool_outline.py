@@ -65,7 +65,7 @@ def test_nose_touches_both_lines_of_the_imaginary_tip(tip: int, z: int, x: int) 
     assert max(0.8 * (1 - cos((b - a) / 2)) for a, b in pairwise(angles)) <= 0.0005
 
 
-def test_without_a_quadrant_the_nose_centre_is_the_control_point() -> None:
+def test_nose_center_is_control_point_without_quadrant() -> None:
     (insert,) = make_outline(replace(CNMG, tip=0)).cutting_outlines
     assert box(insert)[0] == pytest.approx(-0.8, abs=1e-9)
     assert box(insert)[2] == pytest.approx(-0.8, abs=1e-9)
@@ -73,7 +73,7 @@ def test_without_a_quadrant_the_nose_centre_is_the_control_point() -> None:
     assert box(left)[1] == pytest.approx(0.8, abs=1e-9), "a left-hand tool cuts away from the chuck"
 
 
-def test_cnmg_stands_at_95_degrees() -> None:
+def test_cnmg_insert_is_drawn_at_95_degrees() -> None:
     """Its main edge rises at 85°, the other one leaves the finished surface at 5°."""
     (insert,) = make_outline(CNMG).cutting_outlines
     edges = np.roll(insert, -1, axis=0) - insert
@@ -122,7 +122,7 @@ def test_area_of_the_insert_is_the_rhombus_less_its_corners() -> None:
     )
 
 
-def test_holder_lies_behind_the_insert() -> None:
+def test_holder_is_drawn_next_to_insert() -> None:
     """MCLNR 2020K12: 25 mm from the tip to the far side of a shank of 20, its head 32 long."""
     tool = make_outline(CNMG)
     assert tool.assumed_fields == ()
@@ -144,7 +144,7 @@ def test_mirrored_tools_are_mirror_images() -> None:
     assert body_covers(behind, 15.0, -60.0), "the shank of a tool behind the spindle lies at X−"
 
 
-def test_nothing_known_of_the_insert_is_an_assumed_one() -> None:
+def test_unknown_insert_is_replaced_by_assumed_one() -> None:
     tool = make_outline(ToolShape(tip=3, nose_radius=0.4))
     assert tool.assumed_fields == ("insert", "holder")
     assert tool.cutting_outlines[0] == pytest.approx(
@@ -158,7 +158,7 @@ def test_round_insert_is_a_circle_that_touches_both_lines() -> None:
     assert np.hypot(*(insert - 5.0).T) == pytest.approx(5.0)
 
 
-def test_boring_bar_lies_below_its_tip_along_z() -> None:
+def test_boring_bar_extends_along_z_below_its_tip() -> None:
     """A bar of 16 has its tip 11 from its axis (ISO 5609), so it goes into 20: the far side is at −19."""
     shape = ToolShape(ToolKind.BORING, tip=2, diameter=16.0, insert="CCMT 09T304", stick_out=64.0)
     tool = make_outline(shape)
@@ -170,7 +170,7 @@ def test_boring_bar_lies_below_its_tip_along_z() -> None:
     assert box(make_outline(coded).body_outlines[1]) == pytest.approx(box(tool.body_outlines[1]))
 
 
-def test_back_boring_bar_still_comes_from_the_right() -> None:
+def test_back_boring_bar_extends_to_the_right() -> None:
     shape = ToolShape(ToolKind.BORING, tip=1, diameter=16.0, insert="CCMT 09T304", stick_out=64.0)
     tool = make_outline(shape)
     assert box(tool.cutting_outlines[0])[1] == pytest.approx(0.0, abs=1e-9)
@@ -191,12 +191,12 @@ def test_corner_of_a_groove_tool_follows_from_the_quadrant(tip: int, left: float
     assert box(tool.body_outlines[1])[2] == pytest.approx(15.0), "behind the blade stands the shank"
 
 
-def test_groove_tool_without_a_quadrant_is_set_by_its_nose_centre() -> None:
+def test_grooving_tool_without_quadrant_is_set_at_nose_center() -> None:
     tool = make_outline(ToolShape(ToolKind.GROOVING, tip=0, width=3.0, nose_radius=0.2))
     assert box(tool.cutting_outlines[0])[:3] == pytest.approx((-0.2, 2.8, -0.2))
 
 
-def test_groove_in_a_bore_and_in_the_face() -> None:
+def test_grooving_tool_in_bore_and_in_face() -> None:
     bore = make_outline(
         ToolShape(ToolKind.GROOVING, tip=2, width=2.0, diameter=12.0, length=3.0, stick_out=40.0)
     )
@@ -207,7 +207,7 @@ def test_groove_in_a_bore_and_in_the_face() -> None:
     assert body_covers(face, 10.0, 0.0)
 
 
-def test_parting_blade_reaches_as_far_as_it_sticks_out() -> None:
+def test_parting_blade_has_length_of_its_stick_out() -> None:
     tool = make_outline(ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=20.0))
     assert box(tool.body_outlines[0]) == pytest.approx((0.2, 1.8, 3.0, 20.0))
     assert body_covers(tool, 10.0, 30.0), "its block"
@@ -222,7 +222,7 @@ def test_thread_tool_is_a_v_with_a_flat_of_an_eighth_of_the_pitch() -> None:
     assert np.sort(left[left[:, 1] == 0.0][:, 0]) == pytest.approx([0.0, 0.25])
 
 
-def test_thread_tool_with_a_nose() -> None:
+def test_threading_tool_with_nose_radius_is_shorter_than_sharp_v() -> None:
     """55°: the sharp point lies r (1 / sin 27.5° − 1) below the nose."""
     (edge,) = make_outline(
         ToolShape(ToolKind.THREADING, tip=8, point=55.0, nose_radius=0.2, length=3.0)
@@ -245,14 +245,14 @@ def test_drill_has_its_point_on_the_axis() -> None:
     assert box(tool.body_outlines[1])[0] == pytest.approx(70.0)
 
 
-def test_centre_drill_is_a_pilot_and_a_cone() -> None:
+def test_center_drill_is_pilot_and_cone() -> None:
     """DIN 333 A of 10 mm: pilot 4; the cone of 60° opens 3 mm on a side in 3 / tan 30° = 5.196."""
     pilot, cone = make_outline(ToolShape(ToolKind.CENTER_DRILL, diameter=10.0)).cutting_outlines
     assert box(pilot) == pytest.approx((0.0, 4.8, -2.0, 2.0))
     assert box(cone) == pytest.approx((4.8, 4.8 + 3.0 * sqrt(3.0) + 0.5, -5.0, 5.0))
 
 
-def test_end_mill_lies_along_or_across_the_spindle() -> None:
+def test_end_mill_is_along_or_across_spindle() -> None:
     along = make_outline(ToolShape(ToolKind.END_MILL, diameter=6.0, length=20.0))
     assert along.is_axial
     assert box(along.cutting_outlines[0]) == pytest.approx((0.0, 20.0, -3.0, 3.0))
@@ -267,7 +267,7 @@ def test_end_mill_lies_along_or_across_the_spindle() -> None:
     assert np.hypot(ball[:, 0], ball[:, 1] - 3.0)[ball[:, 1] < 3.0] == pytest.approx(3.0)
 
 
-def test_tap_and_reamer_have_their_full_diameter_behind_the_lead() -> None:
+def test_tap_and_reamer_have_full_diameter_after_chamfer() -> None:
     tap = make_outline(ToolShape(ToolKind.TAP, diameter=6.0, pitch=1.0, length=18.0)).cutting_outlines[0]
     assert covers(tap, 3.0, 3.0)
     assert not covers(tap, 1.0, 3.0)
@@ -291,7 +291,7 @@ def test_holder_may_be_an_outline() -> None:
     assert box(tool.body_outlines[0]) == pytest.approx((2.0, 18.0, 14.0, 60.0))
 
 
-def test_tool_without_a_shape_is_its_nose() -> None:
+def test_tool_without_shape_is_drawn_as_nose_circle() -> None:
     tool = make_nose_circle(0.8, 3)
     assert box(tool.cutting_outlines[0]) == pytest.approx((0.0, 1.6, 0.0, 1.6))
     assert tool.body_outlines == ()
@@ -299,7 +299,7 @@ def test_tool_without_a_shape_is_its_nose() -> None:
     assert box(make_nose_circle(0.4, 0).cutting_outlines[0]) == pytest.approx((-0.4, 0.4, -0.4, 0.4))
 
 
-def test_sizes_that_nobody_has_stated_are_named() -> None:
+def test_assumed_dimensions_are_listed() -> None:
     assert make_outline(ToolShape(ToolKind.DRILL)).assumed_fields == ("diameter", "length", "point")
     assert make_outline(ToolShape(ToolKind.GROOVING, tip=3)).assumed_fields == ("width", "length")
     assert make_outline(ToolShape(ToolKind.BORING, tip=2)).assumed_fields == (
@@ -309,12 +309,12 @@ def test_sizes_that_nobody_has_stated_are_named() -> None:
     )
 
 
-def test_code_that_means_nothing_is_not_drawn() -> None:
+def test_invalid_insert_code_is_rejected() -> None:
     with raises_code(InsertCodeError, "unknown-character", "character 3 (X)"):
         make_outline(ToolShape(tip=3, insert="CNXG 120408"))
 
 
-def test_outline_that_crosses_itself_is_not_drawn() -> None:
+def test_self_intersecting_outline_is_rejected() -> None:
     with raises_code(PartError, "crosses-itself"):
         make_outline(ToolShape(ToolKind.FORM, profile=((0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 5.0))))
 
@@ -327,7 +327,7 @@ def test_outline_that_crosses_itself_is_not_drawn() -> None:
         ("DCMT 070204", (-32, -87)),  # SDUC 93°
     ],
 )
-def test_boring_inserts_stand_as_their_bars_hold_them(insert: str, edges: tuple[float, ...]) -> None:
+def test_boring_inserts_are_oriented_as_in_their_bars(insert: str, edges: tuple[float, ...]) -> None:
     (points,) = make_outline(ToolShape(ToolKind.BORING, tip=2, insert=insert, diameter=16.0)).cutting_outlines
     sides = np.roll(points, -1, axis=0) - points
     long = sides[np.hypot(*sides.T) > 3.0]

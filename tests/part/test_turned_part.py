@@ -44,7 +44,7 @@ def test_a_bar_and_a_tube_have_their_volume() -> None:
     )
 
 
-def test_a_cone_as_stock() -> None:
+def test_cone_stock_has_expected_volume() -> None:
     cone = TurnedPart(Stock("", ((-40.0, 20.0), (0.0, 5.0))))
     assert cone.volume_mm3 == pytest.approx(math.pi * 40.0 / 3.0 * (400.0 + 100.0 + 25.0), rel=1e-6)
 
@@ -68,7 +68,7 @@ def test_a_taper_is_turned() -> None:
     assert met.volume_mm3 == pytest.approx(ring(20.0, 0.0, 20.0) - cone, rel=1e-3)
 
 
-def test_a_face_is_cut_beyond_the_axis() -> None:
+def test_face_is_cut_past_center() -> None:
     part = TurnedPart(make_bar(20.0, 1.0, -30.0))
     met = outside().cut_material(part, (0.0, 12.0), (0.0, -0.4))
     assert met.volume_mm3 == pytest.approx(ring(10.0, 0.0, 1.0), rel=1e-3)
@@ -76,14 +76,14 @@ def test_a_face_is_cut_beyond_the_axis() -> None:
     assert part.parted_pieces == []
 
 
-def test_a_groove_leaves_what_stands_beside_it() -> None:
+def test_groove_leaves_material_on_both_sides() -> None:
     part = TurnedPart(make_bar(20.0, 0.0, -30.0))
     met = outside(BLADE).cut_material(part, (-12.0, 11.0), (-12.0, 7.0))
     assert met.volume_mm3 == pytest.approx(ring(10.0, 7.0, 3.0), rel=1e-3)
     assert (met.back_z_mm, met.front_z_mm) == (pytest.approx(-12.0, abs=0.01), pytest.approx(-9.0, abs=0.01))
 
 
-def test_a_round_nose_leaves_a_fillet_and_a_trough() -> None:
+def test_round_nose_leaves_its_cross_section() -> None:
     part = TurnedPart(make_bar(60.0, 0.0, -60.0))
     met = outside(BUTTON).cut_material(
         part, (-30.0, 40.0), (-30.0, 30.0)
@@ -114,7 +114,7 @@ def test_a_drill_leaves_its_cone() -> None:
     assert in_bore(DRILL).cut_material(part, (2.0, 0.0), (-20.0, 0.0)).volume_mm3 == 0.0
 
 
-def test_a_bore_is_opened_and_its_wall_told() -> None:
+def test_bored_wall_is_in_bore_profile() -> None:
     part = TurnedPart(make_tube(30.0, 16.0, 0.0, -40.0))
     met = in_bore().cut_material(part, (2.0, 11.0), (-25.0, 11.0))
     assert met.volume_mm3 == pytest.approx(ring(11.0, 8.0, 25.0), rel=1e-3)
@@ -137,7 +137,7 @@ def test_a_face_groove_leaves_a_core_and_a_ring() -> None:
     assert wider.volume_mm3 == pytest.approx(ring(14.0, 12.0, 7.0), rel=1e-3)
 
 
-def test_parting_off_lets_the_front_fall() -> None:
+def test_parting_off_separates_front_piece() -> None:
     part = TurnedPart(make_bar(20.0, 0.0, -40.0))
     before = part.volume_mm3
     outside(BLADE).cut_material(part, (-18.0, 12.0), (-18.0, -0.2))
@@ -175,7 +175,7 @@ def test_a_thread_has_its_form_and_its_volume() -> None:
     assert part.max_radii.min() == pytest.approx(9.0, abs=0.02)
 
 
-def test_a_tool_on_the_other_side_of_the_axis_cuts_the_same() -> None:
+def test_rear_tool_cuts_same_as_front_tool() -> None:
     front, rear = TurnedPart(make_bar(30.0, 0.0, -60.0)), TurnedPart(make_bar(30.0, 0.0, -60.0))
     outside().cut_material(front, (2.0, 12.0), (-25.0, 12.0))
     Cutter([KNIFE * np.array([1.0, -1.0])], [], CutSide.OUTSIDE, is_rear=True).cut_material(
@@ -184,7 +184,7 @@ def test_a_tool_on_the_other_side_of_the_axis_cuts_the_same() -> None:
     assert rear.volume_mm3 == front.volume_mm3
 
 
-def test_what_is_only_looked_at_stays() -> None:
+def test_collision_query_and_cut_in_air_do_not_change_part() -> None:
     part = TurnedPart(make_bar(30.0, 0.0, -60.0))
     before = part.volume_mm3
     assert outside().find_cut(part, (-5.0, 20.0), (-5.0, 10.0)).depth_mm == pytest.approx(5.0, abs=0.01)
@@ -193,7 +193,7 @@ def test_what_is_only_looked_at_stays() -> None:
     assert not outside().cut_material(part, (5.0, 15.0), (-60.0, 15.0))  # along the bar, touching it
 
 
-def test_a_shank_behind_the_edge_strikes_a_shoulder() -> None:
+def test_shank_collides_with_shoulder() -> None:
     part = TurnedPart(make_bar(40.0, 0.0, -60.0))
     shank = np.array(
         [[-2.0, 3.0], [-2.0, 40.0], [10.0, 40.0], [10.0, 3.0]]
@@ -209,7 +209,7 @@ def test_a_shank_behind_the_edge_strikes_a_shoulder() -> None:
     assert not tool.cut_with_body(part, start, end)  # told once
 
 
-def test_a_bar_too_thick_for_its_bore_strikes_the_other_wall() -> None:
+def test_boring_bar_too_thick_for_bore_collides_with_opposite_wall() -> None:
     part = TurnedPart(make_tube(40.0, 10.0, 0.0, -30.0))
     thick = np.array([[0.5, -0.5], [0.5, -11.0], [40.0, -11.0], [40.0, -0.5]])
     thin = np.array([[0.5, -0.5], [0.5, -8.0], [40.0, -8.0], [40.0, -0.5]])
@@ -218,7 +218,7 @@ def test_a_bar_too_thick_for_its_bore_strikes_the_other_wall() -> None:
     assert Cutter([BORER], [thick], CutSide.BORE).cut_with_body(part, *at).depth_mm == pytest.approx(1.0)
 
 
-def test_a_profile_is_told_from_the_face_with_upright_shoulders() -> None:
+def test_profile_starts_at_face_and_has_vertical_shoulders() -> None:
     part = TurnedPart(make_bar(30.0, 0.0, -50.0))
     outside().cut_material(part, (1.0, 10.0), (-20.0, 10.0))
     corners = [(0.0, 10.0), (-20.0, 10.0), (-20.0, 15.0), (-50.0, 15.0)]
@@ -227,7 +227,7 @@ def test_a_profile_is_told_from_the_face_with_upright_shoulders() -> None:
     assert [r for _, r in told] == [pytest.approx(r) for _, r in corners]
 
 
-def test_nothing_is_cut_outside_the_stock_and_where_it_is_gone() -> None:
+def test_cut_outside_stock_or_in_removed_area_removes_nothing() -> None:
     part = TurnedPart(make_bar(20.0, 0.0, -30.0))
     assert not outside().cut_material(part, (-50.0, 20.0), (-50.0, 5.0))  # behind the stock
     assert not outside().cut_material(part, (5.0, 20.0), (5.0, -5.0))  # before its face

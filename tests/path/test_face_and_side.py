@@ -43,12 +43,12 @@ def side_of(picture: ProgramPicture) -> Polyline:
     ("x", "c", "right", "down"),
     [(-5, 0, 5, 0), (-5, 90, 0, 5), (5, 0, -5, 0), (-5, -90, 0, -5), (0, 77, 0, 0)],
 )
-def test_a_tip_on_the_face(x: float, c: float, right: float, down: float) -> None:
+def test_point_on_face_is_mapped_from_x_and_c(x: float, c: float, right: float, down: float) -> None:
     # The tool stands at the left; the part's X points to it at C 0 and C turns the part under it.
     assert map_to_face(x, c) == pytest.approx((right, down), abs=1e-12)
 
 
-def test_a_tip_above_the_centre_line() -> None:
+def test_point_above_center_is_mapped_to_face() -> None:
     assert map_to_face(-4.0, 0.0, 3.0) == pytest.approx((4.0, -3.0))
 
 
@@ -59,7 +59,7 @@ def test_a_turning_program_has_neither_face_nor_side() -> None:
     assert picture.side is None
 
 
-def test_dividing_alone_shows_on_the_face() -> None:
+def test_indexing_is_drawn_only_on_face() -> None:
     picture = drawn(turned(1, BlockKind.ROTATE, (-5, 1, 0), (-5, 1, 90)))
     face = face_of(picture)
     assert (face.z[0], face.x[0]) == pytest.approx((5, 0))
@@ -69,7 +69,7 @@ def test_dividing_alone_shows_on_the_face() -> None:
     assert len(picture.z) == 0  # no slide moves
 
 
-def test_what_turns_before_anything_is_locked_is_not_counted() -> None:
+def test_moves_before_spindle_lock_are_not_counted_on_face() -> None:
     plain = Block(1, 1, BlockKind.FEED, "", 5, 0, 0, 5, -9, 0, 0, 0, ModalState(spindle=1))
     picture = drawn(plain, turned(2, BlockKind.ROTATE, (-5, 1, 0), (-5, 1, 4)))
     face = face_of(picture)
@@ -77,7 +77,7 @@ def test_what_turns_before_anything_is_locked_is_not_counted() -> None:
     assert face.blocks == picture.blocks == 2
 
 
-def test_a_flat_is_a_line_on_the_face_and_a_dip_of_x() -> None:
+def test_flat_is_line_on_face_and_dip_in_x() -> None:
     # from (5, -3) to (5, 3): nearest to the axis in the middle, sqrt(34) from it at the ends
     way = PlaneMove(FacePlane(0.0), (5, -3, 0), (5, 3, 0), math.atan2(-3, 5))
     turn = math.degrees(math.atan2(3, 5))
@@ -92,13 +92,13 @@ def test_a_flat_is_a_line_on_the_face_and_a_dip_of_x() -> None:
     assert picture.stroke[-1] == Stroke.MILL
 
 
-def test_a_flat_entered_at_a_quarter_turn_lies_a_quarter_round_the_part() -> None:
+def test_flat_in_plane_entered_at_90_degrees_is_rotated_on_part() -> None:
     way = PlaneMove(FacePlane(90.0), (5, -3, 0), (5, 3, 0), math.atan2(-3, 5))
     face = face_of(drawn(turned(1, BlockKind.PLANE_LINE, (-5.83, 0, 120), (-5.83, 0, 60), plane=way)))
     assert face.x == pytest.approx(np.full(len(face.x), 5.0))  # under the tool when C is at 90
 
 
-def test_an_arc_on_the_face_stays_on_its_circle_and_has_its_centre() -> None:
+def test_arc_on_face_stays_on_circle_and_has_its_center() -> None:
     way = PlaneMove(FacePlane(0.0), (6, 0, 0), (4, 2, 0), 0.0, (4.0, 0.0), clockwise=False)
     face = face_of(drawn(turned(1, BlockKind.PLANE_ARC, (-6, 0, 0), (-4.47, 0, -26.6), plane=way)))
     assert np.hypot(face.z - 4, face.x) == pytest.approx(np.full(len(face.z), 2.0))
@@ -121,13 +121,13 @@ def test_the_side_is_unrolled_at_the_diameter_of_the_plane() -> None:
     assert picture.x == pytest.approx(np.full(len(picture.x), -10.0))
 
 
-def test_z_and_c_together_show_on_the_side_at_the_greatest_diameter() -> None:
+def test_z_and_c_move_is_drawn_on_side_at_largest_diameter() -> None:
     side = side_of(drawn(turned(1, BlockKind.FEED, (-8, 0, 0), (-8, -4, 720))))
     assert side.mm_per_degree == pytest.approx(math.pi * 16 / 360)
     assert side.x[-1] == pytest.approx(-4 * math.pi * 8)  # two turns up
 
 
-def test_the_secondary_offset_moves_the_slides_and_not_the_drawing() -> None:
+def test_secondary_offset_does_not_move_drawing() -> None:
     modal = LOCKED._replace(secondary_x=0.5, secondary_z=0.25)
     way = PlaneMove(FacePlane(0.0), (5, 0, -1), (5, 0, -2), 0.0)
     picture = drawn(
@@ -138,7 +138,7 @@ def test_the_secondary_offset_moves_the_slides_and_not_the_drawing() -> None:
 
 
 @pytest.mark.parametrize("name", ["face_mill_flat", "face_mill_arc", "side_mill_slot"])
-def test_programs_agree_with_the_transformation_of_the_executor(name: str) -> None:
+def test_drawing_matches_machine_transformation(name: str) -> None:
     # Every point of a view, put back through the frame's own kinematics, is where X, Z and C are.
     lathe = read_machine(None)
     setup = create_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})

@@ -15,7 +15,7 @@ from app.path.measuring import (
 )
 
 
-def test_three_four_five_in_inch() -> None:
+def test_distance_of_3_4_5_triangle_in_inch() -> None:
     rows = dict(measure_on_path(SnapPoint(0, 25.4), SnapPoint(-4 * 25.4, 4 * 25.4), is_metric=False))
     assert rows == {
         "ΔX Ø": "6.00000",
@@ -26,18 +26,18 @@ def test_three_four_five_in_inch() -> None:
     }
 
 
-def test_the_same_in_metric_has_four_places() -> None:
+def test_distance_in_metric_has_four_places() -> None:
     rows = dict(measure_on_path(SnapPoint(0, 1), SnapPoint(-4, 4), is_metric=True))
     assert (rows["ΔX Ø"], rows["ΔZ"], rows["DISTANCE"]) == ("6.0000", "−4.0000", "5.0000")
 
 
-def test_the_angle_is_that_to_the_axis_whichever_way() -> None:
+def test_angle_to_z_is_same_in_every_direction() -> None:
     for end in (SnapPoint(1, 1), SnapPoint(-1, 1), SnapPoint(1, -1), SnapPoint(-1, -1)):
         assert dict(measure_on_path(SnapPoint(0, 0), end, is_metric=True))["ANGLE TO Z"] == "45.00°"
     assert dict(measure_on_path(SnapPoint(0, 0), SnapPoint(0, 3), is_metric=True))["ANGLE TO Z"] == "90.00°"
 
 
-def test_nothing_between_one_point_and_itself() -> None:
+def test_distance_from_point_to_itself_is_zero() -> None:
     rows = dict(measure_on_path(SnapPoint(2, 3), SnapPoint(2, 3), is_metric=True))
     assert set(rows.values()) == {"0.0000", "0.00°"}
 
@@ -52,7 +52,7 @@ def test_on_the_face_y_is_up() -> None:
     }
 
 
-def test_on_the_side_degrees_are_told_with_the_way_round() -> None:
+def test_measurement_on_side_shows_c_angle_with_its_sign() -> None:
     rows = dict(measure_on_side(SnapPoint(0, 0), SnapPoint(-3, -4), is_metric=True, mm_per_degree=0.1))
     assert (rows["ΔZ"], rows["ΔC"], rows["ARC LENGTH"]) == ("−3.0000", "40.00°", "4.0000")
     assert dict(locate_on_side(SnapPoint(-3, -4), is_metric=True, mm_per_degree=0.1)) == {
@@ -61,12 +61,12 @@ def test_on_the_side_degrees_are_told_with_the_way_round() -> None:
     }
 
 
-def test_a_place_on_the_path_tells_its_diameter() -> None:
+def test_point_on_path_has_its_diameter() -> None:
     assert dict(locate_on_path(SnapPoint(-25.4, 12.7), is_metric=False)) == {
         "X Ø": "1.00000",
         "Z": "−1.00000",
     }
 
 
-def test_every_kind_has_a_word() -> None:
+def test_every_point_kind_has_its_own_name() -> None:
     assert len({describe_point_kind(kind) for kind in PointKind}) == len(PointKind)

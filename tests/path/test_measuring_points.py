@@ -39,17 +39,17 @@ def test_ends_of_blocks_and_starts_after_jumps_are_points() -> None:
     assert features.find_nearest(-3, 1) == SnapPoint(-2, 1, PointKind.END)
 
 
-def test_points_within_an_arc_are_none() -> None:
+def test_intermediate_arc_points_are_not_snap_points() -> None:
     bend = polyline([(0, 0, Stroke.JUMP), (1, 1, Stroke.TURN), (2, 0, Stroke.TURN)], [0, 3])
     assert SnapPoints(bend).find_nearest(1, 1) != SnapPoint(1, 1, PointKind.END)
 
 
-def test_middles_of_arcs_are_points() -> None:
+def test_arc_centers_are_snap_points() -> None:
     features = SnapPoints(replace(SQUARE, centers=np.array([[2.0, 2.0]])))
     assert features.find_nearest(2.4, 2.1) == SnapPoint(2, 2, PointKind.CENTER)
 
 
-def test_crossings_are_found_where_they_are_in_sight() -> None:
+def test_intersections_are_found_in_visible_area() -> None:
     features = SnapPoints(SQUARE)
     assert features.find_nearest(4, 1.1) == SnapPoint(4, 0, PointKind.END)
     features.update_intersections(EVERYWHERE)
@@ -58,11 +58,11 @@ def test_crossings_are_found_where_they_are_in_sight() -> None:
     assert features.find_nearest(4, 1.1) == SnapPoint(4, 0, PointKind.END)
 
 
-def test_a_jump_crosses_nothing() -> None:
+def test_jump_intersects_nothing() -> None:
     assert find_crossings(SQUARE, EVERYWHERE).tolist() == [[4, 1]]
 
 
-def test_too_many_stretches_have_no_crossings_and_take_no_time() -> None:
+def test_intersections_are_skipped_for_too_many_segments() -> None:
     zigzag = polyline(
         [(float(k % 2), float(k), Stroke.TURN if k else Stroke.JUMP) for k in range(MAX_CROSSING_CHORDS + 2)],
         list(range(MAX_CROSSING_CHORDS + 3)),
@@ -73,21 +73,21 @@ def test_too_many_stretches_have_no_crossings_and_take_no_time() -> None:
 @pytest.mark.parametrize(
     ("way", "found"), [((1, 0), (4, 0)), ((0, 1), (0, 4)), ((-1, 0), (-2, 1)), ((0, -1), None)]
 )
-def test_an_arrow_goes_to_the_next_point_that_way(
+def test_arrow_key_selects_next_point_in_its_direction(
     way: tuple[int, int], found: tuple[float, float] | None
 ) -> None:
     spot = SnapPoints(SQUARE).find_in_direction(0, 0, way)
     assert (spot and spot[:2]) == found
 
 
-def test_along_the_path_and_on_at_the_other_end() -> None:
+def test_next_point_along_path_wraps_around() -> None:
     features = SnapPoints(SQUARE)
     assert features.find_next_along_path(4, 4, 1) == SnapPoint(0, 4, PointKind.END)
     assert features.find_next_along_path(0, 0, -1) == SnapPoint(6, 1, PointKind.END)
     assert features.find_next_along_path(6, 1, 1) == SnapPoint(0, 0, PointKind.END)
 
 
-def test_an_empty_trail_has_no_points() -> None:
+def test_empty_path_has_no_snap_points() -> None:
     nothing = polyline([(0, 0, Stroke.JUMP)], [0])
     features = SnapPoints(replace(nothing, z=np.zeros(0), x=np.zeros(0), stroke=np.zeros(0, dtype=np.uint8)))
     features.update_intersections(EVERYWHERE)
@@ -96,13 +96,13 @@ def test_an_empty_trail_has_no_points() -> None:
     assert features.find_next_along_path(0, 0, 1) is None
 
 
-def test_what_was_touched_is_the_nearest_stretch() -> None:
+def test_touch_selects_nearest_segment() -> None:
     point = find_nearest_chord(SQUARE, 3.8, 2.5, 0.5)
     assert point == 2
     assert SQUARE.find_block(2) == 2
     assert [SQUARE.find_block(p) for p in range(6)] == [1, 1, 2, 3, 4, 4]
 
 
-def test_beside_the_path_nothing_is_touched() -> None:
+def test_touch_away_from_path_selects_nothing() -> None:
     assert find_nearest_chord(SQUARE, 2, 2.5, 0.5) is None
     assert find_nearest_chord(SQUARE, -1, 2.4, 0.5) is None  # on the way of a jump

@@ -62,13 +62,13 @@ def line(player: PartPlayer) -> int:
     return shown.part_instant.line_number
 
 
-def test_a_program_is_first_seen_at_its_end(player: PartPlayer) -> None:
+def test_loaded_program_is_shown_at_its_end(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     assert player.time_s == player.duration_s > 5.0
     assert line(player) == 13
 
 
-def test_without_a_program_nothing_is_shown_and_no_key_does_anything(player: PartPlayer) -> None:
+def test_player_without_program_shows_nothing_and_ignores_keys(player: PartPlayer) -> None:
     player.toggle_playback()
     player.step_blocks(1)
     player.seek_line(3)
@@ -76,7 +76,7 @@ def test_without_a_program_nothing_is_shown_and_no_key_does_anything(player: Par
     assert (player.result, player.is_playing, player.time_s, player.is_outdated) == (None, False, 0.0, False)
 
 
-def test_a_program_that_is_taken_away_is_gone(player: PartPlayer) -> None:
+def test_unloaded_program_is_not_shown(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     settled(player)
     player.load_picture(None)
@@ -84,7 +84,7 @@ def test_a_program_that_is_taken_away_is_gone(player: PartPlayer) -> None:
     assert player.result is None
 
 
-def test_playing_begins_anew_at_the_end_and_goes_with_the_clock(player: PartPlayer, clock: Clock) -> None:
+def test_playback_at_end_restarts_and_follows_clock(player: PartPlayer, clock: Clock) -> None:
     player.load_picture(picture(SHAFT))
     player.toggle_playback()
     assert player.time_s == 0.0
@@ -101,7 +101,7 @@ def test_playing_begins_anew_at_the_end_and_goes_with_the_clock(player: PartPlay
     assert player.time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
 
 
-def test_playing_stays_at_the_end(player: PartPlayer, clock: Clock) -> None:
+def test_playback_stops_at_end(player: PartPlayer, clock: Clock) -> None:
     player.load_picture(picture(SHAFT))
     player.seek_time(player.duration_s - 0.1)
     player.toggle_playback()
@@ -110,7 +110,7 @@ def test_playing_stays_at_the_end(player: PartPlayer, clock: Clock) -> None:
     assert (player.is_playing, player.time_s) == (False, player.duration_s)
 
 
-def test_a_screen_that_stood_still_does_not_jump(player: PartPlayer, clock: Clock) -> None:
+def test_playback_does_not_jump_after_screen_was_blocked(player: PartPlayer, clock: Clock) -> None:
     player.load_picture(picture(SHAFT))
     player.toggle_playback()
     clock.now += 5.0
@@ -133,7 +133,7 @@ def test_steps_go_from_block_to_block(player: PartPlayer) -> None:
     assert player.time_s == 0.0
 
 
-def test_to_a_line(player: PartPlayer) -> None:
+def test_seek_line_shows_part_at_line(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     player.seek_line(6)
     assert line(player) == 6
@@ -143,7 +143,7 @@ def test_to_a_line(player: PartPlayer) -> None:
     assert shown.part_instant.tool.control_point == pytest.approx((-12.7, 10.16))
 
 
-def test_while_the_run_leads_the_keys_do_nothing(player: PartPlayer) -> None:
+def test_keys_are_ignored_while_player_follows_run(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     player.follows_run = True
     at = player.time_s
@@ -153,7 +153,7 @@ def test_while_the_run_leads_the_keys_do_nothing(player: PartPlayer) -> None:
     assert (player.time_s, player.is_playing) == (at, False)
 
 
-def test_the_run_is_followed_to_where_the_tool_is(player: PartPlayer) -> None:
+def test_player_follows_run_to_tool_position(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     player.follows_run = True
     turning = player._picture.find_block_for_line(6) if player._picture else 0
@@ -164,7 +164,7 @@ def test_the_run_is_followed_to_where_the_tool_is(player: PartPlayer) -> None:
     assert shown.part_instant.tool.control_point == pytest.approx((-0.225 * 25.4, 10.16))
 
 
-def test_errors_have_their_time(player: PartPlayer) -> None:
+def test_errors_have_their_times(player: PartPlayer) -> None:
     made = picture(RAPID)
     player.load_picture(made)
     settled(player)
@@ -172,7 +172,7 @@ def test_errors_have_their_time(player: PartPlayer) -> None:
     assert mark == made.ends[made.find_block_for_line(11)]
 
 
-def test_what_cannot_be_made_is_told(player: PartPlayer, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_picture_is_reported(player: PartPlayer, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_given: object) -> None:
         raise ValueError("no such tool")
 
@@ -182,12 +182,12 @@ def test_what_cannot_be_made_is_told(player: PartPlayer, monkeypatch: pytest.Mon
     assert (player.result, player.error_text) == (None, "no such tool")
 
 
-def test_a_program_with_errors_is_shown_as_far_as_it_goes(player: PartPlayer) -> None:
+def test_program_with_errors_is_shown_up_to_its_first_error(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT.replace("X.45Z-.6", "X.45Q7Z-.6")))
     assert line(player) >= 6
 
 
-def test_a_mill_has_no_part() -> None:
+def test_mill_program_has_no_turned_part() -> None:
     machine = parse_machine(resources.read_machine_file("ac-table-mill.toml"), "mill")
     steps = create_loading_steps(machine, lambda: NO_OFFSETS)
     job = steps.make_job(ProgramSource("roof.h", "BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n"), False)
@@ -195,16 +195,14 @@ def test_a_mill_has_no_part() -> None:
     assert steps.draw_path(job, lambda _count: None).part is None
 
 
-def test_players_end_with_the_desk() -> None:
+def test_players_close_with_turndesk() -> None:
     players = PartPlayers([PartPlayer()])
     players.close()
     players[0].load_picture(picture(SHAFT))
     assert not players[0].worker.is_busy
 
 
-def test_of_a_program_that_is_too_long_the_view_says_why(
-    player: PartPlayer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_too_long_program_shows_reason(player: PartPlayer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("core.proving.part_history.MAX_MOVES", 5)
     made = picture(SHAFT)
     assert find_views(made, has_part=True)[-1] == (PathAspect.SECTION,)
@@ -214,14 +212,14 @@ def test_of_a_program_that_is_too_long_the_view_says_why(
     assert settled(player).result is None
 
 
-def test_blocks_before_a_line_are_those_of_the_lines_before() -> None:
+def test_blocks_before_line_are_counted() -> None:
     made = picture(SHAFT)
     # M03S1500, T1, then one block a line: before line 6 are those of lines 2 to 5.
     assert made.count_blocks_before(6) == 4
     assert made.count_blocks_before(1) == 0
 
 
-def test_to_a_block(player: PartPlayer) -> None:
+def test_seek_block_shows_its_line(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     player.seek_block(4)
     player.update()
@@ -241,9 +239,7 @@ MILLED = HEAD + (
 @pytest.mark.parametrize(
     ("program", "red"), [(MILLED, True), (MILLED.replace("X-.4\n", "F4X-.4\nF300"), False)]
 )
-def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
-    player: PartPlayer, program: str, red: bool
-) -> None:
+def test_live_tool_collision_in_rapid_is_red_in_3d_view(player: PartPlayer, program: str, red: bool) -> None:
     player.load_picture(picture(program))
     player.set_solid_request(SolidRequest(SolidView(pixels_per_mm=5.0, center_z_mm=-10.0), 200, 150))
     shown = settled(player).result
@@ -254,7 +250,7 @@ def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
 
 
 @pytest.mark.parametrize(("name", "metric"), [("part.nc", False), ("part.mpf", True), ("part.h", True)])
-def test_a_picture_without_a_path_has_the_unit_that_its_language_begins_with(name: str, metric: bool) -> None:
+def test_picture_without_path_has_default_unit_of_language(name: str, metric: bool) -> None:
     machine = load_machine(None)
     steps = create_loading_steps(machine, lambda: NO_OFFSETS)
     job = steps.make_job(ProgramSource(name, "(NO PROGRAM]\n"), False)

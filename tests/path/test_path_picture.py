@@ -35,7 +35,7 @@ def test_lines_share_their_corners() -> None:
     assert [picture.count_finished_points(n) for n in (-1, 0, 1, 2, 99)] == [0, 0, 2, 3, 3]
 
 
-def test_bounds_are_of_what_is_cut() -> None:
+def test_bounds_include_only_cuts() -> None:
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.RAPID, (100, 90), (8, 1)), 1.0)
     sketch.add_block(move(2, BlockKind.FEED, (8, 1), (6, -20)), 3.0)
@@ -49,7 +49,7 @@ def test_no_blocks_make_an_empty_picture() -> None:
     assert picture.time_left(1, 0.0) == 0.0
 
 
-def test_the_offset_of_the_tool_is_taken_out_and_the_shift_left_in() -> None:
+def test_drawing_excludes_tool_offset_and_includes_work_shift() -> None:
     modal = ModalState(spindle=1, tool_x=-50.0, tool_z=-200.0)
     block = move(1, BlockKind.FEED, (5, 0), (5, -3), modal=modal, offset_x=-50.0, offset_z=-230.0)
     sketch = PictureBuilder()
@@ -58,21 +58,21 @@ def test_the_offset_of_the_tool_is_taken_out_and_the_shift_left_in() -> None:
     assert sketch.build_picture().x.tolist() == [5, 5]
 
 
-def test_another_tool_jumps() -> None:
+def test_tool_change_is_a_jump() -> None:
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -3)), 1.0)
     sketch.add_block(move(2, BlockKind.FEED, (2, 7), (2, 6)), 2.0)
     assert sketch.build_picture().stroke.tolist() == [Stroke.JUMP, Stroke.TURN, Stroke.JUMP, Stroke.TURN]
 
 
-def test_a_feed_with_the_spindle_standing_is_milled() -> None:
+def test_feed_with_stopped_spindle_is_drawn_as_milling() -> None:
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -3), modal=ModalState()), 1.0)
     assert sketch.build_picture().stroke[-1] == Stroke.MILL
 
 
 @pytest.mark.parametrize("clockwise", [True, False])
-def test_an_arc_stays_on_its_circle(clockwise: bool) -> None:
+def test_arc_is_drawn_on_its_circle(clockwise: bool) -> None:
     # quarter of a circle of 10 mm about (x, z) = (0, -10), or three quarters the other way
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.ARC, (0, 0), (10, -10), cx=0.0, cz=-10.0, clockwise=clockwise), 1.0)
@@ -86,12 +86,12 @@ def test_an_arc_stays_on_its_circle(clockwise: bool) -> None:
     assert turned == pytest.approx(math.pi / 2 if clockwise else 3 * math.pi / 2)
 
 
-def test_tiny_arcs_are_few_chords() -> None:
+def test_tiny_arc_has_few_chords() -> None:
     assert count_arc_chords(0.001, math.pi) == 4
     assert count_arc_chords(1000.0, 1e-9) == 1
 
 
-def test_time_left_counts_within_the_block() -> None:
+def test_time_left_is_interpolated_within_block() -> None:
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -10)), 4.0)
     sketch.add_block(
@@ -104,7 +104,7 @@ def test_time_left_counts_within_the_block() -> None:
     assert picture.time_left(0, 0.0) == pytest.approx(5.0)
 
 
-def test_the_watch_may_give_up() -> None:
+def test_progress_callback_can_cancel_drawing() -> None:
     class EnoughError(Exception):
         pass
 

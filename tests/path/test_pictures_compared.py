@@ -10,7 +10,7 @@ JUMP, RAPID, TURN = Stroke.JUMP, Stroke.RAPID, Stroke.TURN
 BEFORE = polyline([(9, 9, JUMP), (0, 5, RAPID), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
 
 
-def test_the_farthest_point_that_is_cut() -> None:
+def test_largest_distance_is_at_farthest_cut_point() -> None:
     after = polyline(
         [(9, 9, JUMP), (7, 5, RAPID), (-9, 5.3, TURN), (-9.4, 8.3, TURN)],
         [0, 2, 3, 4],
@@ -21,19 +21,19 @@ def test_the_farthest_point_that_is_cut() -> None:
     assert found[1:] == (-9.4, 8.3)
 
 
-def test_no_difference_is_told_as_none_at_all() -> None:
+def test_equal_paths_have_zero_distance() -> None:
     assert find_largest_distance(BEFORE, BEFORE) == LargestDistance(0.0, -9.0, 5.0)
 
 
-def test_another_number_of_points_cannot_be_compared() -> None:
+def test_paths_with_different_point_counts_are_not_compared() -> None:
     assert find_largest_distance(BEFORE, polyline([(9, 9, JUMP), (0, 5, TURN)], [0, 2])) is None
 
 
-def test_other_strokes_cannot_be_compared() -> None:
+def test_paths_with_different_strokes_are_not_compared() -> None:
     other = polyline([(9, 9, JUMP), (0, 5, TURN), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
     assert find_largest_distance(BEFORE, other) is None
 
 
-def test_nothing_is_cut() -> None:
+def test_paths_without_cuts_are_not_compared() -> None:
     rapid = polyline([(9, 9, JUMP), (0, 5, RAPID)], [0, 2])
     assert find_largest_distance(rapid, rapid) is None

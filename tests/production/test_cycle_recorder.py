@@ -66,7 +66,7 @@ def recorded(tmp_path: Path) -> Iterator[Recorded]:
     recorded.store.close()
 
 
-def test_a_part_is_a_row_with_its_time_and_its_number(recorded: Recorded) -> None:
+def test_part_is_recorded_with_time_and_number(recorded: Recorded) -> None:
     recorded.rig.post(SetPartCount(41))
     recorded.rig.start(SHORT)
     recorded.rig.until(MachineState.IDLE)
@@ -76,7 +76,7 @@ def test_a_part_is_a_row_with_its_time_and_its_number(recorded: Recorded) -> Non
     assert row.ended is not None
 
 
-def test_each_part_of_cycle_repeat_is_a_row(recorded: Recorded) -> None:
+def test_each_part_of_cycle_repeat_is_recorded(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start(SHORT)
@@ -88,7 +88,7 @@ def test_each_part_of_cycle_repeat_is_a_row(recorded: Recorded) -> None:
     assert recorded.cycles[1].seconds == pytest.approx(rig.shot.last_cycle, abs=0.03)
 
 
-def test_a_hold_is_a_stop_and_not_cycle_time(recorded: Recorded) -> None:
+def test_feed_hold_is_recorded_as_stop_and_not_as_cycle_time(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.start(SHORT)
     rig.run(0.1)
@@ -115,7 +115,7 @@ def test_a_program_stop_has_its_name(recorded: Recorded) -> None:
     assert stop.seconds == pytest.approx(3.0, abs=0.05)
 
 
-def test_time_between_two_starts_is_a_stop_of_its_own(recorded: Recorded) -> None:
+def test_time_between_starts_is_recorded_as_stop(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.start(SHORT)
     rig.until(MachineState.IDLE)
@@ -127,7 +127,7 @@ def test_time_between_two_starts_is_a_stop_of_its_own(recorded: Recorded) -> Non
     assert stop.seconds == pytest.approx(20.3, abs=0.1)
 
 
-def test_an_estop_costs_until_the_next_start(recorded: Recorded) -> None:
+def test_estop_is_recorded_until_next_start(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.start(SHORT)
     rig.run(0.1)
@@ -146,7 +146,7 @@ def test_an_estop_costs_until_the_next_start(recorded: Recorded) -> None:
     assert stop.seconds == pytest.approx(7.3, abs=0.3)
 
 
-def test_given_up_and_dry_runs_are_no_parts(recorded: Recorded) -> None:
+def test_canceled_and_dry_runs_are_not_counted_as_parts(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.start(SHORT)
     rig.run(0.1)
@@ -158,7 +158,7 @@ def test_given_up_and_dry_runs_are_no_parts(recorded: Recorded) -> None:
     assert recorded.outcomes() == [(0, GIVEN_UP), (0, UNCOUNTED)]
 
 
-def test_a_part_that_was_finished_by_a_restart_says_so(recorded: Recorded) -> None:
+def test_part_finished_after_restart_is_marked(recorded: Recorded) -> None:
     """Its time is that of the rest of it."""
     broken_off(recorded.rig)
     restart(recorded.rig, 8)
@@ -166,7 +166,7 @@ def test_a_part_that_was_finished_by_a_restart_says_so(recorded: Recorded) -> No
     assert recorded.outcomes() == [(0, MachineState.ESTOP.value), (1, RESTARTED)]
 
 
-def test_the_wait_for_a_proof_is_not_a_parts_time(recorded: Recorded) -> None:
+def test_wait_for_proof_is_not_cycle_time(recorded: Recorded) -> None:
     rig = recorded.rig
     job = running(rig)
     rig.post(ChangeOffsets())
@@ -181,7 +181,7 @@ def test_the_wait_for_a_proof_is_not_a_parts_time(recorded: Recorded) -> None:
     assert recorded.cycles[1].seconds == pytest.approx(rig.shot.last_cycle, abs=0.05)
 
 
-def test_a_program_that_is_not_repeated_has_begun_no_other_part(recorded: Recorded) -> None:
+def test_program_without_repeat_records_no_further_part(recorded: Recorded) -> None:
     rig = recorded.rig
     job = running(rig)
     new = corrected(job, 99.0)
@@ -193,7 +193,7 @@ def test_a_program_that_is_not_repeated_has_begun_no_other_part(recorded: Record
     assert recorded.outcomes() == [(1, COMPLETE)]
 
 
-def test_events_without_a_cycle_leave_nothing(recorded: Recorded) -> None:
+def test_events_without_cycle_record_nothing(recorded: Recorded) -> None:
     for kind, text in (
         ("state", "RUNNING"),
         ("state", "FEED HOLD"),
@@ -205,7 +205,7 @@ def test_events_without_a_cycle_leave_nothing(recorded: Recorded) -> None:
     assert recorded.stops == ()
 
 
-def test_the_load_that_a_part_tells_is_kept_with_its_cycle(recorded: Recorded) -> None:
+def test_spindle_load_of_part_is_recorded_with_its_cycle(recorded: Recorded) -> None:
     for kind, text in (("load", "peg.nc"), ("start", "peg.nc")):
         recorded.recorder.hear(LogEvent(0.0, kind, text), recorded.store.cycles)
     recorded.recorder.hear(

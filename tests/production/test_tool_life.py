@@ -11,7 +11,7 @@ from core.production.tool_life import ToolLife, ToolLifeError, ToolLifeState, ch
 from tests.coded import raises_code
 
 
-def test_by_parts() -> None:
+def test_remaining_parts_follow_part_limit() -> None:
     life = ToolLife(3, limit_parts=50)
     states = [replace(life, parts=parts).state for parts in (0, 44, 45, 49, 50, 51)]
     assert states == [
@@ -25,7 +25,7 @@ def test_by_parts() -> None:
     assert replace(life, parts=60).remaining_part_count == 0
 
 
-def test_by_minutes_what_a_part_has_taken_tells_how_many_are_left() -> None:
+def test_remaining_parts_follow_minutes_limit_and_time_per_part() -> None:
     """30 min, 4 parts took 10: 2.5 min a part, 20 min make 8."""
     life = ToolLife(3, limit_seconds=1800, parts=4, seconds=600)
     assert life.share == pytest.approx(1 / 3)
@@ -33,7 +33,7 @@ def test_by_minutes_what_a_part_has_taken_tells_how_many_are_left() -> None:
     assert life.words == "10.0 of 30 min"
 
 
-def test_the_nearer_limit_counts() -> None:
+def test_nearer_limit_sets_remaining_parts() -> None:
     life = ToolLife(3, limit_parts=100, limit_seconds=600, parts=50, seconds=570)
     assert life.share == pytest.approx(0.95)
     assert (life.state, life.words) == (ToolLifeState.WARNING, "9.5 of 10 min")
@@ -41,7 +41,7 @@ def test_the_nearer_limit_counts() -> None:
     assert replace(life, parts=99).words == "99 of 100 parts"
 
 
-def test_without_a_limit_it_is_only_counted() -> None:
+def test_life_without_limit_only_counts() -> None:
     life = ToolLife(3, parts=999, seconds=90)
     assert (life.state, life.share, life.remaining_part_count) == (ToolLifeState.NO_LIMIT, 0.0, None)
     assert life.words == "999 parts, 1.5 min"
@@ -59,7 +59,7 @@ def test_without_a_limit_it_is_only_counted() -> None:
         ({"warn": 1.1}, "warning-share"),
     ],
 )
-def test_a_life_that_nobody_can_mean(changes: dict[str, float], code: str) -> None:
+def test_invalid_tool_life_is_rejected(changes: dict[str, float], code: str) -> None:
     check_tool_life(ToolLife(3))
     with raises_code(ToolLifeError, code, "T3"):
         check_tool_life(replace(ToolLife(3), **changes))  # type: ignore[arg-type]

@@ -65,7 +65,7 @@ def test_a_part_that_was_finished_without_a_screen_is_counted_once(tmp_path: Pat
     assert lives(tmp_path) == {1: (1, 20.0), 2: (1, 9.0)}
 
 
-def test_a_tool_that_has_cut_before_the_screen_was_lost_belongs_to_the_part(tmp_path: Path) -> None:
+def test_cutting_time_before_screen_loss_belongs_to_part(tmp_path: Path) -> None:
     first = Screen(tmp_path)
     first.see(0)
     first.see(0, T1=11.0)
@@ -78,7 +78,7 @@ def test_a_tool_that_has_cut_before_the_screen_was_lost_belongs_to_the_part(tmp_
 
 
 @pytest.mark.parametrize("control", ["another", ""])
-def test_the_totals_of_another_control_are_not_those_of_this_one(tmp_path: Path, control: str) -> None:
+def test_totals_of_another_control_are_not_used(tmp_path: Path, control: str) -> None:
     first = Screen(tmp_path)
     first.see(0)
     first.see(1, T1=30.0)
@@ -90,7 +90,7 @@ def test_the_totals_of_another_control_are_not_those_of_this_one(tmp_path: Path,
     assert lives(tmp_path) == {1: (2, 35.0)}
 
 
-def test_a_control_that_replaces_another_one_begins_at_its_own_totals(tmp_path: Path) -> None:
+def test_replacement_control_starts_with_its_own_totals(tmp_path: Path) -> None:
     screen = Screen(tmp_path)
     screen.see(0)
     screen.see(3, T1=30.0)
@@ -101,7 +101,7 @@ def test_a_control_that_replaces_another_one_begins_at_its_own_totals(tmp_path: 
     assert lives(tmp_path) == {1: (4, 35.0)}
 
 
-def test_a_control_in_the_process_of_the_screen_stores_no_totals(tmp_path: Path) -> None:
+def test_control_in_screen_process_stores_no_totals(tmp_path: Path) -> None:
     screen = Screen(tmp_path, "")
     screen.see(0)
     screen.see(1, MachineState.IDLE, T1=5.0)
@@ -126,7 +126,7 @@ def test_totals_are_the_same_after_they_were_stored() -> None:
         {"in_part": ["x"]},
     ],
 )
-def test_damaged_totals_are_none(change: dict[str, object]) -> None:
+def test_damaged_totals_are_ignored(change: dict[str, object]) -> None:
     plain = ToolTotals("control", 4, {1: 2.5}, frozenset({1})).setting_value
     assert ToolTotals.from_setting(plain | change) is None
     assert ToolTotals.from_setting(None) is None

@@ -34,7 +34,7 @@ def made(folder: Path, **texts: str) -> list[Path]:
     return paths
 
 
-def test_nothing_is_written_while_one_stands_there_with_another_text(tmp_path: Path) -> None:
+def test_nothing_is_copied_when_one_program_differs_at_destination(tmp_path: Path) -> None:
     sources = made(tmp_path / "stick", a="M30\n", b="M02\n")
     own = tmp_path / "own"
     made(own, b="M00\n")
@@ -43,7 +43,7 @@ def test_nothing_is_written_while_one_stands_there_with_another_text(tmp_path: P
     assert not (own / "a.nc").exists()
 
 
-def test_the_same_text_is_no_quarrel(tmp_path: Path) -> None:
+def test_identical_program_at_destination_is_accepted(tmp_path: Path) -> None:
     sources = made(tmp_path / "stick", a="M30\n")
     own = tmp_path / "own"
     made(own, a="M30\n")
@@ -54,7 +54,7 @@ def test_the_same_text_is_no_quarrel(tmp_path: Path) -> None:
     assert keep.told == []
 
 
-def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None:
+def test_programs_are_not_replaced_without_version_storage(tmp_path: Path) -> None:
     sources = made(tmp_path / "stick", a="M30\n")
     own = tmp_path / "own"
     made(own, a="M00\n")
@@ -63,7 +63,7 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     assert (own / "a.nc").read_text() == "M00\n"
 
 
-def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
+def test_one_invalid_file_prevents_whole_import(tmp_path: Path) -> None:
     sources = made(tmp_path / "stick", a="M30\n")
     bad = tmp_path / "stick" / "b.nc"
     bad.write_bytes(b"\x00\x01" * 40)
@@ -79,7 +79,7 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytes
         export_programs(sources, tmp_path, may_overwrite=False)
 
 
-def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_copy_that_cannot_be_verified_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sources = made(tmp_path / "own", a="M30\n")
     stick = tmp_path / "stick"
     stick.mkdir()
@@ -111,31 +111,31 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
     ("typed", "name"),
     [("part", "part.nc"), (" part ", "part.nc"), ("part.TXT", "part.TXT"), ("3.5", "3.5.nc")],
 )
-def test_a_name_gets_the_ending_it_lacks(typed: str, name: str) -> None:
+def test_missing_extension_is_added_to_name(typed: str, name: str) -> None:
     assert complete_name(typed, Path("like.nc")) == name
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "x" * 300])
-def test_a_name_that_will_not_do(typed: str) -> None:
+def test_invalid_name_is_rejected(typed: str) -> None:
     with pytest.raises(FileOperationError):
         complete_name(typed, Path("like.nc"))
 
 
-def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
+def test_rename_that_changes_only_case_is_rejected(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     assert rename_program(path, "A", Persistence()) == "A.nc"
     with pytest.raises(FileOperationError, match=pattern("programs.same-name")):
         rename_program(path.with_name("A.nc"), "A.nc", Persistence())
 
 
-def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
+def test_program_that_cannot_be_archived_is_not_deleted(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     with pytest.raises(FileOperationError, match=pattern("programs.not-deleted")):
         delete_program(path, Persistence())
     assert path.exists()
 
 
-def test_the_chooser_goes_in_and_up_to_the_places(tmp_path: Path) -> None:
+def test_folder_chooser_enters_folders_and_returns_to_places(tmp_path: Path) -> None:
     (tmp_path / "stick").mkdir()
     made(tmp_path / "stick" / "jobs", a="M30\n")
     (tmp_path / "stick" / "jobs" / ".hidden.nc").write_text("")

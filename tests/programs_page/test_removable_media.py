@@ -41,7 +41,7 @@ def listed(tmp_path: Path, *rows: tuple[str, str, str, str]) -> tuple[UsbStick, 
     return list_sticks((Path("/media"), Path("/run/media")), lambda _path: True, mounts, blocks)
 
 
-def test_what_is_mounted_under_media_or_can_be_taken_out_is_a_stick(tmp_path: Path) -> None:
+def test_mounted_removable_media_are_listed(tmp_path: Path) -> None:
     found = listed(
         tmp_path,
         ("8:1", "/", "rw", "rw"),
@@ -58,12 +58,12 @@ def test_what_is_mounted_under_media_or_can_be_taken_out_is_a_stick(tmp_path: Pa
 
 
 @pytest.mark.parametrize(("options", "of_system"), [("ro,nosuid", "rw"), ("rw", "ro")])
-def test_one_that_takes_nothing_is_told_so(tmp_path: Path, options: str, of_system: str) -> None:
+def test_read_only_stick_is_marked(tmp_path: Path, options: str, of_system: str) -> None:
     (stick,) = listed(tmp_path, ("8:17", "/media/S", options, of_system))
     assert stick.is_read_only
 
 
-def test_lines_that_are_none_are_left_out(tmp_path: Path) -> None:
+def test_invalid_mount_lines_are_ignored(tmp_path: Path) -> None:
     (tmp_path / "mountinfo").write_text("nonsense\n1 2 3\n")
     assert list_sticks((Path("/media"),), lambda _path: True, tmp_path / "mountinfo", tmp_path) == ()
 
@@ -78,7 +78,7 @@ def test_lines_that_are_none_are_left_out(tmp_path: Path) -> None:
         (errno.EACCES, "STICK: Permission denied"),
     ],
 )
-def test_the_cause_is_told(number: int, words: str) -> None:
+def test_media_error_is_described(number: int, words: str) -> None:
     assert describe_media_error(OSError(number, "Permission denied"), Path("/media/STICK")).startswith(words)
 
 
@@ -89,7 +89,7 @@ def made(folder: Path, *names: str) -> list[Path]:
     return [folder / name for name in names]
 
 
-def test_a_folder_that_is_left_of_a_pulled_stick_takes_nothing(tmp_path: Path) -> None:
+def test_leftover_folder_of_removed_stick_is_not_written(tmp_path: Path) -> None:
     sources, place = made(tmp_path / "own", "a.nc"), tmp_path / "STICK"
     place.mkdir()
     there = TargetMedium.from_folder(place)
@@ -100,7 +100,7 @@ def test_a_folder_that_is_left_of_a_pulled_stick_takes_nothing(tmp_path: Path) -
     assert list(place.iterdir()) == []
 
 
-def test_pulled_out_between_two_programs(tmp_path: Path) -> None:
+def test_export_stops_when_stick_is_removed_between_programs(tmp_path: Path) -> None:
     sources, place = made(tmp_path / "own", "a.nc", "b.nc"), tmp_path / "STICK"
     place.mkdir()
 
@@ -119,9 +119,7 @@ def test_pulled_out_between_two_programs(tmp_path: Path) -> None:
     assert all(path.exists() for path in sources)
 
 
-def test_what_does_not_fit_is_told_before_anything_is_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_lack_of_space_is_reported_before_writing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sources, place = made(tmp_path / "own", "a.nc", "b.nc"), tmp_path / "STICK"
     place.mkdir()
     monkeypatch.setattr("app.programs.removable_media._free", lambda _path: 7)
@@ -132,7 +130,7 @@ def test_what_does_not_fit_is_told_before_anything_is_written(
     assert list(place.iterdir()) == []
 
 
-def test_the_chooser_says_when_the_stick_has_gone(tmp_path: Path) -> None:
+def test_chooser_reports_removed_stick(tmp_path: Path) -> None:
     place = tmp_path / "STICK"
     place.mkdir()
     chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", place, 5, is_read_only=True),))

@@ -62,7 +62,7 @@ def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
     return keep.told
 
 
-def test_a_whole_cycle() -> None:
+def test_whole_cycle_is_recorded() -> None:
     done = replace(READY, parts=1, timed_cycle_count=1, last_cycle=12.5)
     assert told(READY, RUNNING, RUNNING, done, done) == [
         ("started", "pin.nc"),
@@ -81,7 +81,7 @@ def test_a_part_that_a_restart_has_finished_has_no_cycle_time(before: float) -> 
     ]
 
 
-def test_cycle_repeat_is_one_run_after_the_other() -> None:
+def test_cycle_repeat_records_each_run() -> None:
     again = replace(RUNNING, parts=1, timed_cycle_count=1, last_cycle=12.5)
     assert told(READY, RUNNING, again, again) == [
         ("started", "pin.nc"),
@@ -102,27 +102,27 @@ def test_cycle_repeat_is_one_run_after_the_other() -> None:
         ),
     ],
 )
-def test_a_run_that_does_not_end_well(last: Snapshot, outcome: str) -> None:
+def test_run_that_ends_abnormally_is_recorded_with_outcome(last: Snapshot, outcome: str) -> None:
     held = replace(RUNNING, state=MachineState.HOLD)
     assert told(READY, RUNNING, held, last)[-1] == ("ended", "pin.nc", outcome)
 
 
-def test_parts_made_before_the_screen_looked_are_nobodys() -> None:
+def test_parts_made_before_screen_started_are_not_recorded() -> None:
     assert told(replace(READY, parts=7), replace(READY, parts=7)) == []
 
 
-def test_jogging_is_no_run() -> None:
+def test_jogging_is_not_recorded_as_run() -> None:
     assert told(READY, replace(READY, state=MachineState.JOG), READY) == []
 
 
-def test_a_line_of_mdi_is_no_run_of_the_program() -> None:
+def test_mdi_line_is_not_recorded_as_program_run() -> None:
     line = replace(RUNNING, lines=1)
     after = replace(READY, lines=1)
     assert told(READY, line, line, after) == []
     assert told(READY, line, after, replace(RUNNING, lines=1)) == [("started", "pin.nc")]
 
 
-def test_a_proof_is_kept_once() -> None:
+def test_proof_is_recorded_once() -> None:
     keep = Kept()
     record = RunHistory(keep)
     proof = Proof(digest="x", errors=(), block_count=3, cycle_time_s=9.5, tool_numbers=())
@@ -137,7 +137,7 @@ def test_a_proof_is_kept_once() -> None:
     assert keep.told == [("proved", "pin.nc", "PROVED", 9.5, "M30\n")]
 
 
-def test_a_store_that_fails_stops_nobody() -> None:
+def test_failed_store_does_not_stop_run_history() -> None:
     class Broken(WrittenDown):
         def record_start(self, program: str) -> None:
             raise StoreError(f"the disk is full: {program}")
@@ -148,6 +148,6 @@ def test_a_store_that_fails_stops_nobody() -> None:
     assert record.running_program == ""
 
 
-def test_a_run_that_counts_as_no_part_has_no_cycle_time() -> None:
+def test_run_without_counted_part_has_no_cycle_time() -> None:
     done = replace(READY, ends=1, last_cycle=3.0)
     assert told(READY, RUNNING, done, done) == [("started", "pin.nc"), ("ended", "pin.nc", "NOT COUNTED")]

@@ -48,7 +48,7 @@ def seen(picture: Thumbnail | None) -> int:
     return int((np.frombuffer(picture.pixels, np.uint32) >> 24 > 0).sum())
 
 
-def test_the_part_is_drawn_and_found_again_without_being_made(
+def test_thumbnail_is_drawn_once_and_then_read_from_cache(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     small = thumbnails(tmp_path)
@@ -58,7 +58,7 @@ def test_the_part_is_drawn_and_found_again_without_being_made(
     assert small.get_thumbnail(job(SHAFT), go_on) == first
 
 
-def test_another_text_or_another_stock_is_another_picture(tmp_path: Path) -> None:
+def test_other_text_or_stock_gives_another_thumbnail(tmp_path: Path) -> None:
     first = thumbnails(tmp_path).get_thumbnail(job(SHAFT), go_on)
     assert thumbnails(tmp_path).get_thumbnail(job(SHAFT.replace("Z-.5", "Z-.3")), go_on) != first
     assert thumbnails(tmp_path, StoredPart("bar:2")).get_thumbnail(job(SHAFT), go_on) != first
@@ -66,7 +66,7 @@ def test_another_text_or_another_stock_is_another_picture(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("damage", [b"", b"no picture", None])
-def test_a_damaged_file_is_made_anew(tmp_path: Path, damage: bytes | None) -> None:
+def test_damaged_thumbnail_file_is_drawn_again(tmp_path: Path, damage: bytes | None) -> None:
     small = thumbnails(tmp_path)
     first = small.get_thumbnail(job(SHAFT), go_on)
     (path,) = tmp_path.iterdir()
@@ -74,12 +74,12 @@ def test_a_damaged_file_is_made_anew(tmp_path: Path, damage: bytes | None) -> No
     assert small.get_thumbnail(job(SHAFT), go_on) == first
 
 
-def test_a_folder_that_cannot_be_written_costs_no_picture(tmp_path: Path) -> None:
+def test_unwritable_folder_does_not_prevent_thumbnail(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     assert seen(thumbnails(tmp_path / "file").get_thumbnail(job(SHAFT), go_on)) > 0
 
 
-def test_without_a_part_there_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_program_without_part_has_no_thumbnail(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert thumbnails(tmp_path).get_thumbnail(job("G90G94F100\nM03S1500\nT1\nX2Z2\nM30\n"), go_on) is None
     mill = parse_machine(resources.read_machine_file("ac-table-mill.toml"), "mill")
     roof = job("BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n", mill, "roof.h")
@@ -114,16 +114,14 @@ def settled(preview: ProgramPreview, marked: ListedFile) -> Thumbnail | None:
     return preview.find_thumbnail(marked)
 
 
-def test_the_part_of_the_marked_program_comes_behind_its_path(
-    preview: ProgramPreview, tmp_path: Path
-) -> None:
+def test_preview_draws_part_after_path_of_marked_program(preview: ProgramPreview, tmp_path: Path) -> None:
     marked = program(tmp_path, SHAFT)
     assert preview.find_thumbnail(marked) is None  # the path first
     assert seen(settled(preview, marked)) > 0
     assert preview.find_thumbnail(None) is None
 
 
-def test_a_part_that_cannot_be_drawn_is_not_tried_for_ever(preview: ProgramPreview, tmp_path: Path) -> None:
+def test_failed_thumbnail_is_not_retried(preview: ProgramPreview, tmp_path: Path) -> None:
     tries: list[str] = []
 
     def broken(wanted: Job, _watch: ProgressCallback) -> Thumbnail | None:

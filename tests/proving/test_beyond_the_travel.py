@@ -23,11 +23,11 @@ def beyond(count: int) -> list[int]:
 
 
 @pytest.mark.parametrize("count", [1, 99, 100])
-def test_each_is_told_while_there_are_few(count: int) -> None:
+def test_few_travel_violations_are_all_reported(count: int) -> None:
     assert beyond(count) == list(range(4, 4 + count))
 
 
 @pytest.mark.parametrize("count", [101, 2500])
-def test_of_many_the_first_hundred_are_told(count: int) -> None:
+def test_travel_violations_are_limited_to_100(count: int) -> None:
     assert MAX_FINDINGS == 100
     assert beyond(count) == list(range(4, 104))

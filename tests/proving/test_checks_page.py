@@ -15,14 +15,14 @@ MODULES = (part_findings, cut_checks, cut_checks, edge_checks, thread_checks)
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_page_is_that_of_the_table(tmp_path: Path) -> None:
+def test_checks_page_matches_table(tmp_path: Path) -> None:
     """python -m core.proving.checks_page docs/checks.md"""
     assert (ROOT / "docs/checks.md").read_text(encoding="utf-8") == render_page()
     assert main([str(tmp_path / "checks.md")]) == 0
     assert (tmp_path / "checks.md").read_text(encoding="utf-8") == render_page()
 
 
-def test_what_is_found_has_an_entry_and_every_entry_is_found() -> None:
+def test_checks_table_lists_exactly_the_reported_checks() -> None:
     assert {name for module in MODULES for name in _named(module)} == set(PART_CHECKS)
 
 

@@ -98,25 +98,25 @@ CASES: list[tuple[tuple[str, ...], list[tuple[str, str, int]]]] = [
 
 
 @pytest.mark.parametrize(("lines", "expected"), CASES, ids=[" ".join(lines) for lines, _ in CASES])
-def test_a_check_finds_what_is_wrong_and_nothing_else(
+def test_check_finds_its_error_and_nothing_else(
     lines: tuple[str, ...], expected: list[tuple[str, str, int]]
 ) -> None:
     assert checks(proved(*lines)) == expected
 
 
-def test_the_first_block_of_it_and_a_remedy_are_told() -> None:
+def test_finding_names_first_block_and_remedy() -> None:
     (found,) = [d for d in proved(*HEAD, "X.5Z.1", "G95F.004Z-.2", "M30").diagnostics if d.check_name]
     assert (found.block_number, found.line) == (3, 4)  # M03, X.5Z.1, Z-.2
     assert "Write T" in found.hint
 
 
-def test_a_machine_that_switches_no_live_tool_is_not_asked_for_it() -> None:
+def test_live_tool_check_is_skipped_without_live_tool_output() -> None:
     machine = load_machine(None)
     without = replace(machine, m_codes={25: ("catcher", True), 26: ("catcher", False)})
     assert checks(proved(*MILL, "(~PLXC)", "(X.25Y0)", "(END)", "M30", machine=without)) == []
 
 
-def test_a_wait_for_an_input_that_the_machine_has_not_is_refused() -> None:
+def test_wait_for_missing_input_is_rejected() -> None:
     machine = load_machine(None)
     inputs = {name: each for name, each in machine.inputs.items() if name != "TB2-7"}
     report = proved(*HEAD, "M94", "M93", "M30", machine=replace(machine, inputs=inputs))
@@ -132,7 +132,7 @@ def test_the_worked_examples_have_no_error_by_a_check() -> None:
         assert [d.format_one_line(path.name) for d in report.errors if d.check_name] == []
 
 
-def test_json_names_check_block_and_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_report_has_check_block_and_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "a.nc"
     path.write_text("\n".join((*HEAD, "T1", "X.5Z.1", "M13", "G95F.004Z-.2", "M12", "M30", "")))
     offsets = tmp_path / "o.toml"

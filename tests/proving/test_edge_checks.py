@@ -161,26 +161,26 @@ CASES = {
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 @pytest.mark.parametrize("name", CASES)
-def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
+def test_check_finds_its_error_and_accepts_valid_program(name: str, metric: bool, diameter: bool) -> None:
     wrong, sound, stock, line = CASES[name]
     check = name.split(maxsplit=1)[0].rstrip(",")
     assert (check, line) in found(text(wrong, metric=metric, diameter=diameter), stock)
     assert found(text(sound, metric=metric, diameter=diameter), stock) == []
 
 
-def test_a_bore_is_not_entered_more_steeply_than_the_back_of_its_insert_clears() -> None:
+def test_bore_entry_steeper_than_insert_back_is_reported() -> None:
     recess = "T4\nX[.38]Z[.1]\nZ[-.3]\nG95F[.002]X[.394]\nX[.45]Z[{z}]\nZ[-.8]\nX[.38]\nG94F[300]Z[1]"
     assert ("wrong-side", 7) in found(text(recess.format(z="-.356")), PIPE)
     assert found(text(recess.format(z="-.5")), PIPE) == []
 
 
-def test_faces_and_insert_backs_that_meet_nothing_are_no_wrong_side() -> None:
+def test_face_and_insert_back_without_contact_are_not_reported() -> None:
     faced = "T1\nX[.6]Z[.1]\nZ[-.04]\nG95F[.004]X[-.02]\nG94F[300]Z[1]"
     assert found(text(faced)) == []
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
-def test_a_long_thin_bar_turns_slower_than_it_whirls(metric: bool, diameter: bool) -> None:
+def test_long_thin_bar_above_critical_speed_is_reported(metric: bool, diameter: bool) -> None:
     """f = 1.8751²/2π · 3500 m/s · (r/2) / L²: 6 mm thick, 200 mm long, that is 73.3 a second, 4397 rpm."""
     rod, long = make_bar(6.0, 0.0, -220.0), Clamping(100.0, 200.0, 10.0, 60.0)
     turned = "M05\nM03S{s}\nT1\nX[.2]Z[.1]\nX[.1]\nG95F[.004]Z[-.2]\nX[.2]\nG94F[300]Z[1]"
@@ -192,7 +192,7 @@ def test_a_long_thin_bar_turns_slower_than_it_whirls(metric: bool, diameter: boo
     assert part_of(sound, rod, clamping=long).findings == ()
 
 
-def test_what_could_not_be_checked_is_said() -> None:
+def test_unchecked_data_is_listed() -> None:
     turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\n"
     plain = turned + "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[1]"
     said = part_of(text(plain), shapes={3: ToolShape(ToolKind.DRILL, diameter=6.0)}).unchecked_data

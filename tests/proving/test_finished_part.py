@@ -28,31 +28,31 @@ def radius_at(part: FinishedPart, z: float) -> float:
     return float(solid.outer_radii[:, column].max()) / INCH
 
 
-def test_a_turned_shaft_at_its_end() -> None:
+def test_turned_shaft_has_its_radii_at_program_end() -> None:
     part = made(SHAFT)
     assert part is not None
     assert radius_at(part, -0.1) == pytest.approx(0.3, abs=1e-3)
     assert radius_at(part, -0.4) == pytest.approx(0.4, abs=1e-3)
 
 
-def test_a_pin_before_it_is_parted_off() -> None:
+def test_finished_part_is_that_before_parting_off() -> None:
     part = made(PINS)
     assert part is not None
     assert radius_at(part, -0.25) == pytest.approx(0.3, abs=1e-3)  # it is still on the bar
     assert radius_at(part, -0.58) > 0.3
 
 
-def test_a_part_before_the_collet_lets_it_go() -> None:
+def test_finished_part_is_that_before_collet_opens() -> None:
     part = made(SHAFT.replace("M30", "M05\nM13\nM12\nM30"))
     assert part is not None
     assert radius_at(part, -0.1) == pytest.approx(0.3, abs=1e-3)
 
 
-def test_where_nothing_is_cut_there_is_none() -> None:
+def test_program_without_cut_has_no_finished_part() -> None:
     assert made(HEAD + "X2Z2\nX2.5\nM30\n") is None
 
 
-def test_it_is_given_up_when_nobody_wants_it() -> None:
+def test_canceled_request_stops_finished_part() -> None:
     class NoLongerError(Exception):
         pass
 

@@ -38,7 +38,7 @@ def codes(program: str, stock: Stock = ROD) -> set[str]:
 HOLE = "T{t}\nX[0]Z[.1]\nG95F[.004]Z[{z}]\nG94F[300]Z[1]"
 
 
-def test_a_flat_drill_leaves_a_cylinder() -> None:
+def test_flat_drill_removes_cylinder() -> None:
     """.9 in deep: pi/4 x .25² x .9 = .04418 in³."""
     part = part_of(text(HOLE.format(t=2, z="-.9")), ROD, SHAPES)
     assert part.removed_volume_mm3 / INCH**3 == pytest.approx(math.pi / 4 * 0.25**2 * 0.9, rel=2e-3)
@@ -51,7 +51,7 @@ def test_a_pointed_drill_leaves_a_cone_at_the_bottom() -> None:
     assert part.removed_volume_mm3 / INCH**3 == pytest.approx(solid, rel=2e-3)
 
 
-def test_a_drill_beside_the_bar_meets_nothing() -> None:
+def test_drill_outside_bar_removes_nothing() -> None:
     assert (
         codes(text("T2\nX[1.5]Z[1]\nZ[-.5]\nZ[1]\n" + HOLE.format(t=2, z="-.3").removeprefix("T2\n")))
         == set()
@@ -83,7 +83,7 @@ def test_a_tap_needs_a_hole_that_is_deep_enough(hole: str, z: str, expected: boo
 BORED = "T{t}\nX[.24]Z[.1]\nG95F[.004]Z[-.5]\nX[.2]\nG94F[300]Z[1]"
 
 
-def test_a_boring_bar_into_solid_material_is_an_error_whatever_the_bar() -> None:
+def test_boring_into_solid_material_is_an_error_with_any_bar() -> None:
     solid = text(BORED.format(t=8))
     assert ("no-bore", "error") in found(solid, ROD)
     assert ("no-bore", "error") in found(solid.replace("T8\n", "T8(BORING BAR)\n"), ROD, {})
@@ -110,7 +110,7 @@ def test_a_drill_may_come_out_of_the_end_of_the_stock() -> None:
     ("t", "code", "expected"),
     [(1, "M03", False), (1, "M04", True), (4, "M04", True), (4, "M03", False)],
 )
-def test_a_front_tool_that_is_mounted_upright_cuts_with_m03(t: int, code: str, expected: bool) -> None:
+def test_upright_front_tool_needs_correct_spindle_direction(t: int, code: str, expected: bool) -> None:
     program = text("M05\n" + code + "S900\n" + TURNED.format(t=t, z="-.3"))
     assert (("wrong-spindle-direction", "error") in found(program)) is expected
 
@@ -119,11 +119,11 @@ PARTED = "T{t}\nX[.6]Z[-.8]\nG95F[.002]X[{x}]\nG94F[300]X[.6]"
 
 
 @pytest.mark.parametrize("x", ["0", "-.01", ".02"])
-def test_a_holder_that_the_blade_is_too_short_for_is_found_before_the_part_falls(x: str) -> None:
+def test_holder_of_short_parting_blade_is_reported(x: str) -> None:
     assert ("feed-into-holder", "error") in found(text(PARTED.format(t=3, x=x)))
 
 
-def test_a_blade_that_is_long_enough_parts_off_without_a_finding() -> None:
+def test_long_enough_parting_blade_has_no_finding() -> None:
     assert codes(text(PARTED.format(t=9, x="-.01"))) == set()
 
 
@@ -131,7 +131,7 @@ SWAPPED = "T{t}\nX[.3]Z[.2]\nM03S600\nX[.212]\nG33X[.237]Z[-.5]I[.012]K[.05]P\nX
 SOUND = "T{t}\nX[.3]Z[.2]\nM03S600\nX[.237]\nG33X[.212]Z[-.5]I[.012]K[.05]P\nX[.3]"
 
 
-def test_the_return_of_a_thread_pass_is_examined_but_for_the_way_out_of_the_groove() -> None:
+def test_thread_return_through_part_is_an_error_and_pullout_is_not() -> None:
     """With start and end swapped each pass retracts towards the axis, and returns through the part."""
     stock = make_bar(12.55, 0.0, -60.0)
     v = {1: ToolShape(ToolKind.THREADING, tip=8, point=60.0)}
@@ -151,7 +151,7 @@ def test_an_arc_is_examined_piece_by_piece() -> None:
 
 
 @pytest.mark.parametrize(("insert", "expected"), [("CNMG120408", True), ("RCMT0803M0", False)])
-def test_an_insert_with_a_corner_gets_around_no_loop(insert: str, expected: bool) -> None:
+def test_pointed_insert_cannot_cut_arc_loop(insert: str, expected: bool) -> None:
     """From square to the axis at Z-.3 around to parallel to it: 270°; the same arc the short way is 90°."""
     program = "G90G94F300G73\nM03S1500\n" + LOOP.replace("[", "").replace("]", "") + "\nM30\n"
     shapes = {1: replace(TURNING, insert=insert, nose_radius=4.0 if insert[0] == "R" else 0.8)}
@@ -159,7 +159,7 @@ def test_an_insert_with_a_corner_gets_around_no_loop(insert: str, expected: bool
     assert ("arc-loop", "error") not in found(program.replace("G03", "G02"), ROD, shapes)
 
 
-def test_what_rests_on_something_assumed_is_a_warning() -> None:
+def test_finding_based_on_assumption_is_a_warning() -> None:
     """A tip that is in the stated stock is an error whatever the tool."""
     slip = text(TURNED.format(t=1, z="-.5").replace("G95F[.004]Z", "G00Z"))
     assert ("rapid-into-stock", "error") in found(slip, ROD, {})
@@ -167,7 +167,7 @@ def test_what_rests_on_something_assumed_is_a_warning() -> None:
     assert all(severity != "error" for _, severity in found(text(hit), ROD, {}))
 
 
-def test_two_tools_with_one_offset_are_one_note_and_not_neighbours() -> None:
+def test_two_tools_with_one_offset_cause_one_note() -> None:
     part = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT})
     assert {each.check_name for each in part.findings} == set()
     gang = {1: (0.0, -25.4), 4: (0.0, -25.4)}
@@ -189,6 +189,6 @@ EDGE = "T1\nX[.6]Z[0]\nG95F[.004]X[-.02]\nG94F[300]Z[.05]\nX[{x}]\nG95F[.004]Z[{
         (".3", "0", "G03X.45Z-.15R.15", False),  # too large for the rounding of an edge
     ],
 )  # fmt: skip
-def test_a_hollow_at_the_edge_of_the_face(x: str, z: str, arc: str, expected: bool) -> None:
+def test_hollow_at_edge_of_face_causes_warning(x: str, z: str, arc: str, expected: bool) -> None:
     program = text(EDGE.format(x=x, z=z, arc=arc))
     assert (("hollow-at-edge", "warning") in found(program)) is expected

@@ -23,7 +23,7 @@ def cross_hole(milling: MillingState, z: float) -> float:
     return milling.cut_material(MillMove(1, 1, path, False, False), DRILL).volume_mm3
 
 
-def test_what_is_turned_after_milling_leaves_the_rays() -> None:
+def test_turning_after_milling_leaves_milled_hole_volume() -> None:
     part = TurnedPart(make_bar(30.0, 0.0, -40.0))
     milling = MillingState(part)
     hole = cross_hole(milling, -30.0)
@@ -43,7 +43,7 @@ def test_a_face_groove_after_milling_leaves_its_core_and_its_ring() -> None:
     assert milling.updated_field.volume_mm3 == pytest.approx(milling.remaining_volume_mm3)
 
 
-def test_a_bore_opened_after_milling_and_a_part_that_is_gone() -> None:
+def test_boring_after_milling_can_remove_whole_part() -> None:
     part = TurnedPart(make_tube(30.0, 10.0, 0.0, -40.0))
     milling = MillingState(part)
     cross_hole(milling, -30.0)

@@ -54,24 +54,24 @@ GOLDEN = [
 
 @pytest.mark.skipif(not WORKED, reason="the worked examples are not at hand")
 @pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
-def test_worked_examples(path: Path) -> None:
+def test_forecasts_agree_for_worked_examples(path: Path) -> None:
     check(load_source(path), create_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets=NOSE))
 
 
 @pytest.mark.parametrize("path", sorted(SAMPLES.glob("*.nc")), ids=lambda path: path.stem)
-def test_samples(path: Path) -> None:
+def test_forecasts_agree_for_samples(path: Path) -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     check(load_source(path), create_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary))
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
-def test_golden_programs(path: Path) -> None:
+def test_forecasts_agree_for_golden_programs(path: Path) -> None:
     table = path.with_suffix(".expected").read_text("utf-8").splitlines()
     setup = circumstances([line[1:].split() for line in table if line.startswith("#")])
     check(load_source(path), setup)
 
 
-def test_a_wait_for_speed_after_constant_surface_speed_is_the_same_for_all() -> None:
+def test_forecasts_agree_on_wait_for_speed_after_css() -> None:
     """G97 with another S behind a G96 move: the ramp begins at the speed that the move has led to."""
     css = ("G96S250", "G77S2500", "Z0", "G95F.002X0", "G94F300Z2", "G97", "S500")
     lines = ("G90G94F300", "M03S1500", "T1", "X.25Z.2", *css, "T2", "X0Z.2", "G95F.003Z-.5", "M30", "")

@@ -53,7 +53,7 @@ CUT = "G0 X30 Z2\nG94 G1 Z-10 F100\n"
         ("S1000 M3\nG0 X30 Z2\nX60", []),
     ],
 )
-def test_a_turned_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> None:
+def test_turned_cut_without_tool_is_reported(text: str, told: list[tuple[int, str]]) -> None:
     assert found(turned(text), "no-tool") == told
 
 
@@ -65,7 +65,7 @@ def test_a_turned_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> 
         ("TOOL CALL 1 Z S100\nL Z+5 R0 FMAX M3\nL Z-5 F200", []),
     ],
 )
-def test_a_milled_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> None:
+def test_milled_cut_without_tool_is_reported(text: str, told: list[tuple[int, str]]) -> None:
     assert found(milled(text), "no-tool") == told
 
 
@@ -78,13 +78,13 @@ def test_a_milled_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> 
         ("T1 D1\nSPOS=0\nG0 X30 Z2 C0\nG94 G1 C90 F100", []),
     ],
 )
-def test_a_forgotten_m3(text: str, told: list[tuple[int, str]]) -> None:
+def test_missing_m3_is_reported(text: str, told: list[tuple[int, str]]) -> None:
     around = create_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("a.mpf", text), around, LATHE)
     assert found(report, "spindle-off") == told
 
 
-def test_a_tool_by_name_keeps_its_name() -> None:
+def test_named_tool_is_shown_by_name() -> None:
     """Beyond copies, processes and edges: it is shown as the program writes it."""
     report = turned(f'T="Rough er" D1\nS1000 M3\n{CUT}')
     assert [format_edge_name(each) for each in report.tool_numbers] == ['T="Rough er"']
@@ -110,11 +110,11 @@ def test_a_tool_by_name_keeps_its_name() -> None:
         (725.0, 725.0, (5.0, 5.0)),
     ],
 )
-def test_the_range_of_a_modulo_axis(low: float, high: float, shown: tuple[float, float]) -> None:
+def test_modulo_axis_angle_range_is_found(low: float, high: float, shown: tuple[float, float]) -> None:
     assert find_modulo_angle_range(low, high) == pytest.approx(shown)
 
 
-def test_modulo_axes_are_told_in_their_range() -> None:
+def test_modulo_axes_are_reported_within_their_range() -> None:
     report = milled("TOOL CALL 1 Z S100\nL A+0 C+0 R0 FMAX\nL IC+810 FMAX")
     assert report.mill_results is not None
     assert dict(zip(report.mill_results.axis_names, report.mill_results.axis_ranges, strict=True))["C"] == (
@@ -125,7 +125,7 @@ def test_modulo_axes_are_told_in_their_range() -> None:
 
 
 @pytest.mark.parametrize(("text", "named"), [("T1 D1\nG0 X40 Z-9000", False)])
-def test_what_shifts_a_program_is_told_in_its_language(text: str, named: bool) -> None:
+def test_soft_limit_hint_uses_words_of_program_language(text: str, named: bool) -> None:
     (error,) = turned(text).errors
     assert error.code == "soft-limit"
     assert ("G10" in error.hint, "G54" in error.hint) == (named, True)

@@ -24,7 +24,7 @@ def test_a_stepped_shaft_has_two_diameters_between_three_shoulders() -> None:
     ]
 
 
-def test_a_bore_and_its_bottom() -> None:
+def test_bore_and_its_bottom_are_features() -> None:
     found = find_features(
         piece([(0.0, 10.0), (-20.0, 10.0)], [(0.0, 4.0), (-8.0, 4.0), (-8.0, 0.0), (-20.0, 0.0)])
     )
@@ -34,12 +34,12 @@ def test_a_bore_and_its_bottom() -> None:
     ]
 
 
-def test_cones_chamfers_and_short_straights_are_none() -> None:
+def test_cones_chamfers_and_short_cylinders_are_not_features() -> None:
     cone: ProfilePoints = [(0.0, 5.0), (-0.2, 5.0), (-10.0, 9.0), (-10.2, 9.0)]
     assert [each.kind for each in find_features(piece(cone))] == [FeatureKind.SHOULDER] * 2
 
 
-def test_a_fillet_in_the_corner_does_not_count_into_the_shoulder() -> None:
+def test_corner_fillet_is_not_part_of_shoulder() -> None:
     """The last of a fillet lies within the tolerance of the profile: the other end is the shoulder's."""
     filleted: ProfilePoints = [
         (0.0, 10.0),
@@ -54,11 +54,11 @@ def test_a_fillet_in_the_corner_does_not_count_into_the_shoulder() -> None:
     ] == -20.0
 
 
-def test_no_metal_has_no_features() -> None:
+def test_empty_piece_has_no_features() -> None:
     assert find_features(piece([])) == []
 
 
-def test_each_finds_its_own_when_all_have_moved() -> None:
+def test_features_match_when_all_have_moved() -> None:
     here = find_features(piece(STEPPED))
     there = find_features(piece([(z - 0.5, r + 0.25) for z, r in STEPPED]))
     assert [pair.difference_mm for pair in match_features(here, there)] == [
@@ -66,7 +66,7 @@ def test_each_finds_its_own_when_all_have_moved() -> None:
     ]  # fmt: skip
 
 
-def test_what_only_one_part_has_stands_alone() -> None:
+def test_feature_of_only_one_part_has_no_match() -> None:
     """Face and first diameter are in both; a shoulder from r 10 to 15 is not the back from the axis to 10."""
     here, there = find_features(piece(STEPPED)), find_features(piece([(0.0, 10.0), (-20.0, 10.0)]))
     pairs = match_features(here, there)
@@ -75,7 +75,7 @@ def test_what_only_one_part_has_stands_alone() -> None:
     assert {pair.difference_mm for pair in pairs[2:]} == {None}
 
 
-def test_a_diameter_is_never_taken_for_a_bore_or_a_shoulder() -> None:
+def test_diameter_does_not_match_bore_or_shoulder() -> None:
     ring = PartFeature(FeatureKind.DIAMETER, 20.0, (0.0, -5.0))
     for kind in (FeatureKind.BORE, FeatureKind.SHOULDER):
         assert match_features([ring], [ring._replace(kind=kind)]) == [
@@ -84,7 +84,7 @@ def test_a_diameter_is_never_taken_for_a_bore_or_a_shoulder() -> None:
         ]
 
 
-def test_nothing_far_away_is_the_same_feature() -> None:
+def test_distant_feature_does_not_match() -> None:
     ring = PartFeature(FeatureKind.DIAMETER, 20.0, (0.0, -5.0))
     assert len(match_features([ring], [ring._replace(at=33.0)])) == 2  # 6.5 mm of radius
     assert len(match_features([ring], [ring._replace(at=32.0)])) == 1

@@ -54,9 +54,7 @@ def straight_through(seen: PartHistory, blocks: int) -> PartSimulation:
 
 
 @pytest.mark.parametrize("every", [1, 3, 16])
-def test_any_block_in_any_order_is_as_made_straight_through(
-    every: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_part_at_any_block_equals_part_made_sequentially(every: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(part_instant, "_COPY_INTERVAL", every)
     seen = history(SHAFT)
     count = len(seen.steps)
@@ -69,7 +67,7 @@ def test_any_block_in_any_order_is_as_made_straight_through(
         assert instant.findings == made.findings.diagnostics
 
 
-def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
+def test_half_executed_cut_removes_half_its_material() -> None:
     seen = history(SHAFT)
     turning = next(
         k for k, step in enumerate(seen.steps) if not isinstance(step, LiveToolStep) and step.line == 6
@@ -86,7 +84,7 @@ def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
     assert high[there < -0.24 * INCH] == pytest.approx(0.5 * INCH)
 
 
-def test_what_is_shown_does_not_change_with_what_is_made_next() -> None:
+def test_shown_instant_is_not_changed_by_later_steps() -> None:
     seen = history(SHAFT)
     before = seen.at(3)
     assert before.x_plus_half is not None
@@ -95,7 +93,7 @@ def test_what_is_shown_does_not_change_with_what_is_made_next() -> None:
     np.testing.assert_array_equal(before.x_plus_half.outer_radii, high)
 
 
-def test_a_rapid_into_metal_has_its_place() -> None:
+def test_rapid_into_material_has_its_position() -> None:
     seen = history(RAPID)
     (hit,) = seen.at(len(seen.steps)).hits
     assert (hit.finding.check_name, hit.finding.line) == ("rapid-into-stock", 11)
@@ -108,19 +106,19 @@ def test_a_rapid_into_metal_has_its_place() -> None:
     assert hit.outer_radii == pytest.approx(0.4 * INCH, abs=0.001)
 
 
-def test_before_it_happens_nothing_is_hit() -> None:
+def test_collision_is_not_shown_before_it_happens() -> None:
     seen = history(RAPID)
     seen.at(len(seen.steps))
     assert seen.at(4).hits == ()
     assert seen.at(4).findings == ()
 
 
-def test_the_sound_twin_has_no_hits() -> None:
+def test_valid_program_has_no_collisions() -> None:
     seen = history(SHAFT)
     assert seen.at(len(seen.steps)).hits == ()
 
 
-def test_a_parted_piece_is_gone() -> None:
+def test_parted_piece_is_removed() -> None:
     seen = history(SHAFT.replace("M30", "T2\nX.6Z-.2\nG95F.002X-.01\nG94F300X.6\nM30"))
     instant = seen.at(len(seen.steps))
     assert instant.parted_piece_count == 1
@@ -145,7 +143,7 @@ class _EnoughError(Exception):
     pass
 
 
-def test_work_that_is_given_up_can_be_gone_on_with() -> None:
+def test_canceled_history_can_be_resumed() -> None:
     seen = history(SHAFT)
 
     def enough() -> None:
@@ -159,30 +157,30 @@ def test_work_that_is_given_up_can_be_gone_on_with() -> None:
     np.testing.assert_array_equal(instant.x_plus_half.outer_radii, made.part.outer_radii)
 
 
-def test_of_a_program_that_is_too_long_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_long_program_has_no_history(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(part_history, "MAX_MOVES", 5)
     assert moves(SHAFT) is None
 
 
-def test_of_a_program_without_blocks_there_is_none() -> None:
+def test_program_without_blocks_has_no_history() -> None:
     assert StepCollector(SETTING).make_program_steps() is None
 
 
-def test_where_nothing_is_cut_there_is_no_stock_and_no_metal() -> None:
+def test_program_without_cut_has_no_stock_or_part() -> None:
     seen = history(HEAD + "X2Z2\nM30\n", PartSettings())
     instant = seen.at(len(seen.steps))
     assert (instant.stock, instant.x_plus_half, instant.x_minus_half) == (None, None, None)
 
 
-def test_before_the_first_move_no_tool_stands_anywhere() -> None:
+def test_no_tool_is_shown_before_first_move() -> None:
     assert history(SHAFT).at(0).tool is None
 
 
-def test_a_block_that_is_none_is_done_to_no_share() -> None:
+def test_unknown_block_has_zero_executed_fraction() -> None:
     assert history(SHAFT).find_executed_fraction(999, (0.0, 0.0)) == 0.0
 
 
-def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
+def test_executed_fraction_follows_distance_to_end_of_block() -> None:
     seen = history(SHAFT)
     turning = (
         next(k for k, step in enumerate(seen.steps) if not isinstance(step, LiveToolStep) and step.line == 6)
@@ -195,7 +193,7 @@ def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
     )  # beside its path
 
 
-def test_shares_along_a_corner() -> None:
+def test_polyline_fraction_follows_corner() -> None:
     corner = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0)]
     assert find_polyline_fraction(corner, (1.0, -1.0)) == pytest.approx(0.25)
     assert find_polyline_fraction(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
@@ -213,7 +211,7 @@ MILLED = HEAD + (
 )
 
 
-def test_what_is_milled_is_replayed_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_milling_is_replayed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(part_instant, "_COPY_INTERVAL", 2)
     seen = history(MILLED, MILL)
     count = len(seen.steps)
@@ -238,7 +236,7 @@ def test_what_is_milled_is_replayed_too(monkeypatch: pytest.MonkeyPatch) -> None
     assert sorted(depths) == pytest.approx([0.4 * INCH, 0.5 * INCH], abs=0.01)
 
 
-def test_half_of_a_milling_move_stands_half_way() -> None:
+def test_half_executed_milling_move_has_tool_halfway() -> None:
     seen = history(MILLED, MILL)
     along = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
     instant = seen.at(along, 0.5)
@@ -257,7 +255,7 @@ def depth_at(seen: PartHistory, instant: PartInstant, z: float) -> float:
     return float(min(heights))
 
 
-def test_milled_metal_goes_along_the_block() -> None:
+def test_milled_material_is_removed_along_block() -> None:
     """The slot goes from Z-.4 to Z-.8 with a mill of .118 in radius: half way it ends at Z-.718."""
     seen = history(MILLED, MILL)
     along = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
@@ -281,7 +279,7 @@ def test_milled_metal_goes_along_the_block() -> None:
     )  # what was shown ahead leaves no trace
 
 
-def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
+def test_live_tool_collision_in_rapid_has_its_position() -> None:
     seen = history(MILLED.replace("G94F4X.4", "G94F300X.4"), MILL)
     instant = seen.at(len(seen.steps))
     hit, along = instant.hits
@@ -293,7 +291,7 @@ def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
     assert history(MILLED, MILL).at(len(seen.steps)).hits == ()
 
 
-def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_copies_of_milled_part_share_unchanged_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(part_instant, "_COPY_INTERVAL", 1)
     seen = history(MILLED, MILL)
     seen.at(len(seen.steps))
@@ -305,7 +303,7 @@ def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pyt
     assert seen._kept._total_bytes < 2.0 * alone + sum(m.nbytes for m, _, _ in seen._kept._copies.values())
 
 
-def test_what_stands_round_the_part() -> None:
+def test_scene_has_tool_and_chuck_around_part() -> None:
     seen = history(MILLED, replace(MILL, clamping=Clamping(40.0, 30.0, 5.0, 30.0)))
     instant = seen.at(len(seen.steps))
     around = seen.make_scene_at(instant)
@@ -321,7 +319,7 @@ def test_what_stands_round_the_part() -> None:
     ("program", "setting", "limits"),
     [(SHAFT, SETTING, [[-149.2, -87.3], [50.8, 22.7]]), (MILLED, MILL, [[-200.0, -100.0], [0.0, 10.0]])],
 )
-def test_the_limits_of_the_machine_as_the_tip_meets_them(
+def test_machine_limits_are_converted_to_tip_positions(
     program: str, setting: PartSettings, limits: list[list[float]]
 ) -> None:
     """T1 stands at machine X-12.7 Z-50.8 with its tip on part zero; T6 has no offset."""
@@ -333,7 +331,7 @@ def test_the_limits_of_the_machine_as_the_tip_meets_them(
     assert history(program, setting).at(len(seen.steps)).tip_range is None
 
 
-def test_what_runs_into_the_chuck_is_red_in_the_chuck_and_not_in_the_part() -> None:
+def test_chuck_collision_is_red_on_chuck_and_not_on_part() -> None:
     """The jaws' face stands at Z-10 mm, .394 in; T1 turns on to Z-.5."""
     held = Clamping(60.0, 10.0, 5.0, 40.0)
     seen = history(SHAFT, replace(SETTING, clamping=held))
@@ -345,7 +343,7 @@ def test_what_runs_into_the_chuck_is_red_in_the_chuck_and_not_in_the_part() -> N
     assert set(hits) == {"into-chuck"}
 
 
-def test_c_is_told_along_a_block_that_turns_the_part() -> None:
+def test_c_angle_is_interpolated_along_block() -> None:
     """From C0 to C90 with C locked: half way it is 45, and it stays at 90 behind it."""
     seen = history(MILLED.replace("Z-.8\nX.6\n", "C90\nX.6\n"), MILL)
     turning = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)

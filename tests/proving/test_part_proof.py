@@ -127,7 +127,7 @@ CASES = {
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 @pytest.mark.parametrize("name", CASES)
-def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
+def test_check_finds_its_error_and_accepts_valid_program(name: str, metric: bool, diameter: bool) -> None:
     wrong, sound, stock, line = CASES[name]
     stock_of_twin = make_tube(25.4, 11.0, 0.0, -50.0) if "holder" in name else stock
     _, part = proved(text(wrong, metric=metric, diameter=diameter), stock)
@@ -138,7 +138,7 @@ def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: 
 
 
 @pytest.mark.parametrize("slip", [("G95F[.004]Z[-.5]", "G00Z[-.5]"), ("X[.4]", "X[4]"), ("Z[-.5]", "Z[.5]")])
-def test_the_three_slips_are_warnings_without_a_word_about_stock_and_tools(slip: tuple[str, str]) -> None:
+def test_errors_are_warnings_with_assumed_stock_and_tools(slip: tuple[str, str]) -> None:
     _, part = proved(text(SOUND), None, {})
     assert checks(part) == []
     assert part.stock is not None
@@ -153,7 +153,7 @@ def test_the_three_slips_are_warnings_without_a_word_about_stock_and_tools(slip:
     assert first.hint
 
 
-def test_the_volume_that_a_program_removes() -> None:
+def test_removed_volume_is_calculated() -> None:
     _, part = proved(text(SOUND), BAR)
     r, nose = 0.4 * INCH, 0.4
     face = math.pi * 12.7**2 * 0.508
@@ -167,7 +167,7 @@ def test_the_volume_that_a_program_removes() -> None:
     assert part.last_piece.outside_profile[0] == (pytest.approx(0.0, abs=0.01), pytest.approx(r))
 
 
-def test_parts_of_a_loop_come_off_one_by_one() -> None:
+def test_looped_parts_are_parted_off_one_by_one() -> None:
     loop = "LS3\nT2\nX[.3]Z[.1]\nZ[-.4]\nG95F[.002]X[-.01]\nG94F[300]X[.3]\nG10X0Z[-.4]\nLF"
     _, part = proved(text(loop), make_bar(10.0, 0.0, -60.0))
     each = math.pi * 25.0 * (0.4 * INCH - 2.0)
@@ -175,7 +175,7 @@ def test_parts_of_a_loop_come_off_one_by_one() -> None:
     assert checks(part) == []
 
 
-def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
+def test_fed_bar_starts_again_at_bar_stop() -> None:
     fed = "T5(BAR STOP)\nX0Z1\nZ[-.4]\nM13\nZ[.02]F[20]\nM12\nG94F[300]Z[1]\n"
     _, part = proved(text(fed + SOUND), None, {})
     assert checks(part) == []
@@ -184,7 +184,7 @@ def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
     assert "T5 is treated as a bar stop" in part.assumptions
 
 
-def test_a_comment_says_more_than_the_moves() -> None:
+def test_tool_comment_overrides_guess_from_moves() -> None:
     drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
     _, part = proved(text(drilled), make_bar(20.0, 0.0, -40.0), {})
     by_comment = text_of("findings.by-its-comment")
@@ -199,7 +199,7 @@ def test_a_comment_says_more_than_the_moves() -> None:
 @pytest.mark.parametrize(
     "example", [path.stem for path in sorted(FOLDER.glob("*.nc"))] or ["linear-diameter"]
 )
-def test_no_false_alarm_on_a_worked_example(example: str) -> None:
+def test_worked_example_causes_no_false_finding(example: str) -> None:
     machine = load_machine(None)
     d = (-0.381, -0.381, 0.381)
     tools = {n: ToolOffset() for n in range(1, 33)}
@@ -239,7 +239,7 @@ SLOT = "T6\nX[.6]Z[-.4]\nM05\nM15\nM19\nG04F3\nG94F[4]X[.4]\nZ[-.8]\nX[.6]\nG94F
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
-def test_a_slot_milled_with_the_spindle_held(metric: bool, diameter: bool) -> None:
+def test_slot_is_milled_with_locked_spindle(metric: bool, diameter: bool) -> None:
     _, part = proved(text(SLOT, metric=metric, diameter=diameter), make_bar(25.4, 0.0, -60.0), MILL)
     assert checks(part) == []
     depth, width, length = 0.1 * INCH, 6.0, 0.4 * INCH
@@ -255,7 +255,7 @@ def test_a_slot_milled_with_the_spindle_held(metric: bool, diameter: bool) -> No
     assert ("rapid-into-stock", 9) in checks(part)
 
 
-def test_what_is_parted_off_behind_a_slot_weighs_less() -> None:
+def test_piece_parted_off_after_slot_has_smaller_volume() -> None:
     off = SLOT + "\nM05\nM03S900\nT2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"
     _, whole = proved(
         text("T2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"), make_bar(25.4, 0.0, -60.0)
@@ -286,14 +286,14 @@ CHUCK = Clamping(diameter=100.0, stick_out=1.2 * INCH, jaw_length=10.0, jaw_diam
 PARTED = "T2\nX[.6]Z[.1]\nZ[-1]\nG95F[.002]X[-.01]\nG94F[300]X[.6]\nZ[1]"
 
 
-def test_a_tool_runs_into_the_jaws_where_its_twin_stays_before_them() -> None:
+def test_jaws_collision_is_found_only_for_tool_past_jaw_face() -> None:
     assert checks(chucked(PARTED, CHUCK)) == []
     deeper = PARTED.replace("Z[-1]", "Z[-1.3]")
     assert ("into-chuck", 5) in checks(chucked(deeper, CHUCK))
     assert checks(chucked(deeper, Clamping(100.0, 1.5 * INCH, 10.0, 60.0))) == []
 
 
-def test_a_rapid_beside_the_bar_clears_jaws_that_are_small_enough() -> None:
+def test_rapid_next_to_bar_clears_small_jaws() -> None:
     beside = "T2\nX[1.0]Z[.1]\nZ[-1.4]\nM00\nZ[1]"
     assert ("into-chuck", 5) in checks(chucked(beside, CHUCK))  # r 25.4 in jaws of r 30
     assert checks(chucked(beside, Clamping(100.0, 1.2 * INCH, 20.0, 48.0))) == []
@@ -303,7 +303,7 @@ CENTRE = Clamping(diameter=0.0, stick_out=0.0, quill_diameter=12.0, center_angle
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
-def test_a_tool_runs_into_the_centre_where_its_twin_stays_beside_it(metric: bool, diameter: bool) -> None:
+def test_tool_collides_with_tailstock_center_only_when_too_close(metric: bool, diameter: bool) -> None:
     """Tip at Z-3 mm, 60 degrees: at the face (Z0) the centre is 3 tan 30 = 1.73 mm (.068 in) of radius."""
     for r, hit in ((0.03, True), (0.12, False)):
         lines = f"T1\nX[.6]Z[0]\nG95F[.004]X[{r}]\nG94F[300]Z[.05]\nX[.7]"
@@ -318,13 +318,13 @@ def test_a_holder_runs_into_the_quill() -> None:
     assert checks(chucked(beside.format(r=0.3), CENTRE)) == []  # 7.62 mm
 
 
-def test_a_drill_goes_through_the_part_into_no_chuck() -> None:
+def test_drill_through_part_does_not_collide_with_chuck() -> None:
     through = "T3\nX[0]Z[.1]\nG95F[.004]Z[-1.8]\nG94F[300]Z[1]"
     long = {3: ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=60.0, stick_out=80.0)}
     assert checks(chucked(through, CHUCK, long)) == []
 
 
-def test_the_spindle_turns_no_faster_than_the_chuck_may() -> None:
+def test_spindle_speed_above_chuck_limit_is_reported() -> None:
     slow, fast = (Clamping(0.0, 0.0, max_rpm=rpm) for rpm in (1499.0, 1500.0))
     assert ("spindle-overspeed", 4) in checks(chucked(SOUND, slow))
     assert checks(chucked(SOUND, fast)) == []
@@ -345,7 +345,7 @@ def ganged(lines: str, apart: float) -> PartReport:
     return part
 
 
-def test_a_neighbour_on_the_plate_runs_into_the_bar() -> None:
+def test_neighboring_tool_collides_with_bar() -> None:
     turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.5]\nX[.55]\nG94F[300]X[.6]\nZ[1]"
     # With T1 at r 10.16 the drill, 6 thick, has its axis at r -4.84 in a bar of r 12.7; at 40 it passes.
     assert ("neighbour-tool", 6) in checks(ganged(turned, 15.0))
@@ -353,12 +353,12 @@ def test_a_neighbour_on_the_plate_runs_into_the_bar() -> None:
     assert checks(ganged(turned, -40.0)) == []
 
 
-def test_a_neighbour_meets_the_bar_only_as_far_as_the_tool_goes_in() -> None:
+def test_neighboring_tool_reaches_bar_only_as_far_as_tool_moves_in() -> None:
     short = "T1\nX[.6]Z[.05]\nG95F[.004]X[.4]\nG94F[300]X[.6]\nZ[1]"
     assert checks(ganged(short, 15.0)) == []
 
 
-def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
+def test_part_of_very_long_program_is_made_when_stock_is_stated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(part_proof, "MAX_MOVES", 5)
@@ -369,7 +369,7 @@ def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
     assert part.removed_volume_mm3 > 0.0
 
 
-def test_a_thread_in_a_bore_takes_its_grooves_and_no_more() -> None:
+def test_thread_in_bore_removes_only_its_grooves() -> None:
     machine = load_machine(None)
     setup = create_setup(machine, tool_offsets={8: ToolOffset()}, secondary_offsets={})
     source = ProgramSource("THREAD", worked("thread-internal").read_text(encoding="latin-1"))
@@ -383,7 +383,7 @@ def test_a_thread_in_a_bore_takes_its_grooves_and_no_more() -> None:
     assert max(r for _, r in part.last_piece.bore_profile) == pytest.approx(0.46875 * INCH, abs=0.02)
 
 
-def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
+def test_cut_deeper_than_edge_length_is_reported() -> None:
     cut = "T1\nX[1.1]Z[.05]\nX[{r}]\nG95F[.004]Z[-.5]\nX[1.1]\nG94F[300]Z[1]"
     thick = make_bar(50.8, 0.0, -60.0)
     _, part = proved(text(cut.format(r=0.3)), thick)  # .7 in; .5 of 11.2 mm is .22 in
@@ -399,7 +399,7 @@ def test_an_arc_into_a_shoulder_is_as_deep_as_the_shoulder_is_high() -> None:
     assert checks(part) == []
 
 
-def test_a_slot_that_is_turned_away_again_counts_once() -> None:
+def test_slot_removed_by_turning_counts_once() -> None:
     turned = "M05\nM03S1500\nT1\nX[.6]Z[.1]\nX[.35]\nG95F[.004]Z[-1]\nX[.55]\nG94F[300]Z[1]"
     _, plain = proved(text(turned), make_bar(25.4, 0.0, -60.0), TOOLS)
     _, slotted = proved(text(f"{SLOT}\n{turned}"), make_bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
@@ -418,11 +418,11 @@ def test_a_slot_that_is_turned_away_again_counts_once() -> None:
         ("GROOVE 2.5 MM WIDE", 2.5), ("GROOVE TOOL", 0.0), ("45 WIDE", 0.0), ("WIDE GROOVE 125", 0.0),
     ],
 )  # fmt: skip
-def test_the_width_of_an_edge_by_its_comment(comment: str, width: float) -> None:
+def test_edge_width_is_parsed_from_comment(comment: str, width: float) -> None:
     assert parse_edge_width(comment) == pytest.approx(width)
 
 
-def test_a_spindle_that_stands_again_turns_nothing() -> None:
+def test_stopped_spindle_turns_nothing_and_is_reported() -> None:
     """Turned to r .4, then fed in at r .2 with the spindle stopped: there is no groove, and that is told."""
     turned = "T1\nX[.55]Z[.1]\nX[.4]\nG95F.004Z[-.3]\nG94F300X[.55]\nZ[.1]\n"
     still = text(turned + "M05\nX[.2]\nG94F10Z[-.2]\nG00Z[.1]\nG01F300X[.6]\n")
@@ -436,7 +436,7 @@ def test_a_spindle_that_stands_again_turns_nothing() -> None:
     assert not any("stands" in words for words in running.unchecked_data)
 
 
-def test_a_live_tool_in_the_plane_zc_works_across() -> None:
+def test_live_tool_in_zc_plane_is_radial() -> None:
     """A tool along the axis would cut a slot with its flank on the way out."""
     worked("plane-zc-figure-eight")
     path = FOLDER / "plane-zc-figure-eight.nc"

@@ -32,7 +32,7 @@ def told(name: str, text: str, code: str) -> list[tuple[int, str]]:
         (("G0 X30 Z0", "", READ, "R2=10/R1"), "error"),
     ],
 )
-def test_of_a_lathe(lines: tuple[str, ...], weight: str) -> None:
+def test_error_after_program_stop_has_its_severity_on_lathe(lines: tuple[str, ...], weight: str) -> None:
     ((_, severity),) = told("a.mpf", "T1 D1\n" + "\n".join(lines) + "\nM30\n", "arithmetic")
     assert severity == weight
 
@@ -46,13 +46,13 @@ def test_of_a_lathe(lines: tuple[str, ...], weight: str) -> None:
         (("STOP", "Q1 = 0", "Q2 = 1 / Q1"), "error"),
     ],
 )
-def test_of_a_mill(lines: tuple[str, ...], weight: str) -> None:
+def test_error_after_program_stop_has_its_severity_on_mill(lines: tuple[str, ...], weight: str) -> None:
     head = "BEGIN PGM A MM\nTOOL CALL 1 Z S100\nL X+0 Y+0 Z+5 R0 FMAX\n"
     ((_, severity),) = told("a.h", head + "\n".join(lines) + "\nEND PGM A MM\n", "Arithmetical error")
     assert severity == weight
 
 
-def test_the_run_itself_stops_there() -> None:
+def test_run_ends_at_error_after_program_stop() -> None:
     """What the executor goes through has it as an error, for it knows where the axes stand."""
     text = f"T1 D1\nG0 X30 Z0\n{STOP}\n{READ}\nR2=10/R1\nM30\n"
     running = interpret_program(

@@ -53,9 +53,7 @@ SUB = ("M30", "}1", BEYOND, "Z.1", "M99")
 
 @pytest.mark.parametrize("call", ["M95", "M97I10C1P1", "M97I10C0P1"])
 @pytest.mark.parametrize("on", [False, True])
-def test_a_branch_that_leaves_the_travel_refuses_the_start_whatever_the_input_is_now(
-    call: str, on: bool
-) -> None:
+def test_branch_beyond_travel_rejects_start_for_any_input_state(call: str, on: bool) -> None:
     report = proved(call, *SUB, **{"i10": on, "iTB2-9": on})
     assert errors(report) == [(7, "soft-limit")]
 
@@ -69,18 +67,18 @@ def test_the_branch_and_its_input_are_named() -> None:
     assert found.message.startswith("If input 7 is on at line 4: ")
 
 
-def test_the_branch_that_the_inputs_give_is_told_plainly() -> None:
+def test_finding_of_currently_active_branch_has_no_condition() -> None:
     (found,) = proved("M97I10C1P1", *SUB, i10=True).errors
     assert found.message.startswith("Z would move to")
 
 
-def test_what_a_branch_leaves_behind_is_proved_in_the_lines_that_follow() -> None:
+def test_state_left_by_branch_is_proved_in_following_lines() -> None:
     # the subroutine is harmless; the lines behind its call are not
     report = proved("M97I1C1P1", "G91Z-5", "G90", "M30", "}1", "Z-2", "M99")
     assert errors(report) == [(5, "soft-limit")]
 
 
-def test_two_inputs_that_are_harmful_only_together() -> None:
+def test_two_inputs_harmful_only_together_are_found() -> None:
     sub = ("G90", "M30", "}1", "G91Z-4", "M99")
     assert errors(proved("M97I1C1P1", "M97I2C1P1", *sub)) == [(9, "soft-limit")]
     (found,) = proved("M97I1C1P1", "M97I2C1P1", *sub).errors
@@ -88,18 +86,18 @@ def test_two_inputs_that_are_harmful_only_together() -> None:
     assert errors(proved("M97I1C1P1", *sub)) == []
 
 
-def test_an_input_that_comes_on_in_a_later_pass_of_a_loop() -> None:
+def test_input_that_turns_on_in_later_loop_pass_is_proved() -> None:
     # each pass goes .5 in deeper; only late in the loop does the subroutine lead out
     report = proved("LS6", "G91Z-.5", "M97I3C1P1", "G90", "LF", "M30", "}1", "Z-3.5", "Z3.5", "M99")
     assert errors(report) == [(11, "soft-limit")]
 
 
-def test_a_subroutine_that_asks_inside_a_subroutine() -> None:
+def test_conditional_call_inside_subroutine_is_proved() -> None:
     report = proved("M98P1", "M30", "}1", "M97I4C0P2", "M99", "}2", "M97I5C1P3", "M99", "}3", BEYOND, "M99")
     assert errors(report) == [(13, "soft-limit")]
 
 
-def test_a_branch_that_ends_the_job() -> None:
+def test_branch_that_ends_job_is_proved() -> None:
     assert errors(proved("M95", "G91Z-5", "M30", "}1", "Z-5", "M30")) == []
     assert errors(proved("M95", "G91Z-5", "M30", "}1", "Z-5", "M99")) == [(5, "soft-limit")]
 
@@ -113,14 +111,14 @@ def test_block_delete_is_proved_on_and_off(deleted: bool) -> None:
     assert found.message.startswith("With block delete off: Z would" if deleted else "Z would")
 
 
-def test_block_delete_and_an_input_together() -> None:
+def test_block_delete_and_input_are_proved_together() -> None:
     report = proved("/Z-3", "M97I1C1P1", "M30", "}1", "G91Z-4", "G90", "M99", deleted=True)
     (found,) = [each for each in report.diagnostics if each.code == "soft-limit"]
     assert (found.severity, errors(report)) == (Severity.WARNING, [])
     assert found.message.startswith("With block delete off: If input 1 is on at line 5: Z would")
 
 
-def test_a_first_line_that_block_delete_takes_away() -> None:
+def test_block_delete_of_first_line_is_proved() -> None:
     report = prove(ProgramSource("A", "/G90G94F300\nG04F1\nM30\n"), circumstances(), MACHINE)
     assert [(d.line, d.severity) for d in report.diagnostics if d.code == "first-line"] == [
         (2, Severity.WARNING)
@@ -130,7 +128,7 @@ def test_a_first_line_that_block_delete_takes_away() -> None:
     assert errors(report) == [(2, "first-line")]
 
 
-def test_klartext_and_sinumerik_lines_with_a_slash_are_proved_both_ways() -> None:
+def test_slash_lines_in_klartext_and_sinumerik_are_proved_on_and_off() -> None:
     machine = load_machine(None)
     text = "N10 G18 G90 G54 G94 T1 D1\nN20 G0 X20 Z3\n/N30 G1 Z-900 F300\nN40 M30\n"
     report = prove(ProgramSource("a.mpf", text), replace(circumstances(), block_delete=True), machine)
@@ -150,7 +148,7 @@ END PGM BD MM
 """
 
 
-def test_the_start_goes_by_the_switch_as_it_stands() -> None:
+def test_start_depends_on_current_block_delete_switch() -> None:
     """With the switch on the program runs on into a parameter that nothing has set."""
     mill = load_shipped_machine("ac-table-mill")
     around = create_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
@@ -160,13 +158,13 @@ def test_the_start_goes_by_the_switch_as_it_stands() -> None:
     assert [(d.line, d.code) for d in report.errors] == [(6, "Q parameter not defined")]
 
 
-def test_a_tool_that_only_the_other_setting_calls_hinders_no_start() -> None:
+def test_tool_of_other_block_delete_setting_does_not_prevent_start() -> None:
     report = proved("/T7", "/X.5Z.1", "M30", deleted=True)
     assert (report.missing_tools, report.tool_numbers) == ((), (1,))
     assert proved("/T7", "/X.5Z.1", "M30").missing_tools == (7,)
 
 
-def test_a_tool_that_only_a_branch_uses_is_demanded_before_the_start() -> None:
+def test_tool_used_only_in_branch_is_required_before_start() -> None:
     report = proved("M97I1C1P1", "M30", "}1", "T7", "X.5Z.1", "M99")
     assert report.missing_tools == (7,)
     assert report.tool_numbers == (1, 7)
@@ -178,7 +176,7 @@ def test_the_checks_of_cutting_hold_in_branches() -> None:
     assert (6, "collet-open", "error") in found  # the cut, after a subroutine that has left it open
 
 
-def test_an_input_that_changes_between_two_questions_is_a_warning() -> None:
+def test_input_change_between_two_reads_is_a_warning() -> None:
     # if and else of one input: neither or both is possible only when it changes in between
     twice = ("M97I1C1P1", "M97I1C0P2", "G91Z-4", "G90", "M30", "}1", "Z3", "M99", "}2", "Z4", "M99")
     assert errors(proved(*twice)) == []
@@ -187,7 +185,7 @@ def test_an_input_that_changes_between_two_questions_is_a_warning() -> None:
     assert [(str(d.severity), d.line) for d in found] == [("warning", 8)]
 
 
-def test_the_range_of_the_cycle_time_is_that_of_the_inputs() -> None:
+def test_cycle_time_range_covers_input_states() -> None:
     lines = ("LS4", "Z-1F20", "M97I1C1P1", "Z.1F300", "LF", "M30", "}1", "X1F10", "G04F2", "X.5", "M99")
     off, on = proved(*lines), proved(*lines, i1=True)
     assert off.times.cycle_s < on.times.cycle_s - 10
@@ -198,7 +196,7 @@ def test_the_range_of_the_cycle_time_is_that_of_the_inputs() -> None:
         assert report.branch_summary.proved_count == 5
 
 
-def test_block_delete_counts_in_the_range() -> None:
+def test_cycle_time_range_covers_block_delete() -> None:
     lines = ("/G04F3", "G04F1", "M30")
     off, on = proved(*lines), proved(*lines, deleted=True)
     assert off.times.cycle_s == pytest.approx(on.times.cycle_s + 3)
@@ -209,7 +207,7 @@ def test_block_delete_counts_in_the_range() -> None:
     )
 
 
-def test_a_program_that_asks_nothing_is_gone_through_once() -> None:
+def test_program_without_inputs_is_proved_once() -> None:
     reading = SharedProgram(ProgramSource("A", "\n".join((*HEAD, "M98P1", *SUB))))
     assert program_branches.BranchProof(reading, circumstances(), MACHINE, ideal=False).root_pass is None
     report = proved("Z-1", "M30")
@@ -224,7 +222,7 @@ def many(count: int) -> tuple[str, ...]:
     return (*calls, "M30", *subs)
 
 
-def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unproved_branches_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [d.code for d in proved(*many(5)).diagnostics] == []
     monkeypatch.setattr(program_branches, "MAX_BRANCHES", 3)
     report = proved(*many(5))
@@ -238,7 +236,7 @@ def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -
     assert report.branch_summary.proved_count == 3
 
 
-def test_outcomes_that_no_proof_could_go_through_one_by_one_end() -> None:
+def test_too_many_input_combinations_end_proof_with_one_finding() -> None:
     report = proved(*many(14))
     assert report.branch_summary.unproved_count > 0
     assert [d.code for d in report.diagnostics] == ["unreached-branch"]
@@ -252,13 +250,13 @@ def test_a_loop_of_bar_work_with_many_passes_is_proved() -> None:
     assert report.branch_summary.proved_count == program_branches.MAX_BRANCHES
 
 
-def test_a_subroutine_that_nothing_calls_is_told() -> None:
+def test_uncalled_subroutine_is_reported() -> None:
     report = proved("M98P1", "M30", "}1", "Z.2", "M99", "}2", BEYOND, "P3", "M99", "}3", "Z.3", "M99")
     notes = [(d.line, str(d.severity), d.code) for d in report.diagnostics]
     assert notes == [(9, "note", "unreached-branch"), (13, "note", "unreached-branch")]
 
 
-def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
+def test_bar_feeder_sample_and_its_end_of_bar_branch_are_proved() -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     source = load_source(SAMPLES / "pinbar.nc")
     setup = create_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary)
@@ -302,7 +300,7 @@ def by_every_answer(text: str, questions: int) -> Iterator[int]:
 
 @settings(max_examples=40, deadline=None)
 @given(BODY, SHORT, SHORT, SHORT)
-def test_the_proof_finds_what_some_set_of_answers_does_and_nothing_else(
+def test_proof_finds_exactly_errors_of_possible_input_states(
     main: list[str], one: list[str], two: list[str], three: list[str]
 ) -> None:
     text = text_of(main, one, two, three)

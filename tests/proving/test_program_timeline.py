@@ -26,13 +26,13 @@ def laid(
     return found
 
 
-def test_ways_take_length_over_speed() -> None:
+def test_move_time_is_length_over_feed() -> None:
     """.1 in of radius and .1 in of Z at 300 in/min, then 2 in at .01 in/rev and 600 rpm: 20 s."""
     times = [t for kind, t in laid(HEAD + "G95F.01\nZ-1.8\nM30\n") if kind is BlockKind.FEED]
     assert times[-1] == pytest.approx(20.0, abs=1e-6)
 
 
-def test_corners_and_waits_take_nothing() -> None:
+def test_corners_and_spindle_waits_have_zero_time_on_ideal_machine() -> None:
     """Eight sides of 1 in at 60 in/min are 8 s, however sharp; the spindle is at speed at once."""
     side = "Z-.8\nX.125\nZ.2\nX.25\n"
     text = HEAD + "G94F60\n" + side * 2 + "M30\n"
@@ -46,12 +46,12 @@ def test_corners_and_waits_take_nothing() -> None:
     assert report.times.cutting_s == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)
 
 
-def test_a_thread_waits_for_no_index() -> None:
+def test_thread_does_not_wait_for_index_on_ideal_machine() -> None:
     """Ten turns of .1 s a pass, and nothing before it."""
     found = laid(HEAD + "G33X.249Z-.8I.01K.1\nM30\n")
     assert [t for kind, t in found if kind is BlockKind.THREAD] == pytest.approx([1.0, 1.0], abs=1e-6)
 
 
-def test_a_real_machine_takes_longer() -> None:
+def test_real_machine_needs_more_time() -> None:
     text = HEAD + "G94F60\nZ-.8\nX.125\nM30\n"
     assert sum(t for _, t in laid(text, ideal=False)) > sum(t for _, t in laid(text))

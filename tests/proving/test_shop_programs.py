@@ -68,27 +68,27 @@ def test_a_shop_program_has_no_error_and_no_warning(name: str, folder: Path) -> 
     assert found == []
 
 
-def test_the_spacer(folder: Path) -> None:
+def test_spacer_has_expected_volume(folder: Path) -> None:
     """pi x (.4375² - .22²) x .5 = .22463 in³, less the chamfer: 2 pi x .4275 x .03²/2 = .00121."""
     (piece,) = proved("spacer", folder)[1].parted_pieces
     assert piece.volume_mm3 / INCH**3 == pytest.approx(0.22342, rel=3e-3)
 
 
-def test_the_stud(folder: Path) -> None:
+def test_stud_has_its_length_and_diameter(folder: Path) -> None:
     """Parted off at 1.118 by a blade of .118: 1 in long, .497 in thick."""
     (piece,) = proved("stud", folder)[1].parted_pieces
     assert (piece.outside_profile[0][0] - piece.outside_profile[-1][0]) / INCH == pytest.approx(1.0, abs=1e-3)
     assert max(r for _, r in piece.outside_profile) / INCH == pytest.approx(0.2485, abs=1e-3)
 
 
-def test_the_bushing(folder: Path) -> None:
+def test_bushing_has_expected_volume_and_wall(folder: Path) -> None:
     """pi x (10² - 6.25²) x 16 mm = 3063.1 mm³, with a wall of 3.75 mm."""
     (piece,) = proved("bushing-metric", folder)[1].parted_pieces
     assert piece.volume_mm3 == pytest.approx(3063.1, rel=3e-3)
     assert piece.min_wall_mm == pytest.approx(3.75, abs=0.01)
 
 
-def test_the_plug(folder: Path) -> None:
+def test_plug_has_its_through_hole(folder: Path) -> None:
     """.493 less a blade of .093 is .4 in; the hole of .201 goes through."""
     (piece,) = proved("plug", folder)[1].parted_pieces
     assert (piece.outside_profile[0][0] - piece.outside_profile[-1][0]) / INCH == pytest.approx(0.4, abs=1e-3)
@@ -96,13 +96,13 @@ def test_the_plug(folder: Path) -> None:
     assert min(r for _, r in piece.bore_profile) / INCH == pytest.approx(0.1005, abs=1e-3)
 
 
-def test_the_clevis_pin(folder: Path) -> None:
+def test_clevis_pin_has_expected_volume(folder: Path) -> None:
     """pi x .245² = .18857 in³, less chamfer .00066 and a hole of pi/4 x .125² x .49 x .992 = .00596."""
     (piece,) = proved("clevis-pin", folder)[1].parted_pieces
     assert piece.volume_mm3 / INCH**3 == pytest.approx(0.18195, rel=4e-3)
 
 
-def test_the_rod_end(folder: Path) -> None:
+def test_rod_end_has_expected_removed_volume_and_cutting_time(folder: Path) -> None:
     """Two flats at 8 mm of r 10: over y the mill of 16 mm reaches 10 + sqrt(64 - y²) deep.
 
     22 mm at 200 mm/min are 6.6 s each.
@@ -115,21 +115,21 @@ def test_the_rod_end(folder: Path) -> None:
     assert report.times.cutting_s == pytest.approx(13.2 + fast, abs=2.0)
 
 
-def test_the_flange(folder: Path) -> None:
+def test_flange_has_its_speed_limit_and_radius(folder: Path) -> None:
     """250 m/min: at the axis G77 limits the spindle to 2800 rpm. pi x 20² x 15 mm are left of the boss."""
     report, part = proved("flange-metric", folder)
     assert report.ranges.rpm_range[1] == pytest.approx(2800.0)
     assert radius_at(part, -5.0 / INCH) * INCH == pytest.approx(20.0, abs=0.01)
 
 
-def test_the_handle(folder: Path) -> None:
+def test_handle_has_its_taper_and_groove(folder: Path) -> None:
     """The taper rises from .25 at Z-.05 to .3 at Z-.5: .2722 at Z-.25. The groove is .3 deep at Z-.77."""
     _, part = proved("handle", folder)
     assert radius_at(part, -0.25) == pytest.approx(0.2722, abs=5e-4)
     assert radius_at(part, -0.77) == pytest.approx(0.3, abs=5e-4)
 
 
-def test_the_pins(folder: Path) -> None:
+def test_pins_have_expected_volume(folder: Path) -> None:
     """Four pins of .4 in, .75 long less a blade of 2 mm: pi x .2² x .6713 = .08436 in³ each."""
     _, part = proved("bar-pins", folder)
     volumes = [piece.volume_mm3 / INCH**3 for piece in part.parted_pieces]

@@ -67,7 +67,7 @@ def slips(lines: list[str]) -> Iterator[tuple[str, int, str]]:
 
 @pytest.mark.parametrize("name", ["bushing", "grooves", "knob", "pin", "pinbar"])
 @pytest.mark.long
-def test_a_slip_in_a_sample_is_an_error_or_named_here(name: str) -> None:
+def test_slip_in_sample_gives_error_or_is_listed_as_harmless(name: str) -> None:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 9)}
     setup = create_setup(

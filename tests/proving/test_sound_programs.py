@@ -188,13 +188,13 @@ def part_of(text: str) -> PartReport:
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_sound_program_gives_no_alarm_and_cuts(name: str) -> None:
+def test_sound_program_gives_no_finding_and_removes_material(name: str) -> None:
     part = part_of(PROGRAMS[name])
     assert part.findings == ()
     assert part.removed_volume_mm3 > 100.0
 
 
-def test_what_is_made_of_them() -> None:
+def test_sound_programs_produce_expected_part_profiles() -> None:
     first = part_of(PROGRAMS["a spindle switched by hand, and no G00"])
     assert len(first.parted_pieces) == 1
     bored = part_of(PROGRAMS["drilled, bored, grooved inside"]).last_piece

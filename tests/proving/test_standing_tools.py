@@ -59,23 +59,25 @@ HOLE = "T{t}\nX{x}Z.1\n{stop}F4Z-.3\nF300Z1"
         (HOLE.format(t=3, x="0", stop="M05\nM15\n"), []),
     ],
 )  # fmt: skip
-def test_a_tool_that_cuts_while_nothing_turns(program: str, expected: list[tuple[int, str, str]]) -> None:
+def test_cut_with_stationary_spindle_gives_expected_findings(
+    program: str, expected: list[tuple[int, str, str]]
+) -> None:
     assert found(program) == expected
 
 
-def test_a_tool_that_is_assumed_is_a_warning_and_the_other_message_stays() -> None:
+def test_assumed_tool_gives_spindle_off_warning_without_error() -> None:
     told = found(TURNED.format(stop="M05\n"), {})
     assert (11, "warning", "spindle-off") in told
     assert all(severity != "error" for _, severity, _ in told)
 
 
-def test_what_may_be_a_broach_is_a_warning() -> None:
+def test_possible_broach_gives_spindle_off_warning() -> None:
     told = found(HOLE.format(t=2, x=".3", stop="M05\n"))
     assert ("warning", "spindle-off") in {(severity, code) for _, severity, code in told}
     assert "cut-standing" not in {code for *_, code in told}
 
 
-def test_a_live_tool_without_a_code_is_switched_by_hand() -> None:
+def test_live_tool_without_m_code_gives_no_stationary_cut_finding() -> None:
     machine = load_machine(None)
     without = replace(machine, m_codes={25: ("catcher", True), 26: ("catcher", False)})
     program = CROSS.format(on="").replace("M16", "")
@@ -83,7 +85,7 @@ def test_a_live_tool_without_a_code_is_switched_by_hand() -> None:
 
 
 @pytest.mark.parametrize(("known", "severity"), [((1,), "error"), ((), "warning")])
-def test_a_tool_without_an_offset_is_an_error_where_others_have_one(
+def test_missing_tool_offset_is_error_only_if_other_tools_have_offsets(
     known: tuple[int, ...], severity: str
 ) -> None:
     """T3 has none while T1 has one; or no offset has been entered at all, as in an office."""

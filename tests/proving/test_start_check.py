@@ -95,7 +95,7 @@ def met(found: FirstMove) -> tuple[CollisionBody | None, int, bool]:
     return found.hit_body, found.tool, found.is_inside_at_start
 
 
-def test_a_start_at_line_1_out_of_the_bore_goes_through_its_wall() -> None:
+def test_start_at_line_1_from_inside_bore_hits_bore_wall() -> None:
     job = job_of(BORE)
     found = check_of(job).check_start(passes(job), interrupted(job))
     assert met(found) == (CollisionBody.PART, 2, False)
@@ -117,7 +117,7 @@ def test_a_start_at_line_1_out_of_the_bore_goes_through_its_wall() -> None:
         ((1, 0.6, -0.5), 21, 0.0, False),  # at the shoulder
     ],
 )
-def test_a_tool_that_stopped_in_a_bore_is_inside_although_the_first_move_meets_nothing(
+def test_tool_stopped_in_bore_is_inside_part_even_if_first_move_is_clear(
     place: tuple[int, float, float], line: int, jogged: float, inside: bool
 ) -> None:
     """The next tools would take the boring bar along through the wall."""
@@ -126,12 +126,12 @@ def test_a_tool_that_stopped_in_a_bore_is_inside_although_the_first_move_meets_n
     assert (found.hit_body is CollisionBody.PART, found.is_inside_at_start) == (inside, inside)
 
 
-def test_jogged_out_of_the_bore_it_is_clear() -> None:
+def test_start_is_clear_after_jog_out_of_bore() -> None:
     job = job_of(BORE.replace("X.9Z-.3\n", ""))
     assert check_of(job).check_start(passes(job), interrupted(job, jogged=0.8)).hit_body is None
 
 
-def test_the_stock_does_not_have_to_be_specified_for_a_tool_that_was_stopped_in_it() -> None:
+def test_stopped_tool_is_inside_part_without_specified_stock() -> None:
     job = job_of(BORE)
     found = check_of(job, replace(SETTING, stock=None)).check_start(passes(job), interrupted(job))
     assert met(found) == (CollisionBody.PART, 2, False)
@@ -147,7 +147,7 @@ def test_a_tool_that_was_jogged_into_the_wall_is_inside_the_part() -> None:
     assert met(found) == (CollisionBody.PART, 2, True)
 
 
-def test_without_an_interruption_a_first_move_through_an_assumed_stock_is_only_assumed() -> None:
+def test_first_move_through_assumed_stock_is_marked_as_assumed() -> None:
     job = job_of(BORE)
     now = StartState((*axes(1, 0.9, -1.2), 0.0), 1, starts_at_first_line=False)
     through = job_of("G90G94F300G73\nT1\nX.2Z-1.2\nX.9\n" + BORE)
@@ -157,7 +157,7 @@ def test_without_an_interruption_a_first_move_through_an_assumed_stock_is_only_a
 
 
 @pytest.mark.parametrize(("text", "crosses"), [("X1.2Z.5", True), ("Z.5", False), ("G95F.003X.42", False)])
-def test_a_line_of_mdi_in_the_bore(text: str, crosses: bool) -> None:
+def test_mdi_line_in_bore_is_checked_against_bore_wall(text: str, crosses: bool) -> None:
     job = job_of(BORE)
     now = interrupted(job)
     line = line_of(f"G90G94F300{text}" if "G95" not in text else text, now.axis_positions, 2)
@@ -165,7 +165,7 @@ def test_a_line_of_mdi_in_the_bore(text: str, crosses: bool) -> None:
     assert (found.hit_body is not None) is crosses
 
 
-def test_a_first_move_into_the_chuck_and_into_the_tailstock() -> None:
+def test_first_move_into_chuck_or_tailstock_is_a_hit() -> None:
     job = job_of(BORE)
     held = Clamping(80.0, 30.0, jaw_length=10.0, jaw_diameter=60.0, quill_diameter=20.0, center_z_mm=1.0)
     check = check_of(job, replace(SETTING, clamping=held))
@@ -181,7 +181,7 @@ def test_a_first_move_into_the_chuck_and_into_the_tailstock() -> None:
     )
 
 
-def test_the_usual_place_away_from_the_part_is_clear() -> None:
+def test_start_at_usual_position_away_from_part_is_clear() -> None:
     job = job_of(BORE)
     end = check_of(job).part_history.end_position
     assert end is not None
@@ -189,20 +189,20 @@ def test_the_usual_place_away_from_the_part_is_clear() -> None:
     assert (found.hit_body, found.is_part_known) == (None, True)
 
 
-def test_a_tool_that_was_jogged_into_specified_stock_is_inside_without_any_interruption() -> None:
+def test_tool_jogged_into_specified_stock_is_inside_part() -> None:
     job = job_of(BORE)
     now = StartState((*axes(1, 0.5, -0.5), 0.0), 1)
     assert met(check_of(job).check_start(passes(job), now)) == (CollisionBody.PART, 1, True)
     assert check_of(job, replace(SETTING, stock=None)).check_start(passes(job), now).is_assumed
 
 
-def test_the_way_out_is_that_of_the_tool_in_work_where_another_tool_meets_the_part() -> None:
+def test_safe_jog_direction_is_for_active_tool_when_other_tool_hits_part() -> None:
     job = job_of(BORE)
     found = check_of(job).check_start(passes(job), interrupted(job, (3, 1.0, 0.2), line=9))
     assert (found.hit_body, found.tool, found.safe_jog_direction) == (CollisionBody.PART, 1, "Z+")
 
 
-def test_the_first_move_is_drawn_for_the_tool_that_arrives() -> None:
+def test_first_move_path_is_drawn_for_incoming_tool() -> None:
     job = job_of(BORE)
     found = check_of(job).check_start(passes(job), StartState((0.0, 0.0, 0.0), 0))
     assert found.hit_body is None

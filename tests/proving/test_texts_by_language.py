@@ -32,7 +32,7 @@ SINUMERIK = re.compile(r"\bLIMS|\bCYCLE\d|\bDIAM|\bT\d+ D\d|\bTRANS\b|\bG5[4-9]\
 
 
 @pytest.mark.parametrize("name", PART_CHECKS)
-def test_what_to_do_about_a_check_of_the_part_names_no_code(name: str) -> None:
+def test_part_check_remedies_contain_no_program_codes(name: str) -> None:
     """These checks serve every language of a lathe; S, X, Z, F, K and G96 are the same in all of them."""
     assert CODES.findall(PART_CHECKS[name].remedy) == []
 
@@ -80,7 +80,7 @@ TURNED = {
 
 
 @pytest.mark.parametrize("name", TURNED)
-def test_a_mistake_in_sinumerik_is_told_in_its_words(name: str) -> None:
+def test_sinumerik_mistakes_are_reported_in_sinumerik_terms(name: str) -> None:
     program, stock, shapes, check = TURNED[name]
     told = found(program, stock, shapes)
     assert check.split(maxsplit=1)[0].rstrip(",") in {each.check_name for each in told}
@@ -129,7 +129,7 @@ TAP = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27, length=25.0)
 
 
 @pytest.mark.parametrize("check", MORE)
-def test_what_holds_the_part_is_told_in_its_words(check: str) -> None:
+def test_workholding_checks_are_reported_in_sinumerik_terms(check: str) -> None:
     program, stock, said = MORE[check]
     shapes = {**test_edge_checks.SHAPES, 10: TAP}
     if "gang" in said:
@@ -159,7 +159,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("code", PROGRAMS)
-def test_what_needs_no_stock_is_told_in_its_words(code: str) -> None:
+def test_checks_without_stock_are_reported_in_sinumerik_terms(code: str) -> None:
     program, remedy = PROGRAMS[code]
     told = found(program, None, {1: test_edge_checks.RIGHT})
     (first,) = [each for each in told if each.code == code][:1]
@@ -168,14 +168,14 @@ def test_what_needs_no_stock_is_told_in_its_words(code: str) -> None:
 
 
 @pytest.mark.parametrize("limit", ["LIMS=2000\n", "G26 S2000\n"])
-def test_a_surface_speed_with_a_limit_is_right_in_sinumerik(limit: str) -> None:
+def test_limited_surface_speed_gives_no_finding_in_sinumerik(limit: str) -> None:
     assert found(FACE.format(limit=limit), None, {1: test_edge_checks.RIGHT}) == []
 
 
 @pytest.mark.parametrize(
     "body", ["L Z+5 R0 FMAX\nL Z-5 F200\nTOOL CALL 1 Z S100\nL Z-9 M3", "TOOL CALL 1 Z S100\nL Z+9000 FMAX"]
 )
-def test_a_mistake_in_klartext_is_told_in_its_words(body: str) -> None:
+def test_klartext_mistakes_are_reported_in_klartext_terms(body: str) -> None:
     mill = load_shipped_machine("ac-table-mill")
     setup = create_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     told = prove(ProgramSource("a.h", f"BEGIN PGM A MM\n{body}\nEND PGM A MM\n"), setup, mill).diagnostics

@@ -87,7 +87,7 @@ CASES = {
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 @pytest.mark.parametrize("name", CASES)
-def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
+def test_check_flags_faulty_program_and_accepts_sound_twin(name: str, metric: bool, diameter: bool) -> None:
     wrong, sound, stock, line = CASES[name]
     # I and A are diameters under G72
     double = [each.replace("I[.01]", "I[.02]") if diameter else each for each in (wrong, sound)]
@@ -101,9 +101,7 @@ LEFT_HAND += "T5\nX[.3]Z[-.43]\nX[.26]\nG33X[.222]Z[.2]I[.02]K[.05]\nG94F[300]X[
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
-def test_a_left_hand_thread_tells_how_wide_the_groove_is_that_it_begins_in(
-    metric: bool, diameter: bool
-) -> None:
+def test_rapid_into_narrow_groove_of_left_hand_thread_is_reported(metric: bool, diameter: bool) -> None:
     """The groove reaches from Z-.5 2 mm back, to Z-.421, the flanks of the thread at Z-.43 to Z-.414."""
     program = text(
         LEFT_HAND.replace("I[.02]", "I[.04]") if diameter else LEFT_HAND, metric=metric, diameter=diameter
@@ -115,7 +113,7 @@ def test_a_left_hand_thread_tells_how_wide_the_groove_is_that_it_begins_in(
     assert findings(program) == []  # nobody has described it at all
 
 
-def test_a_groove_of_unknown_width_is_two_millimetres_or_what_its_thread_needs() -> None:
+def test_groove_of_unknown_width_is_2_mm_or_as_wide_as_thread_needs() -> None:
     def width(z0: float, z1: float, tip: int = 3) -> float:
         plunge = move((-10.0, 8.0), (-10.0, 5.0), BlockKind.FEED)
         return find_groove_width(
@@ -131,14 +129,12 @@ def test_a_groove_of_unknown_width_is_two_millimetres_or_what_its_thread_needs()
     assert width(-1.0, 5.0) == 2.0  # no groove is as wide as that
 
 
-def test_a_lead_of_several_pitches_is_that_of_several_starts() -> None:
+def test_lead_of_several_pitches_is_accepted_as_multi_start() -> None:
     assert findings(text(CUT.replace("K[.05]", "K[.15]"))) == []
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
-def test_a_thread_that_begins_in_front_of_part_zero_needs_its_run_up_there(
-    metric: bool, diameter: bool
-) -> None:
+def test_thread_start_ahead_of_part_zero_requires_run_up(metric: bool, diameter: bool) -> None:
     """.05 in at 600 rpm are 12.7 mm/s: with 20 mm/s² that is 4.03 mm. The bar stands .1 in before Z0."""
     lines = THREAD.format(p="P")
     lines = lines.replace("I[.01]", "I[.02]") if diameter else lines
@@ -148,7 +144,7 @@ def test_a_thread_that_begins_in_front_of_part_zero_needs_its_run_up_there(
     assert findings(program, make_bar(12.7, 0.5, -60.0), slow) == []
 
 
-def test_a_slide_that_brakes_in_metal_for_more_than_a_lead() -> None:
+def test_braking_in_material_longer_than_lead_is_reported() -> None:
     """12.7 mm/s and 50 mm/s² are 1.6 mm, more than the lead of 1.27; run-up is 5 mm."""
     slow = DriveLimits(z_acceleration_mm_s2=50.0)
     assert findings(text(CUT), drives=slow) == [("thread-run-up", 8)]
@@ -159,18 +155,18 @@ def test_a_slide_that_brakes_in_metal_for_more_than_a_lead() -> None:
     assert findings(text(CUT), relief, slow) == []
 
 
-def test_a_self_reversing_holder_is_drawn_out_as_it_went_in() -> None:
+def test_self_reversing_holder_feeds_out_without_spindle_reversal() -> None:
     out = TAPPED.replace("M04\nG04F.5\n", "")
     assert findings(text(out.replace("T4", "T4(1/4-20 TAP, TAPMATIC)")), DRILLED) == []
 
 
-def test_a_comment_gives_the_pitch_of_a_tap_that_nobody_has_described() -> None:
+def test_comment_sets_pitch_of_undefined_tap() -> None:
     named = TAPPED.replace("T4", "T4(1/4-28 TAP)")
     assert findings(text(named), DRILLED, shapes={}) == [("tap-pitch", 7)]
     assert findings(text(named.replace("28", "20")), DRILLED, shapes={}) == []
 
 
-def test_a_left_hand_tap_goes_in_backwards() -> None:
+def test_left_hand_tap_feeds_in_with_reversed_spindle() -> None:
     left = {4: ToolShape(ToolKind.TAP, Hand.LEFT, diameter=6.35, pitch=1.27)}
     assert ("wrong-spindle-direction", 7) in findings(text(TAPPED), DRILLED, shapes=left)
     turned = TAPPED.replace("M04", "M00").replace("M03", "M04").replace("M00", "M03")
@@ -189,5 +185,5 @@ def test_a_left_hand_tap_goes_in_backwards() -> None:
         ("TAP", (0.0, 0.0)),
     ],
 )
-def test_the_size_of_a_tap_in_a_comment(comment: str, size: tuple[float, float]) -> None:
+def test_tap_size_is_parsed_from_comment(comment: str, size: tuple[float, float]) -> None:
     assert parse_tap_size(comment) == pytest.approx(size)

@@ -24,7 +24,7 @@ def timeline(text: str) -> Timeline:
     return Timeline.from_program(ProgramSource("T", text), setup, MACHINE)
 
 
-def test_a_pass_takes_its_turns() -> None:
+def test_thread_pass_duration_matches_its_revolutions() -> None:
     laid = timeline(HEAD + "G33X.25Z-.8I.01K.1\nM30\n".replace("X.25Z", "X.249Z"))
     times = [t1 - t0 for block, t0, t1 in iter_timed_blocks(laid) if block.kind is BlockKind.THREAD]
     # ten turns of .1 s, and half a ramp of 25.4 mm/s at 3048 mm/s² at each end
@@ -54,7 +54,7 @@ def test_starts_a_third_of_the_lead_apart_make_helices_120_degrees_apart(rpm: in
         assert angle == pytest.approx(first[line], abs=0.2)  # every pass of a start in the same groove
 
 
-def test_the_wait_is_no_longer_than_a_turn() -> None:
+def test_thread_start_wait_is_at_most_one_revolution() -> None:
     laid = timeline(HEAD + "G33X.24Z-.5I.01K.05PC\nM30\n")
     waits, rests = [], []
     for span in laid.iter_spans():
@@ -67,7 +67,7 @@ def test_the_wait_is_no_longer_than_a_turn() -> None:
     assert len({round(wait, 4) for wait in waits}) > 1
 
 
-def test_turns_are_the_area_under_the_speed() -> None:
+def test_revolutions_are_integral_of_spindle_speed() -> None:
     spindle = SpindleForecast(MACHINE)
     spindle.command_speed(0.0, 600.0)  # from .08 on 1500 rpm/s: .4 s and 2 turns
     assert spindle.revolutions_at(0.08) == 0.0
@@ -89,7 +89,7 @@ def test_turns_are_the_area_under_the_speed() -> None:
         (HEAD + "G33X.24Z-.5I.01F.05\nM30\n", "thread-lead-missing"),
     ],
 )
-def test_what_a_proof_refuses(text: str, code: str) -> None:
+def test_proof_rejects_invalid_threads(text: str, code: str) -> None:
     report = prove(
         ProgramSource("T", text),
         create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),

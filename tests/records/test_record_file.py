@@ -32,7 +32,7 @@ def record() -> ScopeRecord:
     )
 
 
-def test_what_is_opened_is_what_was_saved_to_the_bit(tmp_path: Path) -> None:
+def test_opened_record_equals_saved_record_bit_for_bit(tmp_path: Path) -> None:
     save_record(record(), tmp_path / f"one{RECORD_SUFFIX}")
     found, wanted = open_record(tmp_path / f"one{RECORD_SUFFIX}"), record()
     np.testing.assert_array_equal(found.times_s, wanted.times_s)
@@ -46,7 +46,7 @@ def test_what_is_opened_is_what_was_saved_to_the_bit(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["one.scope"]
 
 
-def test_csv_has_every_digit_and_leaves_out_what_is_not_known() -> None:
+def test_csv_has_full_precision_and_leaves_unknown_values_empty() -> None:
     out = io.StringIO()
     write_csv_lines(record(), out.write)
     assert out.getvalue().splitlines() == [
@@ -58,7 +58,7 @@ def test_csv_has_every_digit_and_leaves_out_what_is_not_known() -> None:
 
 
 @pytest.mark.parametrize("cut", [30, 300, -30])
-def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, cut: int) -> None:
+def test_truncated_file_is_rejected(tmp_path: Path, cut: int) -> None:
     path = tmp_path / "cut.scope"
     save_record(record(), path)
     path.write_bytes(path.read_bytes()[:cut])
@@ -66,7 +66,7 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, cut: int) -> None:
         open_record(path)
 
 
-def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path: Path) -> None:
+def test_damaged_file_is_rejected_at_every_damage_position(tmp_path: Path) -> None:
     path = tmp_path / "bad.scope"
     save_record(record(), path)
     whole = path.read_bytes()
@@ -83,21 +83,21 @@ def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("text", [b"", b"G01X1\n", b"\x00" * 5000, b"PNG no record"])
-def test_a_foreign_file_is_refused(tmp_path: Path, text: bytes) -> None:
+def test_file_of_another_type_is_rejected(tmp_path: Path, text: bytes) -> None:
     path = tmp_path / "part.nc"
     path.write_bytes(text)
     with raises_code(RecordError, "not-a-record", "part.nc"):
         open_record(path)
 
 
-def test_another_archive_is_refused(tmp_path: Path) -> None:
+def test_zip_archive_with_other_content_is_rejected(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "other.zip", "w") as archive:
         archive.writestr("readme.txt", "hello")
     with raises_code(RecordError, "not-a-record", "other.zip"):
         open_record(tmp_path / "other.zip")
 
 
-def test_objects_in_an_archive_are_never_run(tmp_path: Path) -> None:
+def test_pickled_objects_in_archive_are_never_executed(tmp_path: Path) -> None:
     """An archive of numpy may hold pickled objects, which are programs."""
     path = tmp_path / "evil.scope"
     with path.open("wb") as file:
@@ -117,7 +117,7 @@ def changed(path: Path, **changes: object) -> None:
         np.savez(file, **arrays)
 
 
-def test_a_newer_one_is_refused(tmp_path: Path) -> None:
+def test_newer_file_version_is_rejected(tmp_path: Path) -> None:
     changed(tmp_path / "new.scope", version=9)
     with raises_code(RecordError, "newer-version", "file version 9"):
         open_record(tmp_path / "new.scope")
@@ -142,27 +142,27 @@ def test_a_newer_one_is_refused(tmp_path: Path) -> None:
         {"about": {"program": "\udfff"}},
     ],
 )
-def test_a_description_that_does_not_fit_is_refused(tmp_path: Path, changes: dict[str, object]) -> None:
+def test_inconsistent_description_is_rejected(tmp_path: Path, changes: dict[str, object]) -> None:
     changed(tmp_path / "odd.scope", **changes)
     with raises_code(RecordError, "damaged", "odd.scope"):
         open_record(tmp_path / "odd.scope")
 
 
 @pytest.mark.parametrize("times", [[0.0, NAN, 1.0], [0.0, np.inf, np.inf], [2.0, 1.0, 3.0]])
-def test_times_that_do_not_rise_are_refused(tmp_path: Path, times: list[float]) -> None:
+def test_non_increasing_times_are_rejected(tmp_path: Path, times: list[float]) -> None:
     save_record(replace(record(), times_s=np.array(times)), tmp_path / "odd.scope")
     with raises_code(RecordError, "damaged", "odd.scope"):
         open_record(tmp_path / "odd.scope")
 
 
-def test_an_infinite_figure_is_not_known(tmp_path: Path) -> None:
+def test_infinite_value_is_read_as_nan(tmp_path: Path) -> None:
     columns = {**record().values_by_channel, "spindle load": np.array([1.0, np.inf, -np.inf])}
     save_record(replace(record(), values_by_channel=columns), tmp_path / "one.scope")
     found = open_record(tmp_path / "one.scope").values_by_channel["spindle load"]
     np.testing.assert_array_equal(found, [1.0, NAN, NAN])
 
 
-def test_an_archive_that_unpacks_to_gigabytes_is_refused_packed(tmp_path: Path) -> None:
+def test_zip_bomb_is_rejected_before_unpacking(tmp_path: Path) -> None:
     path = tmp_path / "bomb.scope"
     save_record(record(), path)
     data = bytearray(path.read_bytes())
@@ -173,7 +173,7 @@ def test_an_archive_that_unpacks_to_gigabytes_is_refused_packed(tmp_path: Path) 
         open_record(path)
 
 
-def test_words_of_a_library_stay_out_of_it(tmp_path: Path) -> None:
+def test_library_error_text_is_not_included_in_message(tmp_path: Path) -> None:
     path = tmp_path / "odd.scope"
     with path.open("wb") as file:
         np.savez(file, about=np.frombuffer(b'{"version": "' + b"x" * 5000, dtype=np.uint8))
@@ -182,13 +182,13 @@ def test_words_of_a_library_stay_out_of_it(tmp_path: Path) -> None:
     assert "Unterminated" not in str(raised.value)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_missing_file_is_reported(tmp_path: Path) -> None:
     with raises_code(RecordError, "not-found", "gone.scope"):
         open_record(tmp_path / "gone.scope")
 
 
 @pytest.mark.parametrize("save", [save_record, save_csv])
-def test_a_full_disk_is_told_and_the_old_file_stays(
+def test_full_disk_is_reported_and_old_file_remains(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, save: object
 ) -> None:
     path = tmp_path / "one.scope"

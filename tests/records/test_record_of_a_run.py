@@ -52,7 +52,7 @@ def first_move(path: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> int:
     ("program", "apart"),
     [(STRAIGHT, 1e-11), (ROUND, 2e-6)],  # mm; drives get an arc in pieces of constant acceleration
 )
-def test_the_demand_of_a_run_is_the_trace(
+def test_recorded_demand_equals_planned_trace(
     turndesk: Turndesk, home: Path, offsets: Path, program: str, apart: float
 ) -> None:
     record, wanted = recorded(turndesk, home, offsets, program), traced(program)
@@ -68,9 +68,7 @@ def test_the_demand_of_a_run_is_the_trace(
     assert off.max() < apart
 
 
-def test_the_following_error_of_a_feed_is_that_of_the_law(
-    turndesk: Turndesk, home: Path, offsets: Path
-) -> None:
+def test_following_error_in_feed_matches_control_law(turndesk: Turndesk, home: Path, offsets: Path) -> None:
     record = recorded(turndesk, home, offsets, "X.5Z.1\nG01Z-.9F60\nM30\n")
     feeding = (record.values_by_channel["line"] == 4) & (record.values_by_channel["Z demand"] < 0.0)
     feeding &= record.values_by_channel["Z demand"] > -0.8 * 25.4

@@ -47,7 +47,7 @@ def filled() -> ScopeRing:
     return ring
 
 
-def test_a_channel_is_the_drivers_own_or_stands_as_at_the_last_tick() -> None:
+def test_channel_has_driver_value_or_value_of_last_tick() -> None:
     record = filled().get_record_between(0.05, 0.25)
     assert record.times_s[[0, -1]] == pytest.approx([0.05, 0.25])
     assert record.start_time_utc_s == pytest.approx(1_000_000.05)
@@ -77,7 +77,7 @@ def test_a_late_tick_between_two_samples_is_not_lost() -> None:
     ]
 
 
-def test_latest_has_only_what_is_new_and_only_what_is_asked_for() -> None:
+def test_latest_record_has_only_new_samples_of_requested_channels() -> None:
     record = filled().get_record_since(0.497, ("X demand", "line"))
     assert record.times_s == pytest.approx([0.498, 0.499])
     assert set(record.values_by_channel) == {"X demand", "line"}
@@ -85,7 +85,7 @@ def test_latest_has_only_what_is_new_and_only_what_is_asked_for() -> None:
 
 
 @pytest.mark.parametrize("batch", [1, 7, 999, 1000, 2600])
-def test_the_oldest_are_written_over(batch: int) -> None:
+def test_oldest_samples_are_overwritten(batch: int) -> None:
     ring = ScopeRing.from_layout(OF)
     everything = samples(0, 2600)
     for at in range(0, 2600, batch):
@@ -95,14 +95,14 @@ def test_the_oldest_are_written_over(batch: int) -> None:
     np.testing.assert_array_equal(ring.samples.copy_rows_between(2.0, 2.1), everything[2000:2101])
 
 
-def test_rows_that_are_being_written_over_are_not_read() -> None:
+def test_rows_being_overwritten_are_not_read() -> None:
     rows = RowBuffer(100, 1)
     rows.append_rows(np.arange(100.0)[:, None])
     rows.started_row_count = 130  # a writer is at work on the thirty oldest
     assert rows.copy_rows_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
 
 
-def test_rows_that_are_written_over_while_they_are_copied_are_left_out() -> None:
+def test_rows_overwritten_during_copy_are_left_out() -> None:
     begun = iter((100, 130))  # before they are copied, and behind
 
     class Overtaken(RowBuffer):
@@ -135,7 +135,7 @@ def written(folder: Path, count: int = 1700) -> tuple[RingFile, ScopeRing]:
     return file, ring
 
 
-def test_a_reader_has_the_same_while_it_is_written_and_afterwards(tmp_path: Path) -> None:
+def test_reader_gets_same_samples_during_and_after_writing(tmp_path: Path) -> None:
     file, ring = written(tmp_path)
     wanted = ring.get_record_between(-np.inf, np.inf)
     for close in (file.close, lambda: None):
@@ -155,7 +155,7 @@ def test_a_reader_has_the_same_while_it_is_written_and_afterwards(tmp_path: Path
     )
 
 
-def test_the_file_has_its_whole_size_before_anything_is_written(tmp_path: Path) -> None:
+def test_file_has_full_size_before_first_sample_is_written(tmp_path: Path) -> None:
     ring = ScopeRing.from_layout(OF)
     file = create_ring_file(tmp_path, CURRENT_RING_NAME, ring)
     before = (tmp_path / CURRENT_RING_NAME).stat()
@@ -165,9 +165,7 @@ def test_the_file_has_its_whole_size_before_anything_is_written(tmp_path: Path) 
     assert (tmp_path / CURRENT_RING_NAME).stat().st_size == before.st_size
 
 
-def test_a_writer_that_ended_in_the_middle_leaves_what_it_had_counted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_file_of_crashed_writer_has_all_counted_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file, ring = written(tmp_path)
     real, calls = os.pwrite, []
 
@@ -188,14 +186,14 @@ def test_a_writer_that_ended_in_the_middle_leaves_what_it_had_counted(
     file.close()
 
 
-def test_the_last_one_stays_beside_the_new_one(tmp_path: Path) -> None:
+def test_previous_ring_file_remains_next_to_new_one(tmp_path: Path) -> None:
     written(tmp_path, 20)[0].close()
     create_ring_file(tmp_path, CURRENT_RING_NAME, ScopeRing.from_layout(OF)).close()
     assert read_ring_file(tmp_path / PREVIOUS_RING_NAME).times_s.size == 20
     assert read_ring_file(tmp_path / CURRENT_RING_NAME).times_s.size == 0
 
 
-def test_two_do_not_write_one_file(tmp_path: Path) -> None:
+def test_second_writer_does_not_write_to_same_file(tmp_path: Path) -> None:
     file, _ = written(tmp_path, 20)
     with raises_code(RecordError, "in-use", "now.ring"):
         create_ring_file(tmp_path, CURRENT_RING_NAME, ScopeRing.from_layout(OF))
@@ -203,9 +201,7 @@ def test_two_do_not_write_one_file(tmp_path: Path) -> None:
     file.close()
 
 
-def test_a_full_disk_is_told_and_leaves_nothing_behind(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_full_disk_is_reported_and_leaves_empty_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(_fd: int, _at: int, _size: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
@@ -215,7 +211,7 @@ def test_a_full_disk_is_told_and_leaves_nothing_behind(
     assert (tmp_path / CURRENT_RING_NAME).stat().st_size == 0
 
 
-def test_systems_without_preallocation_and_locks_write_it_too(
+def test_ring_file_is_written_without_preallocation_and_locks(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delattr(os, "posix_fallocate")
@@ -228,7 +224,7 @@ def test_systems_without_preallocation_and_locks_write_it_too(
     file.close()
 
 
-def test_a_ring_that_is_cut_off_or_newer_is_refused(tmp_path: Path) -> None:
+def test_truncated_or_newer_ring_file_is_rejected(tmp_path: Path) -> None:
     written(tmp_path, 20)[0].close()
     path = tmp_path / CURRENT_RING_NAME
     whole = path.read_bytes()

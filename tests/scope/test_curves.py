@@ -29,7 +29,7 @@ def wanted(
 # --- columns --------------------------------------------------------------------------------------------
 
 
-def test_one_sample_that_stands_out_is_seen() -> None:
+def test_single_outlier_sample_is_drawn() -> None:
     times, values = np.arange(100_000) / 1000.0, np.zeros(100_000)
     values[54_321] = 7.0
     found = make_points(times, values, 0.1)
@@ -41,7 +41,7 @@ def test_one_sample_that_stands_out_is_seen() -> None:
     assert (found.values == 7.0).sum() == 1  # nor in the next one: the way back is drawn there
 
 
-def test_a_flank_between_two_columns_closes() -> None:
+def test_step_edge_between_two_columns_is_connected() -> None:
     times = np.arange(20) / 10.0
     found = make_points(times, np.where(times < 0.95, 0.0, 1.0), 0.5)
     low, high = found.values[0::2], found.values[1::2]
@@ -49,14 +49,14 @@ def test_a_flank_between_two_columns_closes() -> None:
     assert list(high) == [0.0, 0.0, 1.0, 1.0]
 
 
-def test_few_samples_are_drawn_as_they_are() -> None:
+def test_few_samples_are_drawn_unreduced() -> None:
     times = np.array([0.0, 1.0, 2.0])
     found = make_points(times, times**2, 0.5)
     assert not found.has_line_pairs
     assert list(found.values) == [0.0, 1.0, 4.0]
 
 
-def test_a_gap_of_what_is_not_told_stays_a_gap() -> None:
+def test_gap_of_unknown_values_is_not_joined() -> None:
     found = make_points(np.arange(5.0), np.array([1.0, 2.0, np.nan, 4.0, 5.0]), 1.0)
     assert list(found.values) == [1.0, 2.0, 4.0, 5.0]
     assert found.is_joined_to_next is not None
@@ -71,7 +71,7 @@ def test_a_gap_is_not_joined_in_columns() -> None:
     assert len(columns.make_points().times_s) == 6  # no level line over the gap
 
 
-def test_rest_is_a_level_line_although_nothing_was_sampled() -> None:
+def test_level_line_is_drawn_at_rest_without_new_samples() -> None:
     columns = CurveColumns.make_empty(1.0)
     columns.append_samples(np.array([0.5, 9.5]), np.array([3.0, 3.0]))
     points = columns.make_points()
@@ -79,7 +79,7 @@ def test_rest_is_a_level_line_although_nothing_was_sampled() -> None:
     assert list(points.values[-2:]) == [3.0, 3.0]
 
 
-def test_in_pieces_as_in_one() -> None:
+def test_columns_added_in_pieces_equal_columns_added_at_once() -> None:
     rng = np.random.default_rng(3)
     times, values = np.sort(rng.uniform(0.0, 10.0, 5000)), rng.normal(size=5000)
     whole, pieces = CurveColumns.make_empty(0.02), CurveColumns.make_empty(0.02)
@@ -91,12 +91,12 @@ def test_in_pieces_as_in_one() -> None:
     assert (whole.maxima == pieces.maxima).all()
 
 
-def test_nothing_gives_nothing() -> None:
+def test_empty_input_gives_no_points() -> None:
     assert len(make_points(np.empty(0), np.empty(0), 0.1).times_s) == 0
     assert len(make_points(np.arange(3.0), np.full(3, np.nan), 0.1).times_s) == 0
 
 
-def test_a_lane_keeps_its_range_as_long_as_it_fits() -> None:
+def test_lane_range_is_unchanged_while_values_fit() -> None:
     first = make_round_range(-0.9, 0.95, 0.1)
     assert first[0] <= -0.9
     assert first[1] >= 0.95
@@ -109,7 +109,7 @@ def test_a_lane_keeps_its_range_as_long_as_it_fits() -> None:
 # --- of a record ----------------------------------------------------------------------------------------
 
 
-def test_a_record_is_drawn_to_the_bit() -> None:
+def test_recorded_curve_is_drawn_exactly() -> None:
     record = record_of(seconds(100.0, 101.0))
     sight = RecordingCurves(record, 101.0).make_picture(wanted("X following error", begin=-1.0, pixels=4000))
     (curve,) = sight.curves
@@ -117,7 +117,7 @@ def test_a_record_is_drawn_to_the_bit() -> None:
     assert curve.points.times_s == pytest.approx(record.times_s - 101.0)
 
 
-def test_inch_is_a_matter_of_showing() -> None:
+def test_inch_curve_is_metric_curve_converted() -> None:
     record = record_of(seconds(100.0, 101.0))
     metric = RecordingCurves(record, 101.0).make_picture(wanted("X demand", begin=-1.0, pixels=4000))
     inch = RecordingCurves(record, 101.0).make_picture(
@@ -126,7 +126,7 @@ def test_inch_is_a_matter_of_showing() -> None:
     assert inch.curves[0].points.values * 25.4 == pytest.approx(metric.curves[0].points.values)
 
 
-def test_velocity_of_a_record() -> None:
+def test_velocity_is_derived_from_record() -> None:
     record = record_of(seconds(0.0, 10.0))
     curves = RecordingCurves(record, 0.0)
     column = curves.read_column(SIGNALS["X demand velocity"])
@@ -142,13 +142,13 @@ def test_cursors_read_the_samples_and_not_the_pixels() -> None:
     assert b == pytest.approx(10.0 + 5.0 * np.sin(107.0))
 
 
-def test_a_cursor_beside_the_record_reads_nothing() -> None:
+def test_cursor_outside_record_reads_nan() -> None:
     record = record_of(seconds(100.0, 110.0))
     sight = RecordingCurves(record, 110.0).make_picture(wanted("X demand", cursors=(-12.0, 5.0)))
     assert all(np.isnan(value) for value in sight.cursor_values["X demand"])
 
 
-def test_what_a_record_has_not_is_not_drawn() -> None:
+def test_channel_missing_from_record_is_not_drawn() -> None:
     record = record_of(seconds(0.0, 1.0), {"X actual"})
     assert (
         RecordingCurves(record, 0.0).make_picture(wanted("X demand", "X actual")).curves[0].signal.key
@@ -159,7 +159,7 @@ def test_what_a_record_has_not_is_not_drawn() -> None:
 # --- live -----------------------------------------------------------------------------------------------
 
 
-def test_live_curves_are_those_of_the_record() -> None:
+def test_live_curves_match_recorded_curves() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)
     asked = wanted("X velocity", "Z following error", "spindle ripple")
@@ -178,7 +178,7 @@ def test_live_curves_are_those_of_the_record() -> None:
 
 
 @pytest.mark.parametrize(("armed", "released"), [(100.0, 34.0 * np.pi - np.arccos(0.762)), (107.0, None)])
-def test_a_trigger_counts_from_where_it_was_armed(armed: float, released: float | None) -> None:
+def test_trigger_search_begins_at_arming_time(armed: float, released: float | None) -> None:
     """.01·cos t rises through .00762 at 106.1; the worker looks at 108 for the first time."""
     played = PlayedSamples(now=108.0)
     trigger = Trigger(TriggerEvent.RISES_ABOVE, "X following error", 0.00762)
@@ -189,7 +189,7 @@ def test_a_trigger_counts_from_where_it_was_armed(armed: float, released: float 
     )
 
 
-def test_nothing_but_level_lines_is_told() -> None:
+def test_constant_values_are_reported_only_if_all_curves_are_level() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)
     assert live.make_picture(wanted("spindle command", "C actual")).constant_values == (1000.0, 0.0)
@@ -198,12 +198,12 @@ def test_nothing_but_level_lines_is_told() -> None:
     assert young.make_picture(wanted("spindle command")).constant_values is None
 
 
-def test_an_earlier_record_below_them_is_drawn_as_it_lies() -> None:
+def test_constant_values_are_not_reported_with_earlier_record() -> None:
     earlier = RecordingCurves(record_of(seconds(90.0, 100.0)), 95.0)
     assert LiveCurves(PlayedSamples()).make_picture(wanted("C actual"), earlier).constant_values is None
 
 
-def test_only_what_is_new_is_looked_at() -> None:
+def test_live_curves_read_only_new_samples() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)
     live.make_picture(wanted("X actual"))
@@ -213,13 +213,13 @@ def test_only_what_is_new_is_looked_at() -> None:
     assert max(end - begin for begin, end in played.asked) < 0.1
 
 
-def test_the_newest_figure() -> None:
+def test_latest_value_is_that_of_newest_sample() -> None:
     played = PlayedSamples()
     sight = LiveCurves(played).make_picture(wanted("X demand"))
     assert sight.curves[0].latest_value == pytest.approx(10.0 + 5.0 * np.sin(100.0))
 
 
-def test_before_the_first_sample_there_is_nothing() -> None:
+def test_no_curve_is_drawn_before_first_sample() -> None:
     played = PlayedSamples(now=-np.inf)
     assert LiveCurves(played).make_picture(wanted("X demand")).curves == ()
 
@@ -242,12 +242,12 @@ TIMES = np.arange(6.0)
         (TriggerEvent.OFF, [0, 2, 0, 2, 0, 2], None),
     ],
 )
-def test_a_trigger_is_an_edge(when: TriggerEvent, values: list[float], at: float | None) -> None:
+def test_trigger_releases_on_edge(when: TriggerEvent, values: list[float], at: float | None) -> None:
     trigger = Trigger(when, "X actual", 1.0, 7)
     assert trigger.find_trigger_time(TIMES, np.array(values, dtype=float), frozenset()) == at
 
 
-def test_an_alarm_releases_it() -> None:
+def test_alarm_releases_trigger() -> None:
     run, fault = STATES.index(MachineState.RUN.value), STATES.index(MachineState.FAULT.value)
     states = np.array([run, run, fault, fault, run, fault], dtype=float)
     assert Trigger(TriggerEvent.ALARM).find_trigger_time(TIMES, states, frozenset({fault})) == 2.0
@@ -265,7 +265,7 @@ def test_a_live_trigger_finds_the_sample_between_two_pictures() -> None:
     assert found == pytest.approx(32.0 * np.pi + np.pi / 6.0, abs=0.001)
 
 
-def test_what_was_before_it_was_armed_does_not_release_it() -> None:
+def test_event_before_arming_does_not_release_trigger() -> None:
     played = PlayedSamples(now=101.4)
     live = LiveCurves(played)
     asked = wanted("X demand", trigger=Trigger(TriggerEvent.RISES_ABOVE, "X demand", 12.5))
@@ -277,12 +277,12 @@ def test_what_was_before_it_was_armed_does_not_release_it() -> None:
 # --- signals --------------------------------------------------------------------------------------------
 
 
-def test_a_rotary_axis_is_in_degrees() -> None:
+def test_rotary_axis_velocity_is_a_rotation_speed() -> None:
     assert SIGNALS["C velocity"].quantity is Quantity.ROTATION_SPEED
     assert SIGNALS["X velocity"].quantity is Quantity.VELOCITY
 
 
-def test_what_is_derived_says_over_what_time() -> None:
+def test_derived_signal_note_states_time_window() -> None:
     assert SIGNALS["X velocity"].note == text("scope.window", ms=8)
     assert SIGNALS["X actual"].note == ""
 
@@ -293,7 +293,7 @@ def test_channels_that_are_not_recorded_are_not_offered() -> None:
     assert find_default_keys(list_signals(CHANNELS))[0] == "X following error"
 
 
-def test_a_mill_shows_three_slides_and_a_lathe_two() -> None:
+def test_mill_offers_three_linear_axes_and_lathe_two() -> None:
     rotary = dict.fromkeys("XYZ", False) | dict.fromkeys("AC", True)
     shown = find_default_keys(list_signals(list_machine_channels(rotary, (), ())))
     assert shown == (

@@ -65,7 +65,7 @@ def without_name(window: MainWindow) -> list[str]:
     return found
 
 
-def test_everything_on_every_page_of_a_lathe_has_a_name(
+def test_every_lathe_page_element_has_accessible_name(
     qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
@@ -73,11 +73,11 @@ def test_everything_on_every_page_of_a_lathe_has_a_name(
         assert without_name(day.window) == []
 
 
-def test_everything_on_every_page_of_a_mill_has_a_name(mill: Mill) -> None:
+def test_every_mill_page_element_has_accessible_name(mill: Mill) -> None:
     assert without_name(mill.window) == []
 
 
-def test_pages_open_by_the_names_of_keys(hands: Hands) -> None:
+def test_pages_open_by_accessible_names_of_keys(hands: Hands) -> None:
     press(named(hands.window, "F1  MENU"))
     assert hands.frame.current_page.NAME == page_table.MENU
     hands.window.refresh()
@@ -85,14 +85,14 @@ def test_pages_open_by_the_names_of_keys(hands: Hands) -> None:
     assert hands.frame.current_page.NAME == page_table.TOOLS
 
 
-def test_a_lamp_says_whether_it_is_lit(hands: Hands) -> None:
+def test_lamp_reports_whether_it_is_lit(hands: Hands) -> None:
     lamp = named(hands.window, "S  SINGLE  BLOCK")
     assert (lamp.role(), lamp.state().checkable, lamp.state().checked) == (Role.CheckBox, True, False)
     press(lamp)
     assert SetSwitch("single_block", True) in hands.machine.posted
 
 
-def test_a_list_says_its_rows_and_which_is_marked(above: QWidget) -> None:
+def test_list_reports_its_rows_and_marked_row(above: QWidget) -> None:
     chosen: list[int] = []
     panel = shown_sheet(above, chosen, 30)
     node = QAccessible.queryAccessibleInterface(panel)
@@ -108,7 +108,7 @@ def test_a_list_says_its_rows_and_which_is_marked(above: QWidget) -> None:
     assert rows[0].text(NAME) == f"row {panel.rows}  12"
 
 
-def test_a_row_that_has_gone_is_neither_named_nor_pressed(above: QWidget) -> None:
+def test_removed_row_has_no_name_and_cannot_be_pressed(above: QWidget) -> None:
     chosen: list[int] = []
     panel = shown_sheet(above, chosen, 3)
     last = [each for each in tree(panel) if each.role() is Role.ListItem][-1]
@@ -120,7 +120,7 @@ def test_a_row_that_has_gone_is_neither_named_nor_pressed(above: QWidget) -> Non
     assert QAccessible.queryAccessibleInterface(panel).child(1) is None
 
 
-def test_a_key_that_would_be_refused_is_disabled(hands: Hands) -> None:
+def test_unavailable_key_is_disabled(hands: Hands) -> None:
     press(named(hands.window, "F1  MENU"))
     hands.frame.open_page(page_table.TOOLS)
     hands.window.refresh()
@@ -128,7 +128,7 @@ def test_a_key_that_would_be_refused_is_disabled(hands: Hands) -> None:
     assert (undo, history) == (True, False)
 
 
-def test_what_acts_while_it_is_held_has_no_press(hands: Hands) -> None:
+def test_control_that_acts_while_pressed_has_no_press_action(hands: Hands) -> None:
     hands.frame.open_page(page_table.JOG)
     hands.window.refresh()
     arrows = [
@@ -145,7 +145,7 @@ def test_what_acts_while_it_is_held_has_no_press(hands: Hands) -> None:
     assert sliders == ["SPINDLE SPEED", "FEED RATE"]
 
 
-def test_a_control_goes_down_and_comes_up(above: QWidget) -> None:
+def test_control_reports_press_and_release(above: QWidget) -> None:
     told: list[str] = []
 
     class One(TouchPanel):
@@ -165,13 +165,13 @@ def test_a_control_goes_down_and_comes_up(above: QWidget) -> None:
     assert told == ["down", "up"]
 
 
-def test_stock_widgets_keep_what_qt_says_of_them(above: QWidget) -> None:
+def test_stock_widgets_retain_qt_accessibility(above: QWidget) -> None:
     edit, inner = QLineEdit(above), QWidget(above)
     assert QAccessible.queryAccessibleInterface(edit).role() is Role.EditableText
     assert QAccessible.queryAccessibleInterface(inner).text(NAME) == "TurnDesk"
 
 
-def test_a_panel_that_is_deleted_leaves_its_rows_invalid(above: QWidget) -> None:
+def test_deleted_panel_invalidates_its_rows(above: QWidget) -> None:
     panel = shown_sheet(above, [], 3)
     rows = [each for each in tree(panel) if each.role() is Role.ListItem]
     panel.deleteLater()
@@ -193,7 +193,7 @@ def shown_sheet(above: QWidget, chosen: list[int], count: int, panel: TablePanel
     return panel
 
 
-def test_qt_finds_no_other_interface_of_a_row(above: QWidget) -> None:
+def test_row_has_only_action_interface(above: QWidget) -> None:
     """Qt takes what ``interface_cast`` returns for an address: None would be one."""
     row = next(each for each in tree(shown_sheet(above, [], 3)) if each.role() is Role.ListItem)
     assert QAccessibleInterface.valueInterface(row) is None

@@ -43,7 +43,7 @@ def snapshot(code: AlarmCode) -> Snapshot:
 
 
 @CODES
-def test_head_cause_and_remedy_are_whole(look: ScreenTheme, code: AlarmCode) -> None:
+def test_alarm_text_cause_and_remedy_fit_their_panels(look: ScreenTheme, code: AlarmCode) -> None:
     shot = snapshot(code)
     view = make_status(shot, ReadoutKind.POSITION, True)
     assert fits(look, view.state_text, 2.5, 42 * look.unit_px, bold=True), view.state_text
@@ -53,7 +53,7 @@ def test_head_cause_and_remedy_are_whole(look: ScreenTheme, code: AlarmCode) -> 
 
 
 @CODES
-def test_the_list_of_stops_has_room_for_it(look: ScreenTheme, code: AlarmCode) -> None:
+def test_alarm_texts_fit_list_of_stops(look: ScreenTheme, code: AlarmCode) -> None:
     alarm = make_alarm(code, "", 1234, 0.0)
     assert fits(look, f"{alarm.number}  ·  {alarm.text}", 2.0, LIST, bold=True)
     assert fits(look, describe_cause(alarm), 1.8, LIST), describe_cause(alarm)

@@ -41,7 +41,7 @@ def test_pyqtgraph_is_not_imported_at_the_start() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_a_curve_is_drawn_in_its_colour(parent: QWidget) -> None:
+def test_curve_is_drawn_in_its_color(parent: QWidget) -> None:
     chart = chart_of(parent)
     plot = chart.add_plot()
     plot.vb.setXRange(0.0, 10.0, padding=0)
@@ -57,7 +57,7 @@ def test_a_curve_is_drawn_in_its_colour(parent: QWidget) -> None:
     assert CURVE_COLORS["dark"][0] not in column
 
 
-def test_a_place_is_told_in_the_units_of_the_axes(parent: QWidget) -> None:
+def test_position_is_converted_to_axis_units(parent: QWidget) -> None:
     chart = chart_of(parent)
     plot = chart.add_plot()
     plot.vb.setXRange(2.0, 6.0, padding=0)
@@ -70,7 +70,7 @@ def test_a_place_is_told_in_the_units_of_the_axes(parent: QWidget) -> None:
     assert y == pytest.approx(5.0)
 
 
-def test_colours_follow_the_theme(parent: QWidget) -> None:
+def test_chart_colors_follow_theme(parent: QWidget) -> None:
     look = ScreenTheme(DARK_PALETTE)
     chart = chart_of(parent, look)
     chart.add_plot()
@@ -80,7 +80,7 @@ def test_colours_follow_the_theme(parent: QWidget) -> None:
     assert chart.grab().toImage().pixelColor(1, 1) == QColor(LIGHT_PALETTE.panel)
 
 
-def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
+def test_wheel_and_touch_events_pass_through_chart(parent: QWidget) -> None:
     chart = chart_of(parent)
     plot = chart.add_plot()
     parent.show()
@@ -94,12 +94,12 @@ def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
 @pytest.mark.parametrize(
     ("value", "spacing", "text"), [(-0.002, 0.001, "−0.002"), (0.0, 0.5, "0.0"), (-1e-17, 1.0, "0")]
 )
-def test_figures_of_an_axis(parent: QWidget, value: float, spacing: float, text: str) -> None:
+def test_axis_tick_labels_are_formatted(parent: QWidget, value: float, spacing: float, text: str) -> None:
     axis = chart_of(parent).add_plot().find_axis("left")
     assert axis.tickStrings([value], 1.0, spacing) == [text]
 
 
-def test_a_plot_that_was_is_used_again_as_new(parent: QWidget) -> None:
+def test_reused_plot_is_reset(parent: QWidget) -> None:
     chart = chart_of(parent)
     plot = chart.add_plot()
     set_curve_points(plot.add_curve(make_line_pen(QColor("red"))), np.array([0.0, 1.0]), np.array([0.0, 1.0]))
@@ -116,7 +116,7 @@ def test_a_plot_that_was_is_used_again_as_new(parent: QWidget) -> None:
     assert again.find_axis("bottom").isVisible()
 
 
-def test_plots_are_made_one_a_call(parent: QWidget) -> None:
+def test_one_plot_is_created_per_call(parent: QWidget) -> None:
     chart = chart_of(parent)
     assert [chart.prepare_plots(2) for _ in range(3)] == [False, False, True]
     chart.add_plot()

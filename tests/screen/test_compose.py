@@ -34,14 +34,14 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 SHIPPED = Path(__file__).parents[2] / "resources" / "machines" / "gt75.toml"
 
 
-def test_an_offsets_file_takes_the_place_of_the_store() -> None:
+def test_offsets_file_replaces_store() -> None:
     tools, secondary, *_ = make_offsets_reader(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
     assert sorted(tools) == [1, 2, 3, 4, 6, 7, 8, 20]
     assert tools[1].z == pytest.approx(-3.0 * 25.4)
     assert secondary == {}
 
 
-def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
+def test_store_is_read_again_each_time_without_offsets_file(home: Path) -> None:
     offsets = make_offsets_reader(None)
     assert offsets() == NO_OFFSETS
     with Store.open(home) as store:
@@ -49,7 +49,7 @@ def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
     assert sorted(offsets()[0]) == [7]
 
 
-def test_what_ran_is_kept(home: Path) -> None:
+def test_part_counts_and_events_are_saved(home: Path) -> None:
     journal = Journal(home)
     journal.keep(ProgramSource("part.nc", "G90\nM30\n"))
     for kind, text in (
@@ -66,7 +66,7 @@ def test_what_ran_is_kept(home: Path) -> None:
         assert [event.kind for event in store.events.read_events()].count("part") == 2
 
 
-def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> None:
+def test_unreadable_store_is_reported_and_left_unchanged(home: Path) -> None:
     Store.open(home).close()
     (file,) = home.glob("*.db")
     file.write_bytes(b"not a database" * 100)
@@ -77,7 +77,7 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
     assert file.read_bytes() == b"not a database" * 100
 
 
-def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(home: Path) -> None:
+def test_offsets_written_by_journal_are_read_at_next_loading(home: Path) -> None:
     journal = Journal(home)
     book = create_offset_book(read_stored_offsets, journal)
     assert book.change_fields(OffsetKind.SECONDARY, 4, {"x": 0.1, "z": -0.2, "r": 0.4}, "X .2") == ""
@@ -98,7 +98,7 @@ def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     assert read_stored_offsets() == NO_OFFSETS
 
 
-def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> None:
+def test_offset_change_without_store_returns_reason(home: Path) -> None:
     Store.open(home).close()
     (file,) = home.glob("*.db")
     file.write_bytes(b"not a database" * 100)
@@ -107,19 +107,19 @@ def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> No
     journal.close()
 
 
-def test_a_machine_that_is_not_simulated_is_refused(tmp_path: Path) -> None:
+def test_machine_with_real_backend_is_rejected(tmp_path: Path) -> None:
     file = tmp_path / "real.toml"
     file.write_text(SHIPPED.read_text().replace('backend = "sim"', 'backend = "canopen"'))
     with pytest.raises(CommandError, match=r"canopen"):
         build_desk(str(file))
 
 
-def test_a_machine_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+def test_missing_machine_file_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(CommandError, match=r"nothing\.toml"):
         build_desk(str(tmp_path / "nothing.toml"))
 
 
-def test_closing_the_desk_ends_its_threads() -> None:
+def test_close_ends_all_threads() -> None:
     desk = build_desk()
     names = ("control", "loading", "executor")
     assert any(thread.name.startswith(names) for thread in threading.enumerate())
@@ -127,7 +127,7 @@ def test_closing_the_desk_ends_its_threads() -> None:
     assert not any(thread.name.startswith(names) for thread in threading.enumerate())
 
 
-def test_a_control_on_a_thread_ends_with_its_desk() -> None:
+def test_close_ends_executor_thread() -> None:
     desk = build_desk(begun_control=(read_machine(None), None))
     assert any(thread.name == "executor" for thread in threading.enumerate())
     desk.close()

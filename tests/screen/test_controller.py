@@ -83,7 +83,7 @@ def window(desk: Desk) -> Iterator[MainWindow]:
     window.close_silently()
 
 
-def test_a_part_a_hold_a_reset_and_the_cable_out(
+def test_controller_runs_part_hold_reset_and_detects_lost_cable(
     window: MainWindow, desk: Desk, controller: Controller, qtbot: QtBot
 ) -> None:
     frame = window.frame

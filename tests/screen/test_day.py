@@ -97,7 +97,7 @@ def single_block_through(day: Day) -> None:
     day.until(lambda: not day.shot.single_block)
 
 
-def test_from_an_empty_folder_to_the_first_good_part(day: Day) -> None:
+def test_operator_starts_with_empty_folder_and_makes_first_good_part(day: Day) -> None:
     drives_on(day)
     write_program(day)
     day.sees(lambda: shows(day.prompt, "screen.no-offset-set", tools="T1, T2"))

@@ -68,7 +68,7 @@ def target(day: Day, sum_: str) -> None:
     back_to_automatic(day)
 
 
-def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
+def test_five_parts_are_made_with_wear_correction_between_them(day: Day) -> None:
     target(day, "2+3")
     assert made(day) == "0/5"
     day.key(Key.Key_C)
@@ -98,7 +98,7 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     assert [change.why for change in day.store.offsets.read_history()][:2] == ["X -.001", "X -.002 Z .001"]
 
 
-def test_a_correction_while_parts_run_and_nothing_stops(day: Day) -> None:
+def test_correction_during_run_is_applied_without_stopping(day: Day) -> None:
     """Gauged beside the machine: D1 -.001 is typed while the second part is turned, the third one has it."""
     day.key(Key.Key_C)
     day.palms()
@@ -118,7 +118,7 @@ def test_a_correction_while_parts_run_and_nothing_stops(day: Day) -> None:
     assert day.count("part") == 3
 
 
-def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) -> None:
+def test_correction_beyond_travel_stops_at_end_of_part(day: Day) -> None:
     """-9 typed for -.0009, and the slide would leave its travel: told while it can be taken back."""
     day.key(Key.Key_C)
     day.palms()
@@ -136,7 +136,7 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     assert day.shot.state is MachineState.IDLE
 
 
-def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
+def test_searchto_restarts_second_tool_after_stop(day: Day) -> None:
     day.palms()
     turning(day)
     day.key(Key.Key_H)
@@ -191,7 +191,7 @@ def restarts(day: Day) -> None:
     day.palms()
 
 
-def test_an_estop_and_the_part_is_finished_from_the_line_that_was_running(day: Day) -> None:
+def test_part_is_finished_from_interrupted_line_after_estop(day: Day) -> None:
     day.palms()
     turning(day)
     day.key(Key.Key_E)
@@ -213,7 +213,7 @@ def test_an_estop_and_the_part_is_finished_from_the_line_that_was_running(day: D
     assert day.count("part") == 1
 
 
-def test_mdi_between_two_parts_keeps_the_spindle(day: Day) -> None:
+def test_mdi_between_two_parts_leaves_spindle_running(day: Day) -> None:
     day.key(Key.Key_F1, Key.Key_F4)
     mdi(day, "G90G72")
     mdi(day, "T2")

@@ -60,7 +60,7 @@ class Fingers:
         self._down.clear()
 
 
-def test_a_touch_that_is_taken_away_lets_the_palm_go(hands: Hands) -> None:
+def test_canceled_touch_releases_palm_button(hands: Hands) -> None:
     dock = dock_of(hands)
     fingers = Fingers(dock)
     fingers.press(0, middle(dock, -2))
@@ -70,7 +70,7 @@ def test_a_touch_that_is_taken_away_lets_the_palm_go(hands: Hands) -> None:
     fingers.release(left=middle(dock, -2))
 
 
-def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
+def test_touch_drag_turns_potentiometer(hands: Hands) -> None:
     dock = dock_of(hands)
     fingers = Fingers(dock)
     track = dock.controls[9].box  # E-stop, twist, OFF, AUTO, less, more, spindle pot, less, more, feed pot
@@ -82,7 +82,7 @@ def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
     fingers.release(at=end)
 
 
-def test_whatever_stands_on_the_smallest_station_fits_a_finger(hands: Hands) -> None:
+def test_station_controls_are_touch_sized_in_smallest_window(hands: Hands) -> None:
     """The tracks of the pots had 42 pixels."""
     at = make_layout(*MIN_WINDOW_PX, has_dock=True).dock
     dock = StationDock(ScreenTheme(DARK_PALETTE, find_unit_px(*MIN_WINDOW_PX)), hands.desk)
@@ -92,7 +92,7 @@ def test_whatever_stands_on_the_smallest_station_fits_a_finger(hands: Hands) -> 
     assert all(min(each.box.width(), each.box.height()) >= FINGERTIP_PX for each in dock.controls)
 
 
-def test_two_fingers_on_the_palms_start(hands: Hands) -> None:
+def test_two_touches_on_palm_buttons_start_cycle(hands: Hands) -> None:
     hands.load("pin")
     dock = dock_of(hands)
     fingers, left, right = Fingers(dock), middle(dock, -2), middle(dock, -1)
@@ -105,7 +105,7 @@ def test_two_fingers_on_the_palms_start(hands: Hands) -> None:
     assert hands.machine.palms == set()
 
 
-def test_the_mouse_alone_cannot_start(hands: Hands) -> None:
+def test_mouse_alone_cannot_start_cycle(hands: Hands) -> None:
     hands.load("pin")
     dock = dock_of(hands)
     for number in (-2, -1):
@@ -113,7 +113,7 @@ def test_the_mouse_alone_cannot_start(hands: Hands) -> None:
     assert CycleStart() not in hands.machine.posted
 
 
-def test_the_mushroom_latches_and_is_twisted_out_beside_it(hands: Hands) -> None:
+def test_estop_button_latches_and_is_released_by_twisting(hands: Hands) -> None:
     dock = dock_of(hands)
     QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 0))
     hands.sees_state(MachineState.ESTOP)
@@ -123,7 +123,7 @@ def test_the_mushroom_latches_and_is_twisted_out_beside_it(hands: Hands) -> None
     hands.sees_state(MachineState.DISABLED)
 
 
-def test_a_finger_that_leaves_with_the_window_lets_the_palm_go(hands: Hands) -> None:
+def test_window_release_releases_touched_palm_button(hands: Hands) -> None:
     dock = dock_of(hands)
     dock.controls[-1].on_press(QPointF())
     assert hands.machine.palms == {"right"}

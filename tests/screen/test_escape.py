@@ -59,7 +59,7 @@ KEYS = {
 
 
 @pytest.mark.parametrize("switched_on", [True, False])
-def test_every_page_leads_to_automatic(day: Day, switched_on: bool) -> None:
+def test_esc_returns_from_every_page_to_automatic(day: Day, switched_on: bool) -> None:
     if switched_on:
         drives_on(day)
     for key, name in KEYS.items():
@@ -69,7 +69,7 @@ def test_every_page_leads_to_automatic(day: Day, switched_on: bool) -> None:
 
 
 @pytest.mark.parametrize("switched_on", [True, False])
-def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
+def test_esc_on_mdi_page_first_clears_text(day: Day, switched_on: bool) -> None:
     if switched_on:
         drives_on(day)
     opened(day, Key.Key_F4, page_table.MDI)
@@ -82,7 +82,7 @@ def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
     assert day.page == page_table.AUTOMATIC
 
 
-def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
+def test_esc_holds_running_mdi_line_and_stays_on_page(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F4, page_table.MDI)
     day.type("G90G94F5X1")
@@ -101,7 +101,7 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     day.reaches(MachineState.IDLE)
 
 
-def test_no_list_and_no_answer_comes_before_the_hold(day: Day) -> None:
+def test_esc_holds_before_it_closes_list_or_message(day: Day) -> None:
     """The codes are open over a line that runs, and a message has come that nobody asked for."""
     drives_on(day)
     opened(day, Key.Key_F4, page_table.MDI)
@@ -121,7 +121,7 @@ def test_no_list_and_no_answer_comes_before_the_hold(day: Day) -> None:
     assert day.page == page_table.MDI
 
 
-def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
+def test_esc_on_jog_page_first_cancels_entry_and_stops_jog(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F5, page_table.JOG)
     day.type("t")
@@ -140,7 +140,7 @@ def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
     day.sees(lambda: day.page == page_table.AUTOMATIC)
 
 
-def test_an_answer_is_taken_back_before_the_page(day: Day) -> None:
+def test_esc_clears_message_before_it_leaves_page(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F5, page_table.JOG)
     day.desk.say("AN ANSWER")
@@ -162,7 +162,7 @@ def edited(day: Day) -> EditorPage:
     return page
 
 
-def test_the_editor_is_left_where_there_is_nothing_to_save(day: Day, tmp_path: Path) -> None:
+def test_esc_leaves_editor_if_nothing_has_to_be_saved(day: Day, tmp_path: Path) -> None:
     drives_on(day)
     edited(day)
     day.key(Key.Key_F4)
@@ -174,7 +174,7 @@ def test_the_editor_is_left_where_there_is_nothing_to_save(day: Day, tmp_path: P
     assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
 
 
-def test_the_editor_keeps_what_is_not_saved(day: Day, tmp_path: Path) -> None:
+def test_esc_stays_in_editor_if_text_is_not_saved(day: Day, tmp_path: Path) -> None:
     drives_on(day)
     page = edited(day)
     day.key(Key.Key_End, modifier=CTRL)
@@ -188,7 +188,7 @@ def test_the_editor_keeps_what_is_not_saved(day: Day, tmp_path: Path) -> None:
     assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
 
 
-def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
+def test_esc_holds_running_cycle_on_jog_and_automatic_pages(day: Day) -> None:
     drives_on(day)
     day.key(Key.Key_F2)
     day.type("slow")
@@ -212,7 +212,7 @@ def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
     day.reaches(MachineState.IDLE)
 
 
-def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
+def test_esc_leaves_page_during_estop(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F5, page_table.JOG)
     day.key(Key.Key_E)
@@ -222,7 +222,7 @@ def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
     twist_out(day.window)
 
 
-def test_mdi_has_the_scope_on_f10(day: Day) -> None:
+def test_f10_on_mdi_page_opens_scope(day: Day) -> None:
     opened(day, Key.Key_F4, page_table.MDI)
     day.key(Key.Key_F10)
     day.sees(lambda: day.page == page_table.SCOPE)

@@ -270,7 +270,7 @@ def faults_of_prompt(typist: Typist, name: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("day", EVERY, indirect=True, ids="-".join)
-def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) -> None:
+def test_every_key_does_what_page_offers(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     faults: list[str] = []
@@ -322,7 +322,7 @@ ENDS = {
 
 
 @pytest.mark.parametrize("day", [("omniturn", state) for state in STATES], indirect=True, ids=lambda e: e[1])
-def test_the_control_does_what_the_prompt_offers(day: Day, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_control_does_what_prompt_offers(day: Day, monkeypatch: pytest.MonkeyPatch) -> None:
     key, states = ENDS[day.shot.state]
     heard: list[str] = []
     before = day.desk.prompt_answers.hear

@@ -108,7 +108,7 @@ def proved(path: Path) -> ProofReport:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_it_ends_on_the_screen_where_the_proof_ends(lathe: Lathe, name: str) -> None:
+def test_example_ends_on_screen_at_proved_end_position(lathe: Lathe, name: str) -> None:
     path = worked(name)
     proof = proved(path)
     assert proof.errors == ()

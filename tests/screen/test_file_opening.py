@@ -56,7 +56,7 @@ def opening(window: MainWindow) -> FileOpening:
     return FileOpening(window)
 
 
-def test_a_dropped_program_is_loaded_and_never_moved(opening: FileOpening, window: MainWindow) -> None:
+def test_dropped_program_is_loaded_and_file_is_not_moved(opening: FileOpening, window: MainWindow) -> None:
     assert drop(opening, window, PIN) == Qt.DropAction.CopyAction
     assert window.frame is not None
     assert window.frame.desk.program_loader.loaded.name == "pin.nc"
@@ -112,7 +112,7 @@ def ask(request: bytes, qtbot: QtBot) -> bytes:
     return bytes(socket.readAll().data())
 
 
-def test_a_second_start_hands_its_program_over(received: list[Path], qtbot: QtBot) -> None:
+def test_second_instance_passes_its_program_to_first(received: list[Path], qtbot: QtBot) -> None:
     assert ask(os.fsencode(PIN) + b"\n", qtbot) == ACCEPTED_REPLY
     assert received == [PIN]
 
@@ -131,7 +131,7 @@ def test_a_second_screen_does_not_replace_the_first(received: list[Path], window
     assert not RunningScreen(received.append, window).start_listening()
 
 
-def test_a_socket_of_a_killed_screen_is_replaced(
+def test_stale_socket_of_killed_screen_is_replaced(
     window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))

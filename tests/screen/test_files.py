@@ -105,7 +105,7 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     )
 
 
-def test_no_other_program_while_one_is_under_way(shop: Shop) -> None:
+def test_other_program_cannot_be_loaded_while_one_runs(shop: Shop) -> None:
     shop.open_list()
     shop.machine.now = replace(shop.machine.now, state=MachineState.HOLD)
     shop.key(Key.Key_Return)
@@ -113,7 +113,7 @@ def test_no_other_program_while_one_is_under_way(shop: Shop) -> None:
     assert shop.programs.model.search_field.text == ""
 
 
-def test_a_name_is_typed_in_a_cycle_and_no_letter_is_a_switch(shop: Shop) -> None:
+def test_letters_of_name_switch_nothing_during_cycle(shop: Shop) -> None:
     shop.open_list()
     shop.machine.now = replace(shop.machine.now, state=MachineState.RUN)
     shop.type("cap")
@@ -131,7 +131,7 @@ def test_a_name_is_typed_in_a_cycle_and_no_letter_is_a_switch(shop: Shop) -> Non
     assert shop.frame.title_line.page_title == page_table.EDITOR
 
 
-def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
+def test_name_of_copy_can_be_typed_during_cycle(shop: Shop) -> None:
     shop.open_list()
     shop.machine.now = replace(shop.machine.now, state=MachineState.RUN)
     shop.key(Key.Key_F4)
@@ -140,7 +140,7 @@ def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
     assert not shop.machine.now.cycle_repeat
 
 
-def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
+def test_programs_are_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
     shop.journal.keep(load_source(SAMPLES / "knob.nc"))
     shop.journal.runs.record_start("knob.nc")
@@ -157,7 +157,7 @@ def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     shop.sees(lambda: shop.rows()[0] == largest)
 
 
-def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
+def test_copy_gets_typed_name_and_extension(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
     shop.sees(lambda: shop.programs.table_panel.table.question == wording("programs.name-of-copy"))
@@ -168,7 +168,7 @@ def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
     assert (shop.own / "gamma.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
 
 
-def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
+def test_typed_text_is_inserted_before_extension(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
     shop.key(Key.Key_Backspace)
@@ -180,7 +180,7 @@ def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
 @pytest.mark.parametrize(
     ("name", "offered"), [("a.nc", "a"), ("1.5 pin.NC", "1.5 pin"), ("bare", "bare"), ("a.h.nc", "a.h.nc")]
 )
-def test_the_name_that_is_offered_becomes_the_same_again(name: str, offered: str) -> None:
+def test_offered_name_completes_to_original_name(name: str, offered: str) -> None:
     assert remove_extension(name) == offered
     assert complete_name(offered, Path(name)) == name
 
@@ -194,7 +194,7 @@ def test_the_name_that_is_offered_becomes_the_same_again(name: str, offered: str
         (".x", fragment("programs.would-be-hidden")),
     ],
 )
-def test_a_name_that_will_not_do_is_refused(shop: Shop, name: str, why: str) -> None:
+def test_invalid_name_is_rejected(shop: Shop, name: str, why: str) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
     shop.key(Key.Key_Delete)
@@ -204,7 +204,7 @@ def test_a_name_that_will_not_do_is_refused(shop: Shop, name: str, why: str) -> 
     assert sorted(path.name for path in shop.own.iterdir()) == ["alpha.nc", "beta.nc"]
 
 
-def test_versions_go_with_another_name(shop: Shop) -> None:
+def test_versions_follow_renamed_program(shop: Shop) -> None:
     assert shop.journal is not None
     shop.journal.save_version("alpha.nc", b"old", "test")
     shop.open_list()
@@ -216,7 +216,7 @@ def test_versions_go_with_another_name(shop: Shop) -> None:
     assert shop.journal.read_version_text("zeta.nc", 1) == b"old"
 
 
-def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
+def test_delete_asks_once_and_saves_text_as_version(shop: Shop) -> None:
     assert shop.journal is not None
     text = (shop.own / "alpha.nc").read_bytes()
     shop.open_list()
@@ -232,7 +232,7 @@ def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
 
 
 @pytest.mark.parametrize("key", [Key.Key_F5, Key.Key_F6])
-def test_a_sample_stays_as_it_is(shop: Shop, key: Key) -> None:
+def test_sample_program_cannot_be_changed(shop: Shop, key: Key) -> None:
     shop.open_list()
     shop.type("knob")
     shop.sees(lambda: shop.rows() == ["knob.nc"])
@@ -240,7 +240,7 @@ def test_a_sample_stays_as_it_is(shop: Shop, key: Key) -> None:
     assert shop.prompt() == wording("programs.sample-stays")
 
 
-def test_the_program_under_way_is_not_deleted(shop: Shop) -> None:
+def test_running_program_is_not_deleted(shop: Shop) -> None:
     shop.load("alpha")
     shop.machine.now = replace(shop.machine.now, state=MachineState.HOLD)
     shop.open_list()
@@ -248,7 +248,7 @@ def test_the_program_under_way_is_not_deleted(shop: Shop) -> None:
     assert shop.desk.prompt_notice == wording("screen.program-being-cut", name="alpha.nc")
 
 
-def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
+def test_export_to_stick_asks_before_overwriting(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F9)
     shop.key(Key.Key_F4)
@@ -271,7 +271,7 @@ def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
     assert (shop.stick / "alpha.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
 
 
-def test_escape_keeps_what_stands_there(shop: Shop) -> None:
+def test_esc_leaves_existing_file_on_stick(shop: Shop) -> None:
     (shop.stick / "ALPHA.NC").write_text("M30\n")
     shop.open_list()
     shop.key(Key.Key_F9)
@@ -284,7 +284,7 @@ def test_escape_keeps_what_stands_there(shop: Shop) -> None:
     assert (shop.stick / "ALPHA.NC").read_text() == "M30\n"
 
 
-def test_in_from_a_stick_is_proved_and_errors_are_told(shop: Shop) -> None:
+def test_imported_program_is_proved_and_errors_are_reported(shop: Shop) -> None:
     shutil.copy(SAMPLES / "grooves.nc", shop.stick / "good.nc")
     (shop.stick / "bad.nc").write_text("G90G72F10\nG99X1\nM30\n")
     shop.open_list()
@@ -297,7 +297,7 @@ def test_in_from_a_stick_is_proved_and_errors_are_told(shop: Shop) -> None:
     assert {"good.nc", "bad.nc"} <= {path.name for path in shop.own.iterdir()}
 
 
-def test_what_an_import_replaces_is_asked_for_and_kept(shop: Shop) -> None:
+def test_import_asks_before_replacing_and_saves_old_text(shop: Shop) -> None:
     assert shop.journal is not None
     old = (shop.own / "alpha.nc").read_bytes()
     shutil.copy(SAMPLES / "grooves.nc", shop.stick / "alpha.nc")
@@ -314,7 +314,7 @@ def test_what_an_import_replaces_is_asked_for_and_kept(shop: Shop) -> None:
     assert shop.journal.read_version_text("alpha.nc", 1) == old
 
 
-def test_what_is_no_program_does_not_come_in(shop: Shop) -> None:
+def test_file_that_is_not_a_program_is_not_imported(shop: Shop) -> None:
     (shop.stick / "photo.nc").write_bytes(bytes(range(256)))
     shop.open_list()
     shop.key(Key.Key_F8)
@@ -326,7 +326,7 @@ def test_what_is_no_program_does_not_come_in(shop: Shop) -> None:
     assert not (shop.own / "photo.nc").exists()
 
 
-def test_a_stick_that_has_gone_is_told(shop: Shop) -> None:
+def test_removed_stick_is_reported(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F9)
     shop.open_stick()
@@ -335,7 +335,7 @@ def test_a_stick_that_has_gone_is_told(shop: Shop) -> None:
     shop.sees(lambda: begins(shop.prompt(), "screen.refused"))
 
 
-def test_nothing_is_copied_to_the_list_of_places(shop: Shop) -> None:
+def test_copy_without_selected_location_asks_to_open_one(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F9)
     shop.settle()
@@ -343,7 +343,7 @@ def test_nothing_is_copied_to_the_list_of_places(shop: Shop) -> None:
     assert begins(shop.prompt(), "programs.open-place")
 
 
-def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -> None:
+def test_only_mounted_media_are_found_on_both_levels(tmp_path: Path) -> None:
     for path in ("one", "user/two", "user/gone"):
         (tmp_path / path).mkdir(parents=True)
     mounted = {tmp_path / "one", tmp_path / "user" / "two"}
@@ -351,7 +351,7 @@ def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -
     assert [stick.label for stick in found] == ["one", "two"]
 
 
-def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
+def test_f2_twice_opens_program_list_from_question(shop: Shop) -> None:
     shop.key(Key.Key_F2)
     assert shop.page.file_prompt.isVisible()
     shop.key(Key.Key_F2)
@@ -361,7 +361,7 @@ def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
     assert shop.frame.current_page is shop.page
 
 
-def test_a_finger_alone_names_a_copy(shop: Shop) -> None:
+def test_copy_is_named_by_touch_only(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
     pad = shop.programs.letter_pad
@@ -375,7 +375,7 @@ def test_a_finger_alone_names_a_copy(shop: Shop) -> None:
     shop.sees(lambda: not pad.isVisible())
 
 
-def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
+def test_new_program_is_created_by_touch_only(shop: Shop) -> None:
     """Letters came only behind the first letter of a keyboard, and a name that nobody has led nowhere."""
     shop.window.resize(1024, 600)
     shop.open_list()
@@ -405,7 +405,7 @@ def letters_are(shop: Shop, shown: bool) -> bool:
     return shop.programs.letter_pad.isVisible() is shown
 
 
-def test_a_finger_takes_the_letters_away_again(shop: Shop) -> None:
+def test_touch_hides_letter_pad(shop: Shop) -> None:
     shop.open_list()
     table = shop.programs.table_panel
     for shown in (True, False):

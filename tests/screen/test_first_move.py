@@ -73,7 +73,7 @@ def take_way_out(operator: Operator) -> None:
     operator.stage.checks_start()
 
 
-def test_out_of_the_bore_no_start_is_offered_and_the_way_out_is_named(in_the_bore: Operator) -> None:
+def test_start_from_bore_is_not_offered_and_retract_is_named(in_the_bore: Operator) -> None:
     operator = in_the_bore
     assert shows(operator.prompt(), "screen.first-move-crosses", tool="T2")
     assert shows(operator.prompt(), "screen.jog-until-clear", direction="Z+")
@@ -82,7 +82,7 @@ def test_out_of_the_bore_no_start_is_offered_and_the_way_out_is_named(in_the_bor
     assert len(operator.frame.automatic_page.path_view.drawn_legs) == 2  # the line that is refused is drawn
 
 
-def test_y_and_both_palms_begin_nothing(in_the_bore: Operator) -> None:
+def test_y_and_palm_buttons_do_not_start_from_bore(in_the_bore: Operator) -> None:
     operator = in_the_bore
     at = operator.shot.actual
     operator.key(Key.Key_Y)
@@ -93,7 +93,7 @@ def test_y_and_both_palms_begin_nothing(in_the_bore: Operator) -> None:
     assert operator.shot.start_code == FIRST_MOVE_CROSSES
 
 
-def test_a_line_of_mdi_through_the_wall_does_not_run_and_one_out_of_the_bore_does(
+def test_mdi_line_runs_out_of_bore_but_not_through_wall(
     in_the_bore: Operator,
 ) -> None:
     operator = in_the_bore
@@ -108,7 +108,7 @@ def test_a_line_of_mdi_through_the_wall_does_not_run_and_one_out_of_the_bore_doe
     assert depth(operator) > 0.0
 
 
-def test_the_way_out_is_taken_and_then_the_program_starts(in_the_bore: Operator) -> None:
+def test_program_starts_after_retract_from_bore(in_the_bore: Operator) -> None:
     operator = in_the_bore
     take_way_out(operator)
     assert operator.shot.starts is StartAction.PROGRAM
@@ -121,7 +121,7 @@ def test_the_way_out_is_taken_and_then_the_program_starts(in_the_bore: Operator)
     operator.until(lambda: operator.shot.state is MachineState.RUN, 5.0)
 
 
-def test_a_line_of_mdi_is_drawn_before_it_starts(operator: Operator) -> None:
+def test_mdi_line_is_drawn_before_start(operator: Operator) -> None:
     operator.drives_on()
     operator.key(Key.Key_F1, Key.Key_F4)
     operator.pause(0.05)
@@ -137,7 +137,7 @@ def test_a_line_of_mdi_is_drawn_before_it_starts(operator: Operator) -> None:
     assert not page.path_view.isVisible()
 
 
-def test_where_nothing_was_interrupted_a_start_from_home_is_offered(operator: Operator) -> None:
+def test_start_from_home_is_offered_without_interruption(operator: Operator) -> None:
     operator.stage.make_ready()
     operator.window.refresh()
     assert not shows(operator.prompt(), "screen.first-move-crosses")

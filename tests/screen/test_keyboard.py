@@ -57,26 +57,26 @@ def watched(hands: Hands) -> Hands:
 
 @pytest.mark.parametrize("modifiers", MODIFIERS)
 @pytest.mark.parametrize("key", [Key.Key_Pause, Key.Key_H, Key.Key_Space])
-def test_hold_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
+def test_feed_hold_acts_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
     send(watched, key, modifiers=modifiers)
     assert watched.machine.posted[-1] == FeedHold()
 
 
 @pytest.mark.parametrize("modifiers", MODIFIERS)
 @pytest.mark.parametrize("key", [Key.Key_ScrollLock, Key.Key_E])
-def test_estop_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
+def test_estop_acts_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
     for _ in range(3):  # nor does it free itself
         send(watched, key, modifiers=modifiers)
         assert watched.desk.station_controls.is_estop_pressed
 
 
-def test_the_stop_key_acts_though_it_counts_as_down(watched: Hands) -> None:
+def test_stop_key_acts_despite_lost_release(watched: Hands) -> None:
     for _ in range(3):  # its releases were lost
         send(watched, Key.Key_Pause)
     assert watched.machine.posted.count(FeedHold()) == 3
 
 
-def test_nothing_starts_while_a_stop_key_is_held(watched: Hands) -> None:
+def test_start_is_blocked_while_stop_key_is_down(watched: Hands) -> None:
     watched.load("pin")
     send(watched, Key.Key_Pause)
     watched.both_palms()
@@ -87,7 +87,7 @@ def test_nothing_starts_while_a_stop_key_is_held(watched: Hands) -> None:
     watched.sees_state(MachineState.RUN)
 
 
-def test_a_press_right_behind_its_release_is_a_repeat(watched: Hands) -> None:
+def test_press_immediately_after_release_is_a_repeat(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s", at=10_000)
     for at in range(10_400, 11_000, 40):  # a server that was not asked to tell repeats
         send(watched, Key.Key_S, up=True, at=at)
@@ -111,9 +111,7 @@ class Server:
         return False
 
 
-def test_a_repeat_that_the_release_has_overtaken_is_no_press(
-    watched: Hands, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_repeat_overtaken_by_release_is_not_a_press(watched: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     server, keyboard = Server(), watched.window.keyboard_filter
     monkeypatch.setattr("app.screen.window.keyboard.open_x_server", lambda: server)
     keyboard.filter_window(window_of(watched))
@@ -134,7 +132,7 @@ def test_a_repeat_that_the_release_has_overtaken_is_no_press(
     assert not watched.machine.now.single_block
 
 
-def test_a_repeat_of_a_key_that_nobody_saw_go_down_is_dead(watched: Hands) -> None:
+def test_repeat_without_press_is_ignored(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s", repeat=True)
     send(watched, Key.Key_S, text="s", repeat=True)
     assert not watched.machine.now.single_block
@@ -143,7 +141,7 @@ def test_a_repeat_of_a_key_that_nobody_saw_go_down_is_dead(watched: Hands) -> No
     assert watched.machine.now.single_block
 
 
-def test_a_key_held_from_another_page_is_dead(watched: Hands) -> None:
+def test_key_down_since_another_page_is_ignored(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s")
     watched.frame.open_page(page_table.MENU)
     watched.window.refresh()
@@ -153,7 +151,7 @@ def test_a_key_held_from_another_page_is_dead(watched: Hands) -> None:
     assert watched.machine.now.single_block  # from the press, and turned once
 
 
-def test_an_answer_is_no_answer_while_another_key_is_down(watched: Hands) -> None:
+def test_answer_key_is_ignored_while_another_key_is_down(watched: Hands) -> None:
     said: list[str] = []
     watched.desk.ask_operator("PRESS Y", lambda: said.append("yes"))
     read(watched.desk)
@@ -168,7 +166,7 @@ def test_an_answer_is_no_answer_while_another_key_is_down(watched: Hands) -> Non
     assert said == ["yes"]
 
 
-def test_a_finger_answers_on_the_prompt_line(watched: Hands) -> None:
+def test_question_is_answered_by_touch_on_prompt_line(watched: Hands) -> None:
     said: list[str] = []
     watched.desk.ask_operator("PRESS Y TO DO IT", lambda: said.append("yes"))
     watched.window.refresh()
@@ -192,7 +190,7 @@ class Time:
 
 
 @pytest.mark.usefixtures("stalls")
-def test_what_waited_behind_a_stall_is_late() -> None:
+def test_event_queued_during_stall_is_late() -> None:
     time = Time()
     times = InputTimes(time)
     for _ in range(3):
@@ -213,7 +211,7 @@ def test_what_waited_behind_a_stall_is_late() -> None:
 
 
 @pytest.mark.usefixtures("stalls")
-def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
+def test_delayed_event_is_late_without_stall() -> None:
     time = Time()
     times = InputTimes(time)
     assert not times.was_delayed(50_000)
@@ -225,7 +223,7 @@ def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
 
 
 @pytest.mark.usefixtures("stalls")
-def test_fingers_by_another_clock_are_not_late_for_ever() -> None:
+def test_touch_events_with_different_clock_are_not_always_late() -> None:
     time = Time()
     times = InputTimes(time)
     assert not times.was_delayed(50_000)  # keys and mouse
@@ -240,7 +238,7 @@ def test_fingers_by_another_clock_are_not_late_for_ever() -> None:
 
 
 @pytest.mark.usefixtures("stalls")
-def test_stamps_that_run_over_are_no_stall() -> None:
+def test_timestamp_overflow_is_not_a_stall() -> None:
     time = Time()
     times = InputTimes(time)
     assert not times.was_delayed(2**32 - 5)
@@ -255,7 +253,7 @@ def stopped_clock(hands: Hands) -> int:
     return round(1000 * Time.now)
 
 
-def test_two_palms_by_the_times_of_their_events(watched: Hands) -> None:
+def test_palm_buttons_too_far_apart_by_event_time_are_invalid(watched: Hands) -> None:
     watched.load("pin")
     now = stopped_clock(watched)
     send(watched, Key.Key_F5, at=now)
@@ -266,7 +264,7 @@ def test_two_palms_by_the_times_of_their_events(watched: Hands) -> None:
     assert watched.machine.now.state is MachineState.IDLE
 
 
-def test_the_layer_sees_every_window_again_when_it_is_shown(watched: Hands) -> None:
+def test_keyboard_filter_works_after_window_is_shown_again(watched: Hands) -> None:
     assert isinstance(watched.window, MainWindow)
     watched.window.hide()
     watched.window.show()
@@ -278,7 +276,7 @@ def test_the_layer_sees_every_window_again_when_it_is_shown(watched: Hands) -> N
 @pytest.mark.parametrize(
     "name", [page_table.SECCMP, page_table.TOOLS, page_table.SPECIAL, page_table.PROGRAMS]
 )
-def test_esc_leaves_a_page_that_says_so_and_holds_nothing(watched: Hands, name: str) -> None:
+def test_esc_leaves_offset_and_list_pages_without_feed_hold(watched: Hands, name: str) -> None:
     watched.load("pin")
     watched.both_palms()
     watched.sees_state(MachineState.RUN)
@@ -292,7 +290,7 @@ def test_esc_leaves_a_page_that_says_so_and_holds_nothing(watched: Hands, name: 
     assert watched.machine.posted[-1] == FeedHold()
 
 
-def test_letters_are_text_on_a_page_of_offsets_and_stop_nothing(watched: Hands) -> None:
+def test_letters_on_offset_page_are_text_and_stop_nothing(watched: Hands) -> None:
     watched.frame.open_page(page_table.SECCMP)
     watched.window.refresh()
     before = len(watched.machine.posted)

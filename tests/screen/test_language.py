@@ -80,7 +80,7 @@ def drawn(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return texts
 
 
-def test_the_screen_turns_spanish_at_once_and_back(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_screen_switches_to_spanish_and_back(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "MENU" in drawn(hands, monkeypatch)
     hands.desk.settings_store.choose("language", "es")
     texts = drawn(hands, monkeypatch)
@@ -89,7 +89,9 @@ def test_the_screen_turns_spanish_at_once_and_back(hands: Hands, monkeypatch: py
     assert "MENU" in drawn(hands, monkeypatch)
 
 
-def test_program_text_and_comments_are_left_alone(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_program_text_and_comments_are_not_translated(
+    spanish: Hands, monkeypatch: pytest.MonkeyPatch
+) -> None:
     spanish.machine.now = replace(spanish.machine.now, comment="READY", program="SPINDLE.nc")
     texts = drawn(spanish, monkeypatch)
     assert "READY" in texts
@@ -97,7 +99,7 @@ def test_program_text_and_comments_are_left_alone(spanish: Hands, monkeypatch: p
     assert "SPINDLE.nc" in texts
 
 
-def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_control_alarm_is_shown_in_spanish(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     remedy = CATALOG["following"].remedy
     spanish.machine.fault(
         Alarm(
@@ -136,7 +138,7 @@ def test_the_log_shows_alarms_in_spanish() -> None:
 
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize(("code", "number"), [("program-stop", 704), ("optional-stop", 705)])
-def test_the_log_shows_the_words_of_the_program_as_they_are(code: AlarmCode, number: int) -> None:
+def test_log_does_not_translate_text_of_program(code: AlarmCode, number: int) -> None:
     text = logged("stop", format_log_line(make_alarm(code, "FACE", 4, 0.0)))
     assert text.startswith(f"{number} PARO ")
     assert text.endswith(": FACE")
@@ -148,7 +150,7 @@ def test_an_event_of_an_older_store_stays_english() -> None:
 
 
 @pytest.mark.usefixtures("spanish")
-def test_every_kind_of_the_log_has_its_word() -> None:
+def test_every_log_kind_is_translated() -> None:
     kinds = {
         kind
         for file in (PROJECT_FOLDER / "core/executor").rglob("*.py")
@@ -159,14 +161,14 @@ def test_every_kind_of_the_log_has_its_word() -> None:
 
 
 @pytest.mark.parametrize("code", ["program-stop", "optional-stop"])
-def test_the_message_of_a_stop_is_the_programs(spanish: Hands, code: AlarmCode) -> None:
+def test_stop_message_of_program_is_not_translated(spanish: Hands, code: AlarmCode) -> None:
     told = tr(describe_cause(make_alarm(code, "FACE", 4, 0.0)))
     assert told.startswith("FACE; M0")
     assert "the program" not in told
     assert tr(describe_cause(make_alarm(code, "", 4, 0.0))).endswith(("en el programa", "está activo"))
 
 
-def test_the_comment_in_force_is_the_programs(spanish: Hands) -> None:
+def test_active_program_comment_is_not_translated(spanish: Hands) -> None:
     point = Checkpoint(ModalState(comment=" FACE ", outputs=frozenset({"coolant"})))
     told = {row.key: tr(row.value) for row in make_modal_rows(point)}
     assert told["comment"] == "FACE"
@@ -177,12 +179,12 @@ def test_the_comment_in_force_is_the_programs(spanish: Hands) -> None:
 
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize("entry", CATALOG.values(), ids=str)
-def test_every_alarm_has_its_spanish(entry: AlarmEntry) -> None:
+def test_every_alarm_has_spanish_translation(entry: AlarmEntry) -> None:
     texts = (entry.text.upper(), *entry.causes, entry.remedy)
     assert [text for text in texts if tr(text) == text] in ([], ["RESET"])
 
 
-def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
+def test_rejection_with_values_is_shown_in_spanish(spanish: Hands) -> None:
     why = message("screen.spindle-limit-between", limit=9000, most=3500)
     spanish.desk.say(message("screen.refused", why=why))
     told = tr(spanish.desk.prompt_notice)
@@ -190,7 +192,7 @@ def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
     assert told == text_in_spanish("screen.refused", why=in_spanish)
 
 
-def test_no_letter_is_missing_in_the_font() -> None:
+def test_font_has_every_letter_of_translation() -> None:
     font = QFont(screen_theme.FONT_FAMILY)
     missing = {sign for text in written("es").values() for sign in text if not _has(font, sign)}
     assert missing <= {"\n"}
@@ -200,14 +202,14 @@ def _has(font: QFont, sign: str) -> bool:
     return QRawFont.fromFont(font).supportsCharacter(ord(sign))
 
 
-def test_the_compiled_catalogue_is_that_of_the_texts() -> None:
+def test_compiled_catalog_matches_source_texts() -> None:
     translator = QTranslator()
     assert translator.load(str(CATALOG_FOLDER / "turndesk_es.qm"))
     for text, told in written("es").items():
         assert (translator.translate(TRANSLATION_CONTEXT, text) or "") == told
 
 
-def test_no_value_is_lost() -> None:
+def test_translations_contain_every_placeholder() -> None:
     holes = {text: told for text, told in written("es").items() if told and PLACEHOLDER_PATTERN.search(text)}
     lost = [
         text
@@ -217,7 +219,7 @@ def test_no_value_is_lost() -> None:
     assert lost == []
 
 
-def test_another_window_speaks_its_own_language(spanish: Hands) -> None:
+def test_second_window_has_its_own_language(spanish: Hands) -> None:
     spanish.desk.settings_store.choose("language", "en")
     other = MainWindow(ScreenTheme(DARK_PALETTE))
     assert spanish.window.page_preloader is not None
@@ -228,12 +230,12 @@ def test_another_window_speaks_its_own_language(spanish: Hands) -> None:
     other.close_silently()
 
 
-def test_an_unknown_language_has_no_catalogue() -> None:
+def test_unknown_language_has_no_catalog() -> None:
     with pytest.raises(FileNotFoundError, match="turndesk_xx"):
         use_language("xx")
 
 
-def test_key_labels_fit(spanish: Hands) -> None:
+def test_translated_key_labels_fit(spanish: Hands) -> None:
     house = Path(app.__file__).parent
     for path in (*house.glob("*/*_view.py"), *house.glob("screen/*/page.py")):
         import_module(".".join(("app", *path.relative_to(house).with_suffix("").parts)))
@@ -252,7 +254,7 @@ def _pages(page: type[Page]) -> Iterator[type[Page]]:
         yield from _pages(kind)
 
 
-def test_every_text_has_its_spanish() -> None:
+def test_every_text_has_spanish_translation() -> None:
     """Run ``python -m resources.translations.collect``, then write what it has put in as unfinished."""
     known = written("es")
     assert sorted(text for text in every_text() if not known.get(text)) == []
@@ -268,12 +270,12 @@ def test_every_text_has_its_spanish() -> None:
         "BEGIN PGM",
     ],
 )
-def test_queries_and_style_sheets_are_no_texts(text: str) -> None:
+def test_queries_and_style_sheets_are_not_collected_as_texts(text: str) -> None:
     assert text not in every_text()
     assert _NO_TEXT.match(text)
 
 
-def test_the_list_has_every_text_once() -> None:
+def test_text_list_contains_every_text_once() -> None:
     shown = every_text()
     listed = read_list()
     known = {*shown, *collect_console_texts(shown)}

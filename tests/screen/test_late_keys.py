@@ -91,7 +91,7 @@ def starts_of(stall: Stall) -> list[object]:
 # --- what is done -------------------------------------------------------------------------------------------
 
 
-def test_a_key_that_opens_a_field_and_the_text_in_it_are_done_in_their_order(stall: Stall) -> None:
+def test_late_keys_open_field_and_type_text_in_order(stall: Stall) -> None:
     hands = stall.hands
     stall.ends()
     stall.press(Key.Key_F2, 100)
@@ -103,7 +103,7 @@ def test_a_key_that_opens_a_field_and_the_text_in_it_are_done_in_their_order(sta
     assert not hands.desk.prompt_answers.message
 
 
-def test_keys_of_pages_are_done_in_their_order(stall: Stall) -> None:
+def test_late_page_keys_act_in_order(stall: Stall) -> None:
     hands = stall.hands
     stall.ends()
     stall.press(Key.Key_F1, 100)
@@ -114,7 +114,7 @@ def test_keys_of_pages_are_done_in_their_order(stall: Stall) -> None:
     assert not hands.desk.prompt_answers.message
 
 
-def test_a_switch_pressed_twice_is_switched_twice(stall: Stall) -> None:
+def test_switch_pressed_twice_in_stall_switches_twice(stall: Stall) -> None:
     stall.ends()
     for ms in (100, 200, 300):
         stall.press(Key.Key_S, ms, "s")
@@ -122,7 +122,7 @@ def test_a_switch_pressed_twice_is_switched_twice(stall: Stall) -> None:
     assert [each.on for each in posted] == [True, False, True]
 
 
-def test_a_shift_that_was_down_then_counts(stall: Stall) -> None:
+def test_shift_pressed_in_stall_applies_to_its_key(stall: Stall) -> None:
     class Server:
         reports_repeats = True
 
@@ -141,7 +141,7 @@ def test_a_shift_that_was_down_then_counts(stall: Stall) -> None:
     assert stall.hands.frame.current_page.NAME == page_table.SCOPE
 
 
-def test_repeats_of_a_key_that_was_held_in_the_stall_are_none(stall: Stall) -> None:
+def test_auto_repeats_from_stall_are_ignored(stall: Stall) -> None:
     hands = stall.hands
     hands.frame.open_page(page_table.PROGRAMS)
     hands.window.refresh()
@@ -151,7 +151,7 @@ def test_repeats_of_a_key_that_was_held_in_the_stall_are_none(stall: Stall) -> N
     assert hands.frame.current_page.model.search_field.text == "a"  # type: ignore[attr-defined]
 
 
-def test_a_touch_on_what_is_still_shown_is_done(stall: Stall) -> None:
+def test_late_touch_on_unchanged_target_acts(stall: Stall) -> None:
     stall.ends()
     stall.touch_f2(500)
     assert stall.hands.page.file_prompt.isVisible()
@@ -162,7 +162,7 @@ def test_a_touch_on_what_is_still_shown_is_done(stall: Stall) -> None:
 
 
 @pytest.mark.parametrize("later", [0, 1200])
-def test_palms_start_nothing(stall: Stall, later: int) -> None:
+def test_late_palm_buttons_start_nothing(stall: Stall, later: int) -> None:
     hands = stall.hands
     hands.load("pin")
     stall = Stall(hands)
@@ -175,7 +175,7 @@ def test_palms_start_nothing(stall: Stall, later: int) -> None:
     assert stall.told(StartingAction.CYCLE)
 
 
-def test_a_palm_from_the_stall_and_one_from_after_it_are_no_pair(stall: Stall) -> None:
+def test_palm_buttons_pressed_in_and_after_stall_are_not_a_pair(stall: Stall) -> None:
     hands = stall.hands
     hands.load("pin")
     stall = Stall(hands)
@@ -186,7 +186,7 @@ def test_a_palm_from_the_stall_and_one_from_after_it_are_no_pair(stall: Stall) -
     assert hands.machine.now.state is MachineState.IDLE
 
 
-def test_the_drives_stay_off_and_what_follows_is_done(stall: Stall) -> None:
+def test_late_drives_key_is_dropped_and_following_key_acts(stall: Stall) -> None:
     hands = stall.hands
     hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()
@@ -199,7 +199,7 @@ def test_the_drives_stay_off_and_what_follows_is_done(stall: Stall) -> None:
     assert stall.told(StartingAction.DRIVES)
 
 
-def test_all_that_was_dropped_is_named_in_one_message(stall: Stall) -> None:
+def test_one_message_names_all_dropped_keys(stall: Stall) -> None:
     hands = stall.hands
     hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()
@@ -231,7 +231,7 @@ def asked(stall: Stall) -> Callable[[], list[str]]:
     return lambda: said
 
 
-def test_a_question_gets_no_answer(stall: Stall, asked: Callable[[], list[str]]) -> None:
+def test_late_yes_key_does_not_answer_question(stall: Stall, asked: Callable[[], list[str]]) -> None:
     stall.ends()
     stall.press(Key.Key_Y, 500, "y")
     assert asked() == []
@@ -239,14 +239,14 @@ def test_a_question_gets_no_answer(stall: Stall, asked: Callable[[], list[str]])
     assert stall.told(StartingAction.YES)
 
 
-def test_the_finger_on_yes_is_none_either(stall: Stall, asked: Callable[[], list[str]]) -> None:
+def test_late_touch_on_yes_does_not_answer_question(stall: Stall, asked: Callable[[], list[str]]) -> None:
     stall.ends()
     stall.hands.window.set_late(is_late=True)
     stall.hands.window.press_key("Yes")
     assert asked() == []
 
 
-def test_no_takes_the_question_back(stall: Stall, asked: Callable[[], list[str]]) -> None:
+def test_late_no_cancels_question(stall: Stall, asked: Callable[[], list[str]]) -> None:
     stall.ends()
     stall.press(Key.Key_N, 500, "n")
     assert asked() == []
@@ -254,7 +254,7 @@ def test_no_takes_the_question_back(stall: Stall, asked: Callable[[], list[str]]
 
 
 @pytest.mark.parametrize("later", [100, 1300])
-def test_what_was_pressed_after_a_dropped_answer_is_dropped_too(
+def test_key_pressed_after_dropped_answer_is_dropped_too(
     stall: Stall, asked: Callable[[], list[str]], later: int
 ) -> None:
     hands = stall.hands
@@ -268,7 +268,7 @@ def test_what_was_pressed_after_a_dropped_answer_is_dropped_too(
     assert stall.told(StartingAction.YES, StartingAction.FOLLOWING_KEY)
 
 
-def test_after_a_dropped_answer_a_pause_makes_keys_count_again(
+def test_keys_act_again_after_pause_following_dropped_answer(
     stall: Stall, asked: Callable[[], list[str]]
 ) -> None:
     hands = stall.hands
@@ -284,7 +284,7 @@ def test_after_a_dropped_answer_a_pause_makes_keys_count_again(
 
 
 @pytest.mark.usefixtures("asked")
-def test_what_stops_acts_also_after_a_dropped_answer(stall: Stall) -> None:
+def test_estop_key_acts_after_dropped_answer(stall: Stall) -> None:
     stall.ends()
     stall.press(Key.Key_Y, 300, "y")
     stall.press(Key.Key_Pause, 400)
@@ -294,14 +294,14 @@ def test_what_stops_acts_also_after_a_dropped_answer(stall: Stall) -> None:
 
 
 @pytest.mark.parametrize("key", [Key.Key_Pause, Key.Key_H, Key.Key_Space])
-def test_a_hold_is_never_late(stall: Stall, key: Key) -> None:
+def test_late_feed_hold_always_acts(stall: Stall, key: Key) -> None:
     stall.ends()
     stall.press(key, 100)
     assert stall.hands.machine.posted == [FeedHold()]
     assert not stall.hands.desk.prompt_answers.message
 
 
-def test_a_touch_on_a_screen_that_looks_different_now_is_dropped(stall: Stall) -> None:
+def test_late_touch_on_changed_screen_is_dropped(stall: Stall) -> None:
     hands = stall.hands
     stall.ends()
     stall.press(Key.Key_F1, 100)  # done: another page
@@ -310,7 +310,7 @@ def test_a_touch_on_a_screen_that_looks_different_now_is_dropped(stall: Stall) -
     assert stall.told(StartingAction.TOUCH)
 
 
-def test_a_start_with_the_mouse_is_dropped(stall: Stall) -> None:
+def test_late_start_by_mouse_is_dropped(stall: Stall) -> None:
     hands = stall.hands
     hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()

@@ -32,7 +32,7 @@ def apart(one: Rect, other: Rect) -> bool:
 
 @pytest.mark.parametrize("dock", [True, False])
 @pytest.mark.parametrize("size", SIZES)
-def test_nothing_overlaps_and_nothing_is_cut(size: tuple[int, int], dock: bool) -> None:
+def test_layout_parts_do_not_overlap_and_fit_window(size: tuple[int, int], dock: bool) -> None:
     at = make_layout(*size, dock)
     parts = [(name, rect) for name, rect in at._asdict().items() if dock or name != "dock"]
     for name, rect in parts:
@@ -47,7 +47,7 @@ def test_nothing_overlaps_and_nothing_is_cut(size: tuple[int, int], dock: bool) 
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
+def test_automatic_page_panels_have_minimum_sizes(size: tuple[int, int]) -> None:
     at, u = make_layout(*size, has_dock=True), find_unit_px(*size)
     assert at.position.h >= 27 * u - 1
     assert at.feed.w >= 24 * u
@@ -56,7 +56,7 @@ def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
     assert at.path.h >= 26 * u
 
 
-def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
+def test_targets_are_touch_sized_on_smallest_screen() -> None:
     at = make_layout(*MIN_WINDOW_PX, has_dock=True)
     least = 9 / (254 / (1024**2 + 600**2) ** 0.5)  # pixels: 9 mm where the corners are 10 inches apart
     assert at.keys.h >= least
@@ -64,7 +64,7 @@ def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
     assert (at.keys.w / 10) >= 80
 
 
-def test_without_a_dock_its_room_goes_to_the_path() -> None:
+def test_path_view_is_larger_without_dock() -> None:
     assert (
         make_layout(1920, 1080, has_dock=False).path.w > make_layout(1920, 1080, has_dock=True).path.w + 200
     )
@@ -72,7 +72,7 @@ def test_without_a_dock_its_room_goes_to_the_path() -> None:
 
 @pytest.mark.parametrize("dock", [True, False])
 @pytest.mark.parametrize("size", SIZES)
-def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: bool) -> None:
+def test_page_layout_with_low_readouts_does_not_overlap(size: tuple[int, int], dock: bool) -> None:
     at, low = make_layout(*size, dock), make_low_layout(*size, dock)
     parts = [at.title, *low, at.prompt, at.keys, *([at.dock] if dock else [])]
     for one, two in combinations(parts, 2):
@@ -84,7 +84,7 @@ def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: 
     ("glass", "window"),
     [((2560, 1440), (1280, 720)), ((3440, 1440), (1720, 720)), ((3840, 2160), (1920, 1080))],
 )
-def test_a_window_among_others_is_a_quarter_of_a_large_glass(
+def test_window_covers_a_quarter_of_large_screen(
     hands: Hands, glass: tuple[int, int], window: tuple[int, int]
 ) -> None:
     screen = SimpleNamespace(availableGeometry=lambda: QRect(0, 0, *glass))

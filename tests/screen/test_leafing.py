@@ -109,14 +109,14 @@ def chosen_rows(panel: Panel, look_at: Callable[[], int], keys: list[QRectF]) ->
     return found
 
 
-def test_a_finger_comes_to_every_row_of_a_table(above: QWidget) -> None:
+def test_every_table_row_is_reached_by_touch(above: QWidget) -> None:
     touched: list[int] = []
     panel = sheet_panel(above, sheet_of(MANY), touched.append)
     assert panel.rows < MANY
     assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
 
 
-def test_a_finger_comes_to_every_program_that_is_asked_for(above: QWidget, tmp_path: Path) -> None:
+def test_every_requested_program_is_reached_by_touch(above: QWidget, tmp_path: Path) -> None:
     for number in range(MANY):
         (tmp_path / f"p{number:02}.nc").write_text("M30\n")
     taken: list[str] = []
@@ -142,7 +142,7 @@ def test_a_finger_comes_to_every_program_that_is_asked_for(above: QWidget, tmp_p
 
 
 @pytest.mark.parametrize("marked", [0, 3])
-def test_the_wheel_leaves_the_mark_behind(above: QWidget, marked: int) -> None:
+def test_mouse_wheel_scrolls_without_moving_mark(above: QWidget, marked: int) -> None:
     panel = sheet_panel(above, sheet_of(MANY, marked), lambda _row: None)
     turn_wheel(panel, 100)
     assert panel.first_row == MANY - panel.rows
@@ -150,7 +150,7 @@ def test_the_wheel_leaves_the_mark_behind(above: QWidget, marked: int) -> None:
     assert panel.first_row == 0
 
 
-def test_a_key_that_moves_the_mark_brings_it_into_sight_again(above: QWidget) -> None:
+def test_key_that_moves_mark_scrolls_it_into_view(above: QWidget) -> None:
     panel = sheet_panel(above, sheet_of(MANY, 2), lambda _row: None)
     turn_wheel(panel, 100)
     panel.show_table(sheet_of(MANY, 3))
@@ -158,7 +158,7 @@ def test_a_key_that_moves_the_mark_brings_it_into_sight_again(above: QWidget) ->
     assert panel.first_row == 3
 
 
-def test_a_pad_that_comes_up_does_not_hide_the_mark(above: QWidget) -> None:
+def test_opened_letter_pad_does_not_hide_mark(above: QWidget) -> None:
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 300)
     panel.show_table(sheet_of(MANY, 4))
@@ -169,7 +169,7 @@ def test_a_pad_that_comes_up_does_not_hide_the_mark(above: QWidget) -> None:
     assert panel.first_row <= 4 < panel.first_row + panel.rows
 
 
-def test_what_fits_has_no_keys_to_leaf(above: QWidget) -> None:
+def test_table_that_fits_has_no_scroll_keys(above: QWidget) -> None:
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 300)
     panel.show_table(sheet_of(3))
@@ -179,7 +179,7 @@ def test_what_fits_has_no_keys_to_leaf(above: QWidget) -> None:
     assert panel.first_row == 0
 
 
-def test_findings_and_changes_of_offsets_are_leafed_through(above: QWidget) -> None:
+def test_findings_and_offset_changes_have_scroll_keys(above: QWidget) -> None:
     """There were no keys: the third finding, and the fifth change, were the mouse wheel's alone."""
     findings = FindingList(ScreenTheme(DARK_PALETTE, SMALL), lambda _found: None, above)
     findings.resize(374, 106)  # as at 1024x600
@@ -194,7 +194,7 @@ def test_findings_and_changes_of_offsets_are_leafed_through(above: QWidget) -> N
     assert history.first_row == history.rows
 
 
-def test_keys_that_leaf_fit_a_finger(above: QWidget) -> None:
+def test_scroll_keys_are_touch_sized(above: QWidget) -> None:
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 300)
     panel.show_table(sheet_of(MANY))
@@ -204,7 +204,7 @@ def test_keys_that_leaf_fit_a_finger(above: QWidget) -> None:
 
 
 @pytest.mark.parametrize("wide", [300, 500])
-def test_keys_that_leaf_lie_over_no_row(above: QWidget, wide: int) -> None:
+def test_scroll_keys_do_not_cover_rows(above: QWidget, wide: int) -> None:
     """Below the rows of a narrow table, as that of the analyses at 1024x600, beside those of a wide one."""
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(wide, 300)
@@ -217,7 +217,7 @@ def test_keys_that_leaf_lie_over_no_row(above: QWidget, wide: int) -> None:
 
 
 @pytest.mark.parametrize(("count", "high", "fits"), [(8, 80.0, 15), (20, 60.4, 20), (60, 43.0, 28)])
-def test_few_rows_are_as_large_as_the_rest_of_a_large_glass(
+def test_row_height_fills_large_screen_within_limits(
     above: QWidget, count: int, high: float, fits: int
 ) -> None:
     """96 dots an inch: 9 mm are 34 pixels, a fingertip 43; four units of 20 are 80, and 15 rows of them fit.
@@ -232,7 +232,7 @@ def test_few_rows_are_as_large_as_the_rest_of_a_large_glass(
     assert panel.rows == fits
 
 
-def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidget) -> None:
+def test_scroll_keys_are_side_by_side_in_low_panel(above: QWidget) -> None:
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 110)
     panel.show_table(sheet_of(MANY))
@@ -246,7 +246,7 @@ def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidg
 
 
 @pytest.mark.parametrize(("high", "rows", "notes"), [(145, 1, 0), (176, 1, 2), (110, 0, 0)])
-def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes: int) -> None:
+def test_question_does_not_cover_rows(above: QWidget, high: int, rows: int, notes: int) -> None:
     """145 pixels are what drawn letters leave to a table of the special functions at 1024x600."""
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(640, high)
@@ -269,7 +269,7 @@ def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes
         ), text
 
 
-def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:
+def test_every_mill_tool_is_reached_by_touch(above: QWidget) -> None:
     """Ten rows of 16 pixels stood there, and what was below them came by the arrows alone."""
     chosen: list[int] = []
     table = SimpleNamespace(
@@ -284,7 +284,7 @@ def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:
 
 
 @pytest.mark.parametrize(("wide", "shown"), [(788, 12), (605, 10), (350, 5)])
-def test_cells_of_a_mills_tools_take_a_finger_beside_the_pad(above: QWidget, wide: int, shown: int) -> None:
+def test_mill_tool_cells_are_touch_sized_next_to_pad(above: QWidget, wide: int, shown: int) -> None:
     """With twelve columns at 1024x600 that of the teeth had 25 pixels beside the pad."""
     names = (*FIELDS_BY_KIND[MillToolTable.kind], "used")
     chosen: list[int] = []
@@ -308,7 +308,7 @@ def test_cells_of_a_mills_tools_take_a_finger_beside_the_pad(above: QWidget, wid
     assert len(names) == 12
 
 
-def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
+def test_main_menu_tiles_are_touch_sized(above: QWidget) -> None:
     entries = list_menu_entries("omniturn")
     panel = _MenuTiles(ScreenTheme(DARK_PALETTE, SMALL), lambda _key: None, entries, above)
     panel.resize(858, 360)  # as at 1024x600
@@ -317,7 +317,7 @@ def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
     assert all(box.height() >= FINGERTIP_PX for box, *_ in panel._places)
 
 
-def test_a_finger_comes_to_every_special_function(above: QWidget) -> None:
+def test_every_special_function_is_reached_by_touch(above: QWidget) -> None:
     """Their rows had 42 pixels."""
     entered: list[int] = []
     functions = [SimpleNamespace(name=f"FUNCTION {n}", use="what it does") for n in range(MANY)]

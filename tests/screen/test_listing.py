@@ -46,7 +46,7 @@ def painted(listing: ProgramListing) -> QPixmap:
     return listing.grab()
 
 
-def test_a_million_lines_cost_what_is_seen(listing: ProgramListing) -> None:
+def test_listing_reads_only_visible_lines(listing: ProgramListing) -> None:
     lines = Counted()
     listing.show_source(lines, {})
     listing.show_run(500_000, "X1", "")
@@ -55,7 +55,7 @@ def test_a_million_lines_cost_what_is_seen(listing: ProgramListing) -> None:
     assert 0 < lines.asked <= listing.rows
 
 
-def test_the_current_line_is_in_the_window(listing: ProgramListing) -> None:
+def test_current_line_is_visible(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     for line in (1, 2, 50, 99, 100):
         listing.show_run(line, "X1", "X2")
@@ -63,7 +63,7 @@ def test_the_current_line_is_in_the_window(listing: ProgramListing) -> None:
         assert listing.first_row < line <= listing.first_row + listing.rows
 
 
-def test_scrolling_stops_the_following_until_it_is_asked_for(listing: ProgramListing) -> None:
+def test_scrolling_stops_following_current_line_until_requested(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     listing.show_run(50, "", "")
     painted(listing)
@@ -79,11 +79,11 @@ def test_scrolling_stops_the_following_until_it_is_asked_for(listing: ProgramLis
     assert listing.first_row < 51 <= listing.first_row + listing.rows
 
 
-def test_a_refused_program_opens_at_its_first_error(listing: ProgramListing) -> None:
+def test_rejected_program_opens_at_first_error(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {80: "no", 90: "no"})
     painted(listing)
     assert listing.first_row < 80 <= listing.first_row + listing.rows
 
 
-def test_an_empty_window_paints(listing: ProgramListing) -> None:
+def test_empty_listing_is_painted(listing: ProgramListing) -> None:
     assert not painted(listing).isNull()

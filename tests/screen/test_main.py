@@ -22,7 +22,7 @@ from tests.texts import shows, text
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])
-def test_a_desk_that_cannot_be_built_ends_the_screen_with_its_reason(theme: str) -> None:
+def test_failed_model_build_ends_screen_with_reason(theme: str) -> None:
     def broken() -> None:
         raise ValueError("lathe.toml: no axis X")
 
@@ -47,7 +47,7 @@ def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
     assert closed == [True]
 
 
-def test_a_computer_going_down_ends_the_screen_in_the_middle_of_a_program(machine: FakeMachine) -> None:
+def test_computer_shutdown_closes_screen_in_feed_hold(machine: FakeMachine) -> None:
     desk, closed = desk_on(machine), []
     desk.closing_sequence.close_drivers = lambda: closed.append(machine.now.state)
 
@@ -63,14 +63,14 @@ def test_a_computer_going_down_ends_the_screen_in_the_middle_of_a_program(machin
     assert closed == [MachineState.HOLD]
 
 
-def test_a_program_that_is_not_there_is_told(machine: FakeMachine) -> None:
+def test_missing_program_is_reported(machine: FakeMachine) -> None:
     desk = desk_on(machine)
     QTimer.singleShot(50, lambda: [w.close() for w in QApplication.topLevelWidgets()])
     assert run_screen(program_file="nowhere.nc", build_model=lambda: desk) == 0
     assert desk.prompt_notice == text("screen.file-not-found", name="nowhere.nc")
 
 
-def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
+def test_screen_error_is_reported_and_screen_continues(
     machine: FakeMachine, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     desk = desk_on(machine)

@@ -38,7 +38,7 @@ def value(operator: Operator, key: str) -> str:
     return next(row.value for row in page_of(operator).modal_panel.rows if row.key == key)
 
 
-def test_a_line_is_typed_proved_started_and_its_modes_stay(at_mdi: Operator) -> None:
+def test_mdi_line_is_proved_and_run_and_its_modes_remain(at_mdi: Operator) -> None:
     assert value(at_mdi, "distance") == "—"
     at_mdi.run("G90G72")
     assert (value(at_mdi, "distance"), value(at_mdi, "x words")) == ("G90", "G72 Ø")
@@ -49,7 +49,7 @@ def test_a_line_is_typed_proved_started_and_its_modes_stay(at_mdi: Operator) -> 
     assert page_of(at_mdi).line_panel.text == ""
 
 
-def test_what_is_wrong_is_marked_where_it_is_and_mended(at_mdi: Operator) -> None:
+def test_mdi_error_is_marked_and_can_be_corrected(at_mdi: Operator) -> None:
     at_mdi.run("G90")
     at_mdi.line("X.5F1000")
     page = page_of(at_mdi)
@@ -66,7 +66,7 @@ def test_what_is_wrong_is_marked_where_it_is_and_mended(at_mdi: Operator) -> Non
     assert at_mdi.prompt() == text("screen.run-the-line", start=text("screen.both-palms"))
 
 
-def test_a_ready_line_that_is_changed_starts_no_more(at_mdi: Operator) -> None:
+def test_changed_line_is_not_ready_to_start(at_mdi: Operator) -> None:
     at_mdi.run("G91F50")
     at_mdi.line("X.1")
     assert page_of(at_mdi).line_panel.is_ready
@@ -77,7 +77,7 @@ def test_a_ready_line_that_is_changed_starts_no_more(at_mdi: Operator) -> None:
     assert not page_of(at_mdi).line_panel.is_ready
 
 
-def test_history_by_arrow_keys_and_by_finger(at_mdi: Operator) -> None:
+def test_history_is_used_by_arrow_keys_and_touch(at_mdi: Operator) -> None:
     for line in ("G90F50", "X.1", "Z-.1"):
         at_mdi.run(line)
     at_mdi.type("X.")
@@ -91,7 +91,7 @@ def test_history_by_arrow_keys_and_by_finger(at_mdi: Operator) -> None:
     assert page_of(at_mdi).line_panel.text == "G90F50"
 
 
-def test_the_cursor_goes_through_the_line(at_mdi: Operator) -> None:
+def test_cursor_moves_within_line(at_mdi: Operator) -> None:
     at_mdi.type("G9X.1")
     at_mdi.key(Key.Key_Left, Key.Key_Left, Key.Key_Left)
     at_mdi.type("1")
@@ -102,7 +102,7 @@ def test_the_cursor_goes_through_the_line(at_mdi: Operator) -> None:
     assert page_of(at_mdi).line_panel.text == ""
 
 
-def test_the_history_is_there_again_the_next_day(at_mdi: Operator) -> None:
+def test_history_is_reloaded_next_day(at_mdi: Operator) -> None:
     at_mdi.run("G90F50")
     at_mdi.key(Key.Key_F1)
     at_mdi.key(Key.Key_F4)
@@ -111,7 +111,7 @@ def test_the_history_is_there_again_the_next_day(at_mdi: Operator) -> None:
     assert at_mdi.mdi.mdi_input.history_lines == ["G90F50"]
 
 
-def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> None:
+def test_letters_act_as_keys_while_line_runs(at_mdi: Operator) -> None:
     at_mdi.run("G90")
     at_mdi.line("X1F5")
     at_mdi.palms()
@@ -128,7 +128,7 @@ def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> N
     assert page_of(at_mdi).line_panel.text == "R"
 
 
-def test_the_line_has_every_letter_also_with_the_drives_off(at_mdi: Operator) -> None:
+def test_every_letter_can_be_typed_with_drives_off(at_mdi: Operator) -> None:
     at_mdi.type("X.5 he")
     assert page_of(at_mdi).line_panel.text == "X.5 he"
     assert at_mdi.shot.state is MachineState.IDLE
@@ -144,7 +144,7 @@ def test_the_line_has_every_letter_also_with_the_drives_off(at_mdi: Operator) ->
     assert shows(at_mdi.prompt(), "screen.line-proved-with-drives")
 
 
-def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Operator) -> None:
+def test_spindle_stays_on_after_leaving_page_until_its_stop_key(at_mdi: Operator) -> None:
     at_mdi.run("M03S900")
     at_mdi.pause(2.0)
     at_mdi.key(Key.Key_F1)
@@ -160,14 +160,14 @@ def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Ope
     assert value(at_mdi, "spindle") == "M05"
 
 
-def test_mdi_does_not_open_while_a_program_is_under_way(operator: Operator) -> None:
+def test_mdi_does_not_open_while_program_runs(operator: Operator) -> None:
     operator.stage.start()
     operator.key(Key.Key_F1, Key.Key_F4)
     assert operator.frame.title_line.page_title == page_table.MENU
     assert begins(operator.prompt(), "screen.program-runs-no-mdi")
 
 
-def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:
+def test_palm_buttons_start_no_program_on_mdi_page(at_mdi: Operator) -> None:
     desk = at_mdi.stage.desk
     desk.program_choice.load_by_name("bushing")
     desk.program_loader.wait_until_loaded(30.0)
@@ -179,7 +179,7 @@ def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:
     assert at_mdi.shot.state in {MachineState.RUN, MachineState.WAIT}
 
 
-def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator) -> None:
+def test_tool_without_offset_is_rejected_before_start(at_mdi: Operator) -> None:
     at_mdi.line("T9")
     assert shows(page_of(at_mdi).line_panel.finding_text, "screen.tool-never-set", number=9)
     assert at_mdi.mdi.prepared_line.ready_job is None
@@ -188,7 +188,7 @@ def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator)
     assert value(at_mdi, "tool").startswith("T1")
 
 
-def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Operator) -> None:
+def test_mdi_unit_applies_to_program_without_unit_code(at_mdi: Operator) -> None:
     desk = at_mdi.stage.desk
     desk.program_choice.load_by_name("bushing")
     desk.program_loader.wait_until_loaded(30.0)
@@ -201,7 +201,7 @@ def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Ope
     assert any(found.code == "units-unnamed" for found in loaded.diagnostics)
 
 
-def test_a_line_is_typed_by_a_finger_alone(at_mdi: Operator) -> None:
+def test_line_is_typed_by_touch_only(at_mdi: Operator) -> None:
     page = page_of(at_mdi)
     at_mdi.window.grab()
     page.line_panel._places[0][1]()

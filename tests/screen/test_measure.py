@@ -85,7 +85,7 @@ def press(view: PathView, *keys: Key) -> None:
         QTest.keyClick(view, key)
 
 
-def test_measuring_by_keys_alone(view: PathView) -> None:
+def test_path_is_measured_by_keyboard_only(view: PathView) -> None:
     view.set_measuring()
     ruler = view.measurement
     assert ruler is not None
@@ -103,7 +103,7 @@ def test_measuring_by_keys_alone(view: PathView) -> None:
     assert ruler.first_point is None
 
 
-def test_tab_goes_along_the_path(view: PathView) -> None:
+def test_tab_moves_cross_along_path(view: PathView) -> None:
     view.set_measuring()
     assert view.measurement is not None
     view.measurement.cursor = SnapPoint(2.0, 10.0, PointKind.END)
@@ -113,7 +113,7 @@ def test_tab_goes_along_the_path(view: PathView) -> None:
     assert view.measurement.cursor[:2] == (0.0, 5.0)
 
 
-def test_shift_creeps_by_a_pixel_and_catches_nothing(view: PathView) -> None:
+def test_shift_moves_cross_by_one_pixel_without_snapping(view: PathView) -> None:
     view.set_measuring()
     assert view.measurement is not None
     view.measurement.cursor = SnapPoint(0.0, 5.0, PointKind.END)
@@ -122,7 +122,7 @@ def test_shift_creeps_by_a_pixel_and_catches_nothing(view: PathView) -> None:
     assert view.measurement.cursor.z == pytest.approx(view.panes[0].pixel_size_mm)
 
 
-def test_the_pointer_catches_a_corner_and_holds_it(view: PathView) -> None:
+def test_pointer_snaps_to_corner(view: PathView) -> None:
     view.set_measuring()
     for z, x in ((0.0, 5.0), (-20.0, 5.0)):
         QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=on_widget(view, z, x) + QPoint(4, -3))
@@ -133,7 +133,7 @@ def test_the_pointer_catches_a_corner_and_holds_it(view: PathView) -> None:
     )
 
 
-def test_the_cross_stays_in_sight(view: PathView) -> None:
+def test_cross_remains_visible_after_zoom(view: PathView) -> None:
     view.zoom_view(12)
     view.set_measuring()
     assert view.measurement is not None
@@ -151,7 +151,7 @@ def test_another_program_ends_measuring(view: PathView) -> None:
     assert view.measurement is None
 
 
-def test_nothing_to_measure_without_a_program(view: PathView) -> None:
+def test_measuring_does_not_start_without_program(view: PathView) -> None:
     view.show_picture(None)
     view.set_measuring()
     assert view.measurement is None
@@ -185,7 +185,7 @@ def fingers(view: PathView, device: QPointingDevice, act: str, *places: tuple[in
     with_all.commit()
 
 
-def test_two_fingers_spread_the_picture_and_touch_nothing(view: PathView) -> None:
+def test_two_finger_spread_zooms_and_selects_nothing(view: PathView) -> None:
     device = QTest.createTouchDevice()
     before = view.first_projection
     assert before is not None
@@ -200,7 +200,7 @@ def test_two_fingers_spread_the_picture_and_touch_nothing(view: PathView) -> Non
     assert FOUND == []
 
 
-def test_one_finger_drags_and_touches(view: PathView) -> None:
+def test_single_touch_drags_view_and_selects_line(view: PathView) -> None:
     device = QTest.createTouchDevice()
     at = on_widget(view, -9.0, 5.0)
     fingers(view, device, "press", (at.x(), at.y()))
@@ -216,7 +216,7 @@ def test_one_finger_drags_and_touches(view: PathView) -> None:
     assert view.first_projection == before.shift(40, 0)
 
 
-def test_face_and_side_come_with_a_program_that_has_them(view: PathView) -> None:
+def test_face_and_side_views_appear_for_programs_that_use_them(view: PathView) -> None:
     assert [pane.aspect for pane in view.panes] == [PathAspect.PATH]
     view.select_next_view()
     assert [pane.aspect for pane in view.panes] == [PathAspect.PATH]
@@ -229,7 +229,7 @@ def test_face_and_side_come_with_a_program_that_has_them(view: PathView) -> None
     assert seen == [("PATH", "FACE"), ("PATH", "SIDE"), ("FACE",), ("SIDE",), ("PATH",), ("PATH", "FACE")]
 
 
-def test_the_tip_goes_round_on_the_face_and_along_the_side(view: PathView) -> None:
+def test_tip_is_projected_to_face_and_side_views(view: PathView) -> None:
     view.show_picture(slot())
     view.show_tip(TipPosition(4, -5.0, -5.0, c=90.0))
     path, face = view.panes
@@ -244,7 +244,7 @@ def test_the_tip_goes_round_on_the_face_and_along_the_side(view: PathView) -> No
     )  # C is let go
 
 
-def test_measuring_on_the_face(view: PathView) -> None:
+def test_measuring_on_face_shows_x_y_and_r(view: PathView) -> None:
     view.show_picture(slot())
     view.set_measuring()
     assert view.measurement is not None
@@ -264,7 +264,7 @@ def drawn_in(colour: str, image: QImage, view: PathView, spots: list[tuple[float
     return False
 
 
-def test_before_and_after_are_both_there(view: PathView) -> None:
+def test_comparison_draws_path_before_and_after(view: PathView) -> None:
     wider = picture([(12.0, 2.0), (7.0, 0.0), (7.0, -20.0), (9.0, -20.0)])
     view.show_compared(picture(SHAFT), wider)
     image = settle(view)
@@ -274,7 +274,7 @@ def test_before_and_after_are_both_there(view: PathView) -> None:
     assert not drawn_in(DARK_PALETTE.tip, image, view, [(0.0, 0.0)])  # no tool stands in a comparison
 
 
-def test_zooming_a_comparison_goes_to_the_farthest_change(view: PathView) -> None:
+def test_zoom_in_comparison_centers_on_farthest_change(view: PathView) -> None:
     view.show_compared(picture(SHAFT), picture([(10.0, 2.0), (5.0, 0.0), (5.0, -20.0), (8.004, -20.003)]))
     apart = view.panes[0].largest_distance
     assert apart is not None
@@ -286,13 +286,13 @@ def test_zooming_a_comparison_goes_to_the_farthest_change(view: PathView) -> Non
     settle(view)
 
 
-def test_no_tool_is_drawn_where_nobody_tells_it(view: PathView) -> None:
+def test_tool_is_drawn_only_if_tip_position_is_known(view: PathView) -> None:
     assert not drawn_in(DARK_PALETTE.tip, settle(view), view, [(0.0, 0.0)])
     view.show_tip(TipPosition(0, 0.0, 0.0))
     assert drawn_in(DARK_PALETTE.tip, settle(view), view, [(0.0, 0.0)])
 
 
-def test_both_pictures_fit_into_a_comparison(view: PathView) -> None:
+def test_comparison_fits_both_pictures(view: PathView) -> None:
     view.show_compared(picture([(40.0, 2.0), (40.0, -60.0)]), picture(SHAFT))
     z0, z1, x0, x1 = view.panes[0].find_visible_area()
     assert z0 < -60
@@ -301,7 +301,7 @@ def test_both_pictures_fit_into_a_comparison(view: PathView) -> None:
     assert x1 > 40
 
 
-def test_a_comparison_ends_with_the_next_picture(view: PathView) -> None:
+def test_next_picture_ends_comparison(view: PathView) -> None:
     view.show_compared(picture(SHAFT), picture(SHAFT))
     view.show_picture(picture(SHAFT))
     assert not view.is_comparing
@@ -309,7 +309,7 @@ def test_a_comparison_ends_with_the_next_picture(view: PathView) -> None:
     assert not view.is_comparing
 
 
-def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -> None:
+def test_whole_approach_is_visible_unless_view_was_moved(view: PathView) -> None:
     view.shows_whole_approach = True
     before = view.first_projection
     view.show_approach(
@@ -328,7 +328,7 @@ def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -
     assert view.panes[0].find_visible_area()[1] > 60
 
 
-def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
+def test_approach_is_drawn_and_removed(view: PathView) -> None:
     legs = [
         ApproachLeg(10.0, 12.0),
         ApproachLeg(10.0, 8.0, label="1 X"),
@@ -346,7 +346,7 @@ def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
     assert settle(view) == plain
 
 
-def test_legs_that_lie_on_each_other_have_one_label(view: PathView) -> None:
+def test_overlapping_approach_legs_have_one_label(view: PathView) -> None:
     """A short way beside a long one: no number hides another."""
     spots = [QPointF(300.0, 50.0), QPointF(100.0, 50.0), QPointF(104.0, 52.0), QPointF(98.0, 49.0)]
     one, rest = make_leg_labels(view.theme, spots, ["1 X", "2 Z", "3 X", "4 XZ"])
@@ -356,7 +356,7 @@ def test_legs_that_lie_on_each_other_have_one_label(view: PathView) -> None:
     assert [text for _, text in make_leg_labels(view.theme, spots[:3], ["1 X", "", "3 X"])] == ["1 X", "3 X"]
 
 
-def test_keys_on_the_automatic_page(hands: Hands) -> None:
+def test_measuring_keys_work_on_automatic_page(hands: Hands) -> None:
     hands.load("bushing")
     path = hands.page.path_view
     hands.sees(lambda: path.first_projection is not None)
@@ -372,7 +372,7 @@ def test_keys_on_the_automatic_page(hands: Hands) -> None:
     assert hands.window.hasFocus()
 
 
-def test_while_measuring_the_machine_s_keys_are_the_machine_s(hands: Hands) -> None:
+def test_machine_keys_remain_active_while_measuring(hands: Hands) -> None:
     hands.load("bushing")
     hands.sees(lambda: hands.page.path_view.first_projection is not None)
     hands.both_palms()

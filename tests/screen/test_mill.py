@@ -127,7 +127,7 @@ def line_of(text: str) -> int:
     return next(number for number, line in enumerate(lines, start=1) if text in line)
 
 
-def test_a_tilted_program_from_the_list_to_its_end(mill: Mill) -> None:
+def test_tilted_program_runs_from_list_to_end(mill: Mill) -> None:
     mill.choose("roof")
     page = mill.page
     assert page.plane_view.isVisible()
@@ -146,7 +146,7 @@ def test_a_tilted_program_from_the_list_to_its_end(mill: Mill) -> None:
     assert end.actual[3] == pytest.approx(0.0, abs=0.01)
 
 
-def test_hold_in_the_middle_of_a_swivel_and_go_on(mill: Mill) -> None:
+def test_program_resumes_after_hold_during_swivel(mill: Mill) -> None:
     mill.choose("roof")
     mill.start()
     swivel = line_of("PLANE AXIAL A+30 C+180")
@@ -164,7 +164,7 @@ def test_hold_in_the_middle_of_a_swivel_and_go_on(mill: Mill) -> None:
     assert not end.alarms
 
 
-def test_a_program_given_up_leaves_no_plane_behind(mill: Mill) -> None:
+def test_canceled_program_leaves_no_tilted_plane_active(mill: Mill) -> None:
     mill.choose("roof")
     mill.start()
     cut = line_of("L X+90 F900")
@@ -184,7 +184,7 @@ def test_a_program_given_up_leaves_no_plane_behind(mill: Mill) -> None:
     )
 
 
-def test_keys_of_looking_around_are_the_spaces(mill: Mill) -> None:
+def test_view_keys_control_3d_camera(mill: Mill) -> None:
     mill.choose("roof")
     space = mill.page.plane_view
     assert space.camera is not None
@@ -212,7 +212,7 @@ def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot
     qtbot.waitUntil(lambda: page.plane_view.words.startswith(wanted), timeout=60_000)
 
 
-def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) -> None:
+def test_searchto_shows_table_and_plane_at_line(mill: Mill, qtbot: QtBot) -> None:
     mill.choose("roof")
     mill.key(Key.Key_F6)
     assert mill.window.frame is not None
@@ -253,7 +253,7 @@ def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) ->
         (Key.Key_BracketRight, 4, 1),
     ],
 )
-def test_every_axis_is_jogged_while_its_key_is_held(mill: Mill, key: Key, axis: int, sign: int) -> None:
+def test_every_axis_jogs_while_its_key_is_down(mill: Mill, key: Key, axis: int, sign: int) -> None:
     mill.goes_on(lambda s: s.state is MachineState.DISABLED)
     mill.key(Key.Key_D)
     mill.goes_on(lambda s: s.state is MachineState.IDLE)
@@ -265,7 +265,7 @@ def test_every_axis_is_jogged_while_its_key_is_held(mill: Mill, key: Key, axis: 
     assert all(abs(after[other] - before[other]) < 0.01 for other in range(5) if other != axis)
 
 
-def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
+def test_mill_jog_page_offers_no_tool_setting(mill: Mill) -> None:
     """Tools and presets have pages of their own: no wear Ø, no touch X, no master here."""
     mill.key(Key.Key_F1)
     mill.key(Key.Key_F5)
@@ -292,9 +292,7 @@ def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
     assert frame.title_line.page_title == "TOOL TABLE"
 
 
-def test_a_tool_that_leans_is_drawn_out_along_itself(
-    qapp: QApplication, tmp_path: Path, mill_home: None
-) -> None:
+def test_tilted_tool_retracts_along_its_own_axis(qapp: QApplication, tmp_path: Path, mill_home: None) -> None:
     """The fork head: A is jogged aside, 3D-ROT on, Z' moves Y and Z as -tan A; turning A again ends it."""
     mill = Mill(tmp_path / "store", "fork-head-mill")
     try:

@@ -34,7 +34,7 @@ from tests.texts import Pattern, begins, text
         page_table.ZERO,
     ],
 )
-def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, page: str) -> None:
+def test_interruption_and_full_disk_are_shown_on_every_page(hands: Hands, page: str) -> None:
     hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
     hands.desk.storage_state.set_store_readers(lambda: "the disk is full", lambda: "20 parts")
     hands.frame.open_page(page)
@@ -54,7 +54,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     assert not rows.isVisible()
 
 
-def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
+def test_notice_row_does_not_move_target_during_jog_by_touch(hands: Hands) -> None:
     time = [100.0]
     hands.desk.station_controls.clock = lambda: time[0]
     hands.frame.open_page(page_table.JOG)
@@ -74,7 +74,7 @@ def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     assert hands.frame.notice_rows.isVisible()
 
 
-def test_what_was_done_of_an_interrupted_program_stays_drawn(hands: Hands) -> None:
+def test_executed_part_of_interrupted_program_remains_drawn(hands: Hands) -> None:
     hands.load("pin")
     job = hands.desk.program_loader.loaded.job
     assert job is not None
@@ -91,7 +91,7 @@ def test_what_was_done_of_an_interrupted_program_stays_drawn(hands: Hands) -> No
     assert hands.page.path_view._tip.active_block == 0
 
 
-def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
+def test_touch_on_notice_row_acts_like_its_key(hands: Hands) -> None:
     hands.load("pin")
     hands.machine.now = replace(
         hands.machine.now, interrupted=broken_off(program="pin.nc"), state=MachineState.IDLE
@@ -106,7 +106,7 @@ def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
 
 
 @pytest.mark.parametrize("page", [page_table.AUTOMATIC, page_table.JOG, page_table.SPECIAL, page_table.TOOLS])
-def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: str) -> None:
+def test_unresponsive_machine_is_shown_on_every_page(hands: Hands, page: str) -> None:
     hands.frame.open_page(page)
     hands.machine.now = replace(hands.machine.now, unknown=ALL_UNKNOWN_PARTS)
     hands.window.refresh()
@@ -120,7 +120,7 @@ def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: s
     assert row.text == text("screen.machine-not-heard", what="OUTPUTS")
 
 
-def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notice_row_with_key_is_touch_sized(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     told = (NoticeRow("INTERRUPTED", "T1", (("F6", "SEARCHTO"),)), NoticeRow("NOT SAVED", "20 parts"))
     monkeypatch.setattr(hands.frame, "_make_notices", lambda *_what, **_more: told)
     hands.window.refresh()
@@ -138,7 +138,7 @@ def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pyte
 
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize(("unit", "wide"), [(6.4, 858), (8.0, 1070), (10.8, 1610)])
-def test_what_is_not_certain_behind_a_power_cut_is_whole_beside_its_keys(
+def test_uncertain_state_after_power_cut_is_shown_in_full_next_to_keys(
     qapp: QApplication, monkeypatch: pytest.MonkeyPatch, unit: float, wide: int, language: str
 ) -> None:
     """At 1024x600 and 1280x800 its last words, to look at tool and part, were cut off."""

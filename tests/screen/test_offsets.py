@@ -58,7 +58,7 @@ def answer(hands: Hands, *texts: str) -> None:
         hands.key(Key.Key_Return)
 
 
-def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, store: Store) -> None:
+def test_correction_is_entered_shown_and_used_in_next_cycle(hands: Hands, store: Store) -> None:
     hands.load("bushing")
     hands.key(Key.Key_F9)
     page = page_of(hands)
@@ -84,7 +84,7 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     assert job.setup.secondary[1].x == pytest.approx(-0.001 * 25.4)
 
 
-def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
+def test_rejected_entry_is_explained_and_remains_for_correction(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
     answer(hands, "2", "0,5")
@@ -100,7 +100,7 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     assert store.offsets.secondary_offsets.read_rows()[2].x == pytest.approx(0.0025 * 25.4)
 
 
-def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, store: Store) -> None:
+def test_signs_and_c_are_entry_keys_not_switches(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     before = (hands.desk.station_controls.feed_pot.wanted, hands.desk.station_controls.spindle_pot.wanted)
     hands.type("1+1-/.,")
@@ -119,7 +119,7 @@ def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, s
     assert not shows(hands.prompt(), "screen.entry-key")
 
 
-def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: Store) -> None:
+def test_clear_asks_once_and_undo_restores_everything(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
     for number in ("1", "32"):
@@ -144,7 +144,7 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
     hands.sees(lambda: sorted(page.table_panel.offsets) == [1, 32])
 
 
-def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
+def test_history_is_scrolled_and_closed(hands: Hands, store: Store) -> None:
     for step in range(40):
         store.offsets.secondary_offsets.change_row(1, f"change {step}", {"z": step + 1.0})
     store.write(lambda _connection: None).result(60)
@@ -194,7 +194,7 @@ def renewals(hands: Hands) -> list[ChangeOffsets]:
     return [command for command in hands.machine.posted if isinstance(command, ChangeOffsets)]
 
 
-def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
+def test_offsets_are_metric_if_control_is_metric(hands: Hands, store: Store) -> None:
     store.offsets.secondary_offsets.change_row(1, "inch", {"z": 2.54}).result(60)
     use_store(hands.desk, store)
     hands.key(Key.Key_F9)
@@ -224,7 +224,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     assert store.offsets.tool_offsets.read_rows()[9].nose_radius == 0.0156 * 25.4
 
 
-def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
+def test_wear_is_entered_between_two_parts(hands: Hands, store: Store) -> None:
     store.offsets.tool_offsets.change_row(1, "touched off", {"x": -12.7, "z": -76.2}).result(60)
     use_store(hands.desk, store)
     hands.load("pin")
@@ -244,7 +244,7 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.offsets.tool_offsets.read_rows()[1].wear_x == pytest.approx(-0.00025 * 25.4))
 
 
-def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
+def test_remark_accepts_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
     store.offsets.tool_offsets.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
     use_store(hands.desk, store)
     hands.key(Key.Key_F8)
@@ -259,7 +259,7 @@ def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store:
     assert not hands.machine.now.single_block
 
 
-def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
+def test_remark_is_typed_by_touch(hands: Hands, store: Store) -> None:
     """The pad has figures; a text had no letters, and none of it could be typed."""
     store.offsets.tool_offsets.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
     use_store(hands.desk, store)
@@ -280,13 +280,13 @@ def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     )
 
 
-def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
+def test_offset_change_without_store_is_rejected(hands: Hands) -> None:
     hands.key(Key.Key_F9)
     answer(hands, "1")
     hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
 
 
-def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
+def test_offset_is_entered_by_touch_only(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
     hands.sees(lambda: len(page.table_panel._places) == 4)
@@ -319,7 +319,7 @@ def touch(hands: Hands, panel: Panel, place: int) -> None:
 
 @pytest.mark.parametrize(("zone", "first"), [(0, 1), (1, 9), (2, 17), (3, 25)])
 @pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
-def test_every_offset_is_reached_by_a_finger(
+def test_every_offset_is_reached_by_touch(
     hands: Hands, store: Store, zone: int, first: int, size: tuple[int, int]
 ) -> None:
     hands.window.resize(*size)
@@ -332,7 +332,7 @@ def test_every_offset_is_reached_by_a_finger(
         hands.key(Key.Key_Escape)
 
 
-def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: Hands, store: Store) -> None:
+def test_enlarged_offsets_close_by_touch_and_by_esc(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
     touch(hands, page.table_panel, 1)
@@ -348,7 +348,7 @@ def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: H
     assert page.model.offset_number == 7
 
 
-def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store: Store) -> None:
+def test_effect_is_shown_for_entered_and_for_saved_change(hands: Hands, store: Store) -> None:
     hands.load("bushing")
     hands.key(Key.Key_F9)
     page = page_of(hands)
@@ -382,13 +382,13 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     assert hands.frame.current_page is page
 
 
-def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store) -> None:
+def test_effect_is_not_shown_without_program(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F6)
     assert begins(hands.prompt(), "screen.load-program-for-effect")
 
 
-def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: Store) -> None:
+def test_tools_are_scrolled_and_cells_selected_by_touch(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
     table = tools_of(hands).table_panel
     touch(hands, table, 1)  # a page down

@@ -31,21 +31,21 @@ def left_alone(hands: Hands) -> None:
 @pytest.mark.parametrize(
     "state", [MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT]
 )
-def test_a_machine_at_rest_that_nobody_touches_is_drawn_less_often(hands: Hands, state: MachineState) -> None:
+def test_idle_machine_is_drawn_less_often(hands: Hands, state: MachineState) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
     assert interval(hands) == FRAME_MS
     left_alone(hands)
     hands.sees(lambda: interval(hands) == AT_REST_FRAME_MS)
 
 
-def test_the_first_key_ends_it_before_it_is_judged(hands: Hands) -> None:
+def test_first_key_restores_frame_rate_before_it_is_processed(hands: Hands) -> None:
     left_alone(hands)
     hands.window._timer.timeout.disconnect()  # no frame comes in between
     QTest.keyClick(hands.window.windowHandle(), Key.Key_Shift)  # it does nothing by itself
     assert interval(hands) == FRAME_MS
 
 
-def test_a_change_of_the_machine_ends_it_from_any_thread(
+def test_machine_change_restores_frame_rate_from_any_thread(
     hands: Hands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     left_alone(hands)
@@ -65,13 +65,17 @@ def test_a_change_of_the_machine_ends_it_from_any_thread(
         set(MachineState) - {MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT}
     ),
 )
-def test_whatever_may_move_is_drawn_sixty_times_a_second(hands: Hands, state: MachineState) -> None:
+def test_states_with_possible_motion_are_drawn_sixty_times_per_second(
+    hands: Hands, state: MachineState
+) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
     left_alone(hands)
     assert interval(hands) == FRAME_MS
 
 
-def test_the_handwheel_and_a_page_that_lives_are_too(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_handwheel_and_animated_page_are_drawn_at_full_rate(
+    hands: Hands, monkeypatch: pytest.MonkeyPatch
+) -> None:
     hands.machine.now = replace(hands.machine.now, wheel="X")
     left_alone(hands)
     assert interval(hands) == FRAME_MS
@@ -83,7 +87,7 @@ def test_the_handwheel_and_a_page_that_lives_are_too(hands: Hands, monkeypatch: 
     assert interval(hands) == FRAME_MS
 
 
-def test_a_motion_is_seen_with_the_next_frame(hands: Hands) -> None:
+def test_motion_is_visible_in_next_frame(hands: Hands) -> None:
     left_alone(hands)
     hands.machine.now = replace(hands.machine.now, state=MachineState.JOG)
     left_alone(hands)
@@ -131,16 +135,16 @@ def counted(hands: Hands) -> Counted:
     return Counted(hands)
 
 
-def test_a_picture_in_which_nothing_is_new_is_not_made(counted: Counted) -> None:
+def test_unchanged_picture_is_not_drawn_again(counted: Counted) -> None:
     assert [counted.tick() for _ in range(5)] == [0] * 5
 
 
-def test_all_is_looked_at_twice_a_second_all_the_same(counted: Counted) -> None:
+def test_unchanged_screen_is_refreshed_after_maximum_age(counted: Counted) -> None:
     counted.tick(MAX_REFRESH_AGE_S + 0.01)
     assert counted.frames == 1
 
 
-def test_what_is_new_but_for_the_time_is_in_the_next_picture(hands: Hands, counted: Counted) -> None:
+def test_change_other_than_time_is_drawn_in_next_frame(hands: Hands, counted: Counted) -> None:
     machine = hands.machine
     machine.now = replace(machine.now, t=machine.now.t + 0.1)
     assert counted.tick() == 0
@@ -148,22 +152,22 @@ def test_what_is_new_but_for_the_time_is_in_the_next_picture(hands: Hands, count
     assert counted.tick() == 1
 
 
-def test_another_program_is_in_the_next_picture(hands: Hands, counted: Counted) -> None:
+def test_another_program_is_drawn_in_next_frame(hands: Hands, counted: Counted) -> None:
     hands.desk.program_loader.replace_loaded(replace(hands.desk.program_loader.loaded, progress=7))
     assert counted.tick() == 1
 
 
-def test_what_was_drawn_may_not_be_done_and_is_looked_at_again(hands: Hands, counted: Counted) -> None:
+def test_repaint_causes_one_more_refresh(hands: Hands, counted: Counted) -> None:
     hands.frame.prompt_line.repaint()
     assert [counted.tick() for _ in range(2)] == [1, 0]
 
 
 @pytest.mark.usefixtures("stalls")
-def test_behind_a_stall_what_is_to_be_seen_is_shown_before_anything_starts(counted: Counted) -> None:
+def test_screen_is_refreshed_after_stall_before_anything_starts(counted: Counted) -> None:
     assert [counted.tick(after) for after in (0.31, 0.001, 0.001)] == [1, 1, 0]
 
 
-def test_a_page_that_plays_is_not_played_where_nobody_can_see_it(
+def test_animated_page_is_not_animated_while_minimized(
     hands: Hands, counted: Counted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(hands.page, "is_animating", lambda: True)

@@ -17,12 +17,12 @@ from tests.texts import begins, text
 
 
 @pytest.mark.parametrize("entry", ALL_PAGES, ids=lambda entry: entry.name)
-def test_every_page_of_the_table_is_there(entry: PageDescription) -> None:
+def test_every_page_in_table_exists(entry: PageDescription) -> None:
     assert entry.name == import_class(entry.view_class).NAME
     assert not entry.model_class or callable(import_class(entry.model_class).close)
 
 
-def test_f1_leads_to_the_menu_and_f2_and_escape_back(hands: Hands) -> None:
+def test_f1_opens_menu_and_f2_and_esc_return(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     assert hands.frame.current_page.NAME == page_table.MENU
     assert hands.frame.title_line.page_title == page_table.MENU
@@ -35,7 +35,7 @@ def test_f1_leads_to_the_menu_and_f2_and_escape_back(hands: Hands) -> None:
     assert hands.frame.current_page is hands.page
 
 
-def test_a_finger_opens_a_page_by_its_function_key(hands: Hands) -> None:
+def test_touch_on_function_key_opens_page(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     bar = hands.frame.key_bar
     hands.sees(lambda: bool(bar._places))
@@ -43,7 +43,7 @@ def test_a_finger_opens_a_page_by_its_function_key(hands: Hands) -> None:
     assert hands.frame.current_page is hands.page
 
 
-def test_no_cycle_starts_beside_the_automatic_page(hands: Hands) -> None:
+def test_cycle_starts_only_on_automatic_page(hands: Hands) -> None:
     hands.load("pin")
     hands.key(Key.Key_F1)
     hands.both_palms()
@@ -54,7 +54,7 @@ def test_no_cycle_starts_beside_the_automatic_page(hands: Hands) -> None:
     assert CycleStart() in hands.machine.posted
 
 
-def test_hold_works_on_every_page_and_the_figures_stay(hands: Hands) -> None:
+def test_feed_hold_works_on_every_page(hands: Hands) -> None:
     hands.load("pin")
     hands.both_palms()
     hands.key(Key.Key_F1)
@@ -68,7 +68,7 @@ def test_hold_works_on_every_page_and_the_figures_stay(hands: Hands) -> None:
     hands.sees_state(MachineState.HOLD)
 
 
-def test_a_palm_held_while_the_page_changes_is_let_go(hands: Hands) -> None:
+def test_page_change_releases_palm_button(hands: Hands) -> None:
     hands.load("pin")
     hands.down(Key.Key_F11)
     hands.key(Key.Key_F1)
@@ -76,7 +76,7 @@ def test_a_palm_held_while_the_page_changes_is_let_go(hands: Hands) -> None:
     hands.up(Key.Key_F11)
 
 
-def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
+def test_alarm_has_priority_over_page_prompt(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
     hands.sees(lambda: begins(hands.prompt(), "screen.what-to-do", remedy="free the slide"))
@@ -95,7 +95,7 @@ def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
     assert hands.frame.current_page.NAME == page_table.MENU
 
 
-def test_the_run_stays_in_sight_on_every_other_page(hands: Hands) -> None:
+def test_run_line_is_visible_on_every_other_page(hands: Hands) -> None:
     hands.load("bushing")
     assert not hands.frame.run_line.isVisible()  # the Automatic page has it all in large
     hands.machine.step = 0.2  # so that it takes some pictures, however slowly they come
@@ -116,7 +116,7 @@ def test_the_run_stays_in_sight_on_every_other_page(hands: Hands) -> None:
         hands.frame.run_line.grab()
 
 
-def test_a_function_key_without_a_label_says_so(hands: Hands) -> None:
+def test_function_key_without_label_shows_message(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.key(Key.Key_F10)
     hands.key(Key.Key_F8)
@@ -124,7 +124,7 @@ def test_a_function_key_without_a_label_says_so(hands: Hands) -> None:
     assert hands.prompt() == text("screen.no-function", key="F8")
 
 
-def test_f7_looks_through_the_stops_and_esc_closes_it(hands: Hands) -> None:
+def test_f7_scrolls_list_of_stops_and_esc_closes_it(hands: Hands) -> None:
     for line in range(40):
         alarm = Alarm(102, "following", "FOLLOWING ERROR", f"cause {line}", "free the slide", line=line)
         hands.desk.hear(LogEvent(0.0, "alarm", "", line, alarm))

@@ -84,7 +84,7 @@ def entries(monkeypatch: pytest.MonkeyPatch, found: tuple[PageDescription, ...])
     monkeypatch.setattr(page_table, "list_pages", lambda _language: found)
 
 
-def test_a_page_with_charts_is_made_slice_by_slice(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_page_with_charts_is_created_in_slices(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -94,7 +94,7 @@ def test_a_page_with_charts_is_made_slice_by_slice(idle: Desk, monkeypatch: pyte
     ahead.close()
 
 
-def test_other_pages_are_only_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_pages_are_only_imported(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, PLAIN)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -103,7 +103,7 @@ def test_other_pages_are_only_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch
     ahead.close()
 
 
-def test_nothing_is_done_while_a_program_is_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_preloaded_while_program_is_loading(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -118,7 +118,7 @@ def test_nothing_is_done_while_a_program_is_loaded(idle: Desk, monkeypatch: pyte
     ahead.close()
 
 
-def test_frames_between_two_slices_have_nothing_of_it(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_slices_wait_for_minimum_interval(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -130,9 +130,7 @@ def test_frames_between_two_slices_have_nothing_of_it(idle: Desk, monkeypatch: p
     ahead.close()
 
 
-def test_a_page_that_cannot_be_loaded_is_left_to_whoever_opens_it(
-    idle: Desk, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unloadable_page_is_skipped_without_message(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, NO_FILE + PLAIN)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -142,7 +140,7 @@ def test_a_page_that_cannot_be_loaded_is_left_to_whoever_opens_it(
     ahead.close()
 
 
-def test_a_page_without_its_model_is_not_made(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_page_without_model_is_not_created(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, (replace(ONE[0], model_class="core.executor.scope_recorder.ScopeRecorder"),))
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -151,7 +149,7 @@ def test_a_page_without_its_model_is_not_made(idle: Desk, monkeypatch: pytest.Mo
     ahead.close()
 
 
-def test_nothing_begins_once_it_is_closed(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_closed_preloader_starts_nothing(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
@@ -161,12 +159,12 @@ def test_nothing_begins_once_it_is_closed(idle: Desk, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("language", ["omniturn", "klartext", "sinumerik"])
-def test_everything_that_is_named_can_be_loaded(language: str) -> None:
+def test_every_page_class_can_be_imported(language: str) -> None:
     for entry in page_table.list_pages(language):
         page_table.import_page_classes(entry)
 
 
-def test_the_scope_opens_with_its_chart(hands: Hands) -> None:
+def test_scope_opens_with_preloaded_chart(hands: Hands) -> None:
     hands.sees(lambda: hands.window.page_preloader is not None and hands.window.page_preloader.is_done)
     assert hands.frame.current_page is hands.page, "nothing is opened by it"
     QTest.keyClick(hands.window, Qt.Key.Key_F10, Qt.KeyboardModifier.ShiftModifier)

@@ -36,7 +36,7 @@ def page(day: Day) -> PartPage:
     return found
 
 
-def test_a_finding_stands_the_part_at_its_place(day: Day) -> None:
+def test_selected_finding_moves_part_view_to_its_line(day: Day) -> None:
     shown = page(day)
     day.sees(lambda: shown.path_view.is_part_shown)
     player = shown.path_view.part_player
@@ -49,7 +49,7 @@ def test_a_finding_stands_the_part_at_its_place(day: Day) -> None:
     day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 11)
 
 
-def test_a_bar_is_said_by_fingers(day: Day) -> None:
+def test_bar_stock_is_entered_by_touch(day: Day) -> None:
     shown = page(day)
     day.key(Key.Key_F2)
     day.sees(lambda: shown.table_panel.table.title.startswith("STOCK"))
@@ -66,7 +66,7 @@ def test_a_bar_is_said_by_fingers(day: Day) -> None:
     assert day.desk.program_loader.loaded.diagnostics[-1].assumptions == ()
 
 
-def test_letters_are_a_reason_while_one_is_asked(day: Day) -> None:
+def test_letters_are_text_while_a_reason_is_asked(day: Day) -> None:
     shown = page(day)
     day.key(Key.Key_F4)
     day.sees(lambda: not shown.letter_pad.isHidden())

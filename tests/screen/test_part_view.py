@@ -65,7 +65,7 @@ def colour(view: PathView, image: QImage, z: float, x: float) -> set[str]:
 
 
 @pytest.mark.parametrize("x", [0.2, -0.2])
-def test_metal_is_on_both_sides_of_the_centre_line(view: PathView, x: float) -> None:
+def test_material_is_drawn_on_both_sides_of_center_line(view: PathView, x: float) -> None:
     image = shown(view, SHAFT)
     assert DARK_PALETTE.key in colour(view, image, -0.2, x)  # hatched metal
     assert DARK_PALETTE.key in colour(view, image, -0.4, 2 * x * 0.9)
@@ -73,7 +73,7 @@ def test_metal_is_on_both_sides_of_the_centre_line(view: PathView, x: float) -> 
     assert DARK_PALETTE.key not in colour(view, image, 0.15, x)  # before the face
 
 
-def test_in_the_light_theme_too(view: PathView) -> None:
+def test_material_is_drawn_in_light_theme(view: PathView) -> None:
     view.theme.set_palette(LIGHT_PALETTE)
     view.redraw()
     image = shown(view, SHAFT)
@@ -81,13 +81,13 @@ def test_in_the_light_theme_too(view: PathView) -> None:
 
 
 @pytest.mark.parametrize("x", [0.35, -0.35])
-def test_what_a_rapid_has_hit_is_red(view: PathView, x: float) -> None:
+def test_collision_of_rapid_is_drawn_red(view: PathView, x: float) -> None:
     image = shown(view, RAPID)
     assert DARK_PALETTE.alarm in colour(view, image, -0.2, x)
     assert DARK_PALETTE.alarm not in colour(view, shown(view, SHAFT), -0.2, x)
 
 
-def test_fingers_play_and_step_and_go_along_the_line(view: PathView) -> None:
+def test_touch_plays_steps_and_moves_along_timeline(view: PathView) -> None:
     shown(view, SHAFT)
     player = view.part_player
     assert player is not None
@@ -106,7 +106,7 @@ def test_fingers_play_and_step_and_go_along_the_line(view: PathView) -> None:
     assert player.time_s == pytest.approx(player.duration_s, rel=0.01)
 
 
-def test_while_the_run_leads_the_line_is_not_for_fingers(view: PathView) -> None:
+def test_timeline_ignores_touch_while_it_follows_run(view: PathView) -> None:
     shown(view, SHAFT)
     player = view.part_player
     assert player is not None
@@ -117,7 +117,7 @@ def test_while_the_run_leads_the_line_is_not_for_fingers(view: PathView) -> None
     assert player.time_s == before
 
 
-def test_the_tool_stands_where_the_run_is(view: PathView) -> None:
+def test_tool_is_drawn_at_position_of_run(view: PathView) -> None:
     shown(view, SHAFT)
     assert view.picture is not None
     assert view.part_player is not None
@@ -130,7 +130,7 @@ def test_the_tool_stands_where_the_run_is(view: PathView) -> None:
     assert now.part_instant.tool.control_point == pytest.approx((-0.225 * INCH, 0.4 * INCH))
 
 
-def test_zoom_pan_and_fit_are_those_of_the_path(view: PathView) -> None:
+def test_zoom_pan_and_fit_work_as_in_path_view(view: PathView) -> None:
     shown(view, SHAFT)
     before = view.first_projection
     view.zoom_view(1)
@@ -140,14 +140,14 @@ def test_zoom_pan_and_fit_are_those_of_the_path(view: PathView) -> None:
     assert view.first_projection == before
 
 
-def test_another_program_leaves_the_part_in_view(view: PathView) -> None:
+def test_part_view_remains_for_another_program(view: PathView) -> None:
     shown(view, SHAFT)
     view.show_picture(picture(RAPID))
     assert view.is_part_shown
     assert DARK_PALETTE.alarm in colour(view, settled(view), -0.2, 0.35)
 
 
-def test_without_a_player_there_is_only_the_path(qtbot: QtBot) -> None:
+def test_only_path_view_exists_without_player(qtbot: QtBot) -> None:
     made = PathView(ScreenTheme(DARK_PALETTE, 8.0))
     qtbot.addWidget(made)
     made.show_picture(picture(SHAFT))
@@ -156,7 +156,7 @@ def test_without_a_player_there_is_only_the_path(qtbot: QtBot) -> None:
     assert not made.has_several_views
 
 
-def test_what_cannot_be_made_is_told_in_the_pane(view: PathView, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_part_error_is_shown_in_pane_title(view: PathView, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_given: object) -> None:
         raise ValueError("no such tool")
 
@@ -173,7 +173,7 @@ def test_without_a_program_nothing_is_played(view: PathView) -> None:
 
 
 @pytest.mark.parametrize("aspect", [PathAspect.SECTION, PathAspect.SOLID])
-def test_measuring_goes_on_in_the_part(view: PathView, aspect: PathAspect) -> None:
+def test_measuring_continues_in_part_view(view: PathView, aspect: PathAspect) -> None:
     shown(view, SHAFT)
     while view.panes[0].aspect is not aspect:
         view.select_next_view()
@@ -187,7 +187,7 @@ def test_measuring_goes_on_in_the_part(view: PathView, aspect: PathAspect) -> No
     assert view.panes[0].aspect is aspect
 
 
-def test_nobody_makes_a_part_that_nobody_looks_at(view: PathView) -> None:
+def test_part_is_not_calculated_while_it_is_not_visible(view: PathView) -> None:
     view.show_picture(picture(SHAFT))
     view.draw_slice()
     assert view.part_player is not None
@@ -215,7 +215,7 @@ def drawn(view: PathView) -> int:
     return int((now.image >> 24 > 0).sum())
 
 
-def test_the_solid_fills_its_pane_and_turns_with_a_finger(view: PathView) -> None:
+def test_solid_fills_its_pane_and_is_rotated_by_touch(view: PathView) -> None:
     before = solid(view, SHAFT)
     room = view.panes[0].area
     assert drawn(view) > 0.2 * room.height() ** 2
@@ -227,7 +227,7 @@ def test_the_solid_fills_its_pane_and_turns_with_a_finger(view: PathView) -> Non
     assert settled(view) != before
 
 
-def test_keys_that_pan_turn_the_solid_and_stop_before_its_end(view: PathView) -> None:
+def test_pan_keys_rotate_solid_up_to_a_limit(view: PathView) -> None:
     solid(view, SHAFT)
     assert view.part_player is not None
     first = view.part_player._wanted.solid_request
@@ -243,7 +243,7 @@ def test_keys_that_pan_turn_the_solid_and_stop_before_its_end(view: PathView) ->
     assert steepest.view.azimuth_deg == 85.0
 
 
-def test_what_a_rapid_has_hit_is_red_in_space(view: PathView) -> None:
+def test_collision_of_rapid_is_red_in_3d_view(view: PathView) -> None:
     def reds(image: QImage) -> int:
         colours = (
             QColor(image.pixel(x, y)) for x in range(0, image.width(), 4) for y in range(0, image.height(), 4)
@@ -253,7 +253,7 @@ def test_what_a_rapid_has_hit_is_red_in_space(view: PathView) -> None:
     assert reds(solid(view, RAPID)) > reds(solid(view, SHAFT)) + 20
 
 
-def test_c_turns_the_solid_while_it_is_held(view: PathView) -> None:
+def test_c_key_rotates_solid_while_pressed(view: PathView) -> None:
     solid(view, SHAFT)
     view.show_tip(TipPosition(3, 0.0, 5.0, c=30.0))
     assert view.part_player is not None
@@ -262,7 +262,7 @@ def test_c_turns_the_solid_while_it_is_held(view: PathView) -> None:
     assert wanted.view.roll_deg == 30.0
 
 
-def test_without_metal_there_is_no_solid(view: PathView) -> None:
+def test_no_solid_is_drawn_without_removed_material(view: PathView) -> None:
     shown(view, "G90G94F300\nM03S1500\nT1\nX2Z2\nM30\n")
     while view.panes[0].aspect is not PathAspect.SOLID:
         view.select_next_view()
@@ -273,7 +273,7 @@ def test_without_metal_there_is_no_solid(view: PathView) -> None:
     assert now.image is None
 
 
-def test_after_the_solid_it_is_seen_open_and_then_the_path_comes_again(view: PathView) -> None:
+def test_next_view_after_solid_is_open_solid_and_then_path(view: PathView) -> None:
     whole = solid(view, SHAFT)
     view.select_next_view()
     assert [pane.aspect for pane in view.panes] == [PathAspect.OPEN_SOLID]
@@ -283,7 +283,7 @@ def test_after_the_solid_it_is_seen_open_and_then_the_path_comes_again(view: Pat
 
 
 @pytest.mark.parametrize("tilt", range(-180, 180, 15))
-def test_the_quarter_that_is_taken_out_is_on_the_side_that_is_looked_at(tilt: int) -> None:
+def test_removed_quarter_faces_the_viewer(tilt: int) -> None:
     first, last = find_removed_quarter(float(tilt))
     assert last - first == 90.0
     assert -180.0 <= first < last <= 180.0
@@ -292,7 +292,7 @@ def test_the_quarter_that_is_taken_out_is_on_the_side_that_is_looked_at(tilt: in
     assert -tilt in {first, last}  # the plane of turning, on the operator's side
 
 
-def test_the_chuck_is_drawn_where_it_stands(view: PathView) -> None:
+def test_chuck_is_drawn_at_its_position(view: PathView) -> None:
     bare = picture(SHAFT)
     assert bare.part is not None
     held = replace(bare.part, part_settings=replace(bare.part.part_settings, clamping=Clamping(60.0, 8.0)))

@@ -58,13 +58,13 @@ SHAFT = picture(
 )
 
 
-def test_x_goes_down_and_z_goes_right() -> None:
+def test_x_points_down_and_z_points_right() -> None:
     assert FRAME.find_row(4.0) > FRAME.find_row(0.0)
     assert FRAME.find_column(4.0) > FRAME.find_column(0.0)
     assert (FRAME.find_column(0.0), FRAME.find_row(0.0)) == (200, 100)
 
 
-def test_fitting_shows_both_sides_of_the_centre_line() -> None:
+def test_fit_shows_both_sides_of_center_line() -> None:
     frame = fit_mirrored((-10.0, 5.0, 0.0, 8.0), 400, 200, 10)
     assert frame.find_row(8.0) <= 190
     assert frame.find_row(-8.0) >= 10
@@ -72,23 +72,23 @@ def test_fitting_shows_both_sides_of_the_centre_line() -> None:
     assert frame.find_column(5.0) <= 390
 
 
-def test_fitting_nothing_still_gives_a_frame() -> None:
+def test_fit_of_empty_area_gives_valid_frame() -> None:
     assert fit_mirrored((0.0, 0.0, 0.0, 0.0), 400, 200, 10).pixels_per_mm > 0
 
 
-def test_zooming_keeps_what_is_under_the_pointer() -> None:
+def test_zoom_leaves_point_under_pointer_in_place() -> None:
     near = FRAME.magnify(3.0, 300.0, 40.0)
     assert near.find_column(10.0) == pytest.approx(300.0)  # z = 10 was at column 300
     assert near.find_row(-6.0) == pytest.approx(40.0)
     assert near.pixels_per_mm == pytest.approx(30.0)
 
 
-def test_zooming_has_ends() -> None:
+def test_zoom_is_limited() -> None:
     assert FRAME.magnify(1e9, 0, 0).pixels_per_mm == 5000.0
     assert FRAME.magnify(1e-9, 0, 0).pixels_per_mm == 0.02
 
 
-def test_neighbouring_strokes_of_a_kind_are_one_run() -> None:
+def test_adjacent_strokes_of_same_kind_form_one_run() -> None:
     found = list(project_runs(SHAFT, FRAME, 0, 4))
     assert [run.stroke_kind for run in found] == [Stroke.RAPID, Stroke.TURN]
     assert found[1].columns.tolist() == [250, 100, 100]
@@ -106,7 +106,7 @@ def test_a_jump_is_not_drawn() -> None:
     assert [run.columns.tolist() for run in project_runs(jumps, FRAME, 0, 4)] == [[200, 210], [250, 260]]
 
 
-def test_what_falls_on_one_pixel_is_thinned_out_and_the_ends_stay() -> None:
+def test_points_on_same_pixel_are_thinned_and_end_points_remain() -> None:
     z = np.linspace(0, 10, 100_001)
     dense = picture([(float(k), 1.0, Stroke.TURN if k else Stroke.JUMP) for k in z], [0, 100_001])
     (run,) = project_runs(dense, FRAME, 0, 100_001)
@@ -114,16 +114,16 @@ def test_what_falls_on_one_pixel_is_thinned_out_and_the_ends_stay() -> None:
     assert run.columns[-1] == 300
 
 
-def test_what_lies_beyond_an_edge_is_left_out() -> None:
+def test_runs_outside_frame_are_left_out() -> None:
     assert list(project_runs(SHAFT, FRAME.shift(5000, 0), 0, 4)) == []
 
 
-def test_polygon_holds_the_points() -> None:
+def test_polygon_contains_the_points() -> None:
     shape = make_polygon(np.array([1.0, 2.5]), np.array([3.0, 4.0]))
     assert [(point.x(), point.y()) for point in shape.toList()] == [(1.0, 3.0), (2.5, 4.0)]
 
 
-def test_travelled_ends_at_the_tip() -> None:
+def test_progress_ends_at_tip() -> None:
     run = project_progress(SHAFT, FRAME, 2, -4.0, 4.0)
     assert run is not None
     assert (run.columns.tolist(), run.rows.tolist()) == ([250, 160], [140, 140])
@@ -160,7 +160,7 @@ def drawn(layers: PathLayers) -> QImage:
     return layers.image
 
 
-def test_done_is_drawn_over_to_come_and_a_new_cycle_starts_again() -> None:
+def test_executed_path_covers_remaining_path_and_new_cycle_clears_it() -> None:
     layers = PathLayers(ScreenTheme(DARK_PALETTE, 12.0), SHAFT, FRAME)
     assert colour(drawn(layers), -2.0, 4.0) == DARK_PALETTE.todo
     layers.request_blocks(2)
@@ -170,7 +170,7 @@ def test_done_is_drawn_over_to_come_and_a_new_cycle_starts_again() -> None:
     assert colour(drawn(layers), -2.0, 4.0) == DARK_PALETTE.todo
 
 
-def test_the_far_side_shows_what_is_turned_and_no_rapid() -> None:
+def test_far_side_shows_turning_moves_and_no_rapids() -> None:
     image = drawn(PathLayers(ScreenTheme(DARK_PALETTE, 12.0), SHAFT, FRAME))
     assert colour(image, -2.0, -4.0) == DARK_PALETTE.ghost
     assert colour(image, 5.0, -6.0) == DARK_PALETTE.panel
@@ -185,7 +185,7 @@ def zigzag(blocks: int) -> ProgramPicture:
     return picture(made, list(range(1, blocks + 2)))
 
 
-def test_many_strokes_are_drawn_too() -> None:
+def test_path_with_many_strokes_is_drawn() -> None:
     many = zigzag(2 * MAX_SMOOTH_CHORDS)
     layers = PathLayers(ScreenTheme(DARK_PALETTE, 12.0), many, FRAME)
     seen = {colour(drawn(layers), -5.0, x) for x in np.linspace(4.2, 5.8, 33)}
@@ -195,7 +195,7 @@ def test_many_strokes_are_drawn_too() -> None:
     assert DARK_PALETTE.done in {colour(drawn(layers), z, 5.0) for z in np.linspace(-9, -1, 60)}
 
 
-def test_long_strokes_are_drawn_few_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_strokes_are_drawn_in_small_slices(monkeypatch: pytest.MonkeyPatch) -> None:
     there_and_back = [(-30.0 * (k % 2), 4.0, Stroke.TURN) for k in range(2 * MAX_SMOOTH_CHORDS)]
     path = picture(there_and_back, list(range(1, len(there_and_back) + 1)))
     parts: list[tuple[int, int]] = []
@@ -217,7 +217,7 @@ def test_long_strokes_are_drawn_few_at_a_time(monkeypatch: pytest.MonkeyPatch) -
     )
 
 
-def test_lines_are_cut_at_the_edges_of_the_image() -> None:
+def test_lines_are_clipped_at_image_edges() -> None:
     ends = ChordEnds(
         start_columns=np.array([-50.0, 5.0, 0.0, 30.0]),
         start_rows=np.array([5.0, -9.0, 20.0, 5.0]),
@@ -230,20 +230,20 @@ def test_lines_are_cut_at_the_edges_of_the_image() -> None:
     assert (cut.start_rows.tolist(), cut.end_rows.tolist()) == ([5.0, 0.0], [5.0, 8.0])
 
 
-def test_a_line_has_no_holes() -> None:
+def test_rasterized_line_has_no_gaps() -> None:
     column, row, which = rasterize_chords(ChordEnds(*(np.array([v]) for v in (0.0, 0.0, 7.0, 3.0))))
     assert column.tolist() == list(range(8))
     assert row.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
     assert set(which.tolist()) == {0}
 
 
-def test_a_point_is_one_pixel() -> None:
+def test_rasterized_point_is_one_pixel() -> None:
     column, row, _which = rasterize_chords(ChordEnds(*(np.array([v]) for v in (2.2, 3.4, 2.2, 3.4))))
     assert (column.tolist(), row.tolist()) == ([2], [3])
 
 
 @pytest.mark.parametrize("high", [100.0, 150.0, 240.0])
-def test_all_buttons_fit_a_finger_in_a_low_view(high: float) -> None:
+def test_all_buttons_are_touch_sized_in_low_view(high: float) -> None:
     """Under the part its time line takes height: VIEW alone leads back to the path, and has to stay."""
     look, room = ScreenTheme(DARK_PALETTE, 6.4), QRectF(1.0, 8.0, 372.0, high)
     image, boxes = QImage(374, 260, QImage.Format.Format_RGB32), list[QRectF]()
@@ -265,7 +265,7 @@ def test_all_buttons_fit_a_finger_in_a_low_view(high: float) -> None:
 PANE = QSizeF(400.0, 200.0)
 
 
-def test_a_leg_is_cut_at_the_edge_of_the_pane() -> None:
+def test_leg_is_clipped_at_pane_edge() -> None:
     cut = clip_line(QPointF(900.0, 100.0), QPointF(300.0, 100.0), PANE)
     assert cut == (QPointF(400.0, 100.0), QPointF(300.0, 100.0))
     assert clip_line(QPointF(10.0, 20.0), QPointF(30.0, 40.0), PANE) == (QPointF(10, 20), QPointF(30, 40))

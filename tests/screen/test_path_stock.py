@@ -34,13 +34,13 @@ def blank(stock: Stock | StockSpec | None, clamping: Clamping | None) -> Blank |
     return find_blank(replace(drawn, part=ProgramSteps(drawn.part.block_groups, setting(stock, clamping))))
 
 
-def test_nothing_is_shown_of_a_part_that_is_not_specified() -> None:
+def test_no_blank_is_shown_for_unspecified_part() -> None:
     assert blank(None, None) is None
     assert blank(None, Clamping(0.0, 0.0, max_rpm=3000.0)) is None
     assert find_blank(replace(picture(SHAFT), part=None)) is None
 
 
-def test_a_stock_that_cannot_be_read_shows_only_the_collet() -> None:
+def test_unreadable_stock_shows_only_the_collet() -> None:
     wrong = StockSpec("profile:x", points="z,r\n1,2\n")
     assert blank(wrong, None) is None
     found = blank(wrong, COLLET)
@@ -48,7 +48,7 @@ def test_a_stock_that_cannot_be_read_shows_only_the_collet() -> None:
     assert found.stock is None
 
 
-def test_the_length_of_a_bar_is_that_of_the_program_unless_specified() -> None:
+def test_bar_length_comes_from_program_unless_specified() -> None:
     as_needed, given = (
         blank(parse_specification("bar:1.0"), None),
         blank(parse_specification("bar:1.0:3"), None),
@@ -61,7 +61,7 @@ def test_the_length_of_a_bar_is_that_of_the_program_unless_specified() -> None:
     assert given.stock.back_z_mm == pytest.approx(-3 * 25.4)
 
 
-def test_a_far_retract_does_not_make_the_part_small() -> None:
+def test_distant_retract_does_not_shrink_part() -> None:
     """The stock is 30 mm long in front of the collet: 12 % of 30 + 20 mm are shown next to it."""
     seen = Blank(BAR, BAR, COLLET).find_visible_area((-25.0, 200.0, 0.0, 150.0))
     assert seen == pytest.approx((-30.0, 6.0, 0.0, 16.0))
@@ -72,7 +72,7 @@ def test_all_cuts_are_visible_without_a_stock() -> None:
     assert Blank(None, BAR, COLLET).find_visible_area(cuts) == cuts
 
 
-def test_the_chuck_is_shown_up_to_a_part_of_its_length() -> None:
+def test_chuck_is_shown_up_to_a_fraction_of_stock_length() -> None:
     assert Blank(BAR, BAR, COLLET).chuck_left_z_mm == pytest.approx(-30.0 - 12.0)
     assert Blank(BAR, BAR, None).chuck_left_z_mm is None
 
@@ -111,7 +111,7 @@ def test_the_part_fills_the_height_of_the_pane(view: PathView) -> None:
     assert bottom - top > 0.6 * pane.area.height()
 
 
-def test_an_approach_from_far_away_changes_the_visible_area_only_where_it_matters(view: PathView) -> None:
+def test_distant_approach_zooms_out_only_if_whole_approach_is_shown(view: PathView) -> None:
     near = view.first_projection
     view.show_approach((ApproachLeg(400.0, 200.0), ApproachLeg(5.0, 12.0, label="START")))
     view.grab()

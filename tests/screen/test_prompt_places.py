@@ -15,7 +15,7 @@ from tests.screen.hands import Hands, Key
 from tests.screen.lathe import Operator
 
 
-def test_three_places_one_subject_each(hands: Hands) -> None:
+def test_prompt_line_shows_state_question_and_message_separately(hands: Hands) -> None:
     hands.load("pin")
     hands.sees_state(MachineState.IDLE)
     hands.desk.ask_operator(CONFIRM_CANCEL, lambda: None)
@@ -27,7 +27,7 @@ def test_three_places_one_subject_each(hands: Hands) -> None:
     assert line.message_kind is MessageKind.REFUSAL
 
 
-def test_n_is_no_and_the_question_is_gone(hands: Hands) -> None:
+def test_n_key_rejects_and_closes_question(hands: Hands) -> None:
     done: list[str] = []
     hands.desk.ask_operator(CONFIRM_CANCEL, lambda: done.append("yes"))
     hands.window.refresh()
@@ -36,14 +36,14 @@ def test_n_is_no_and_the_question_is_gone(hands: Hands) -> None:
     assert not any(isinstance(each, Reset) for each in hands.machine.posted)
 
 
-def test_dropped_input_is_reported_whatever_is_pressed_next(hands: Hands) -> None:
+def test_dropped_input_is_reported_regardless_of_next_key(hands: Hands) -> None:
     hands.window.report_dropped(StartingAction.CYCLE)
     hands.key(Key.Key_S)
     hands.key(Key.Key_O)
     assert hands.frame.prompt_line.message_text
 
 
-def test_the_question_for_a_file_offers_no_start(hands: Hands) -> None:
+def test_file_question_does_not_offer_start(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     assert hands.page.file_prompt.isVisible()
     hands.window.refresh()
@@ -72,7 +72,7 @@ def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
     ],
     ids=["no program", "a sound one", "a tool without an offset", "an error"],
 )
-def test_the_palm_buttons_are_bright_only_for_a_start_that_would_begin(
+def test_palm_buttons_are_lit_only_if_start_would_succeed(
     operator: Operator, tmp_path: Path, text: str, *, starts: bool
 ) -> None:
     operator.drives_on()

@@ -58,7 +58,7 @@ def cycle_start(stage: Stage, window: MainWindow, state: MachineState) -> None:
     stage.tick(lambda: stage.clock.now() >= later)
 
 
-def test_start_hold_go_on_single_block_estop_recover(stage: Stage, window: MainWindow) -> None:
+def test_cycle_start_hold_resume_single_block_estop_and_recovery(stage: Stage, window: MainWindow) -> None:
     stage.start()
     stage.tick(lambda: stage.desk.read_snapshot().line > 6)
     QTest.keyClick(window, Key.Key_H)
@@ -79,7 +79,7 @@ def test_start_hold_go_on_single_block_estop_recover(stage: Stage, window: MainW
     reaches(stage, MachineState.IDLE)
 
 
-def test_one_palm_does_not_start_the_lathe(stage: Stage, window: MainWindow) -> None:
+def test_one_palm_button_does_not_start_lathe(stage: Stage, window: MainWindow) -> None:
     stage.start()
     QTest.keyClick(window, Key.Key_H)
     reaches(stage, MachineState.HOLD)
@@ -93,7 +93,7 @@ def test_one_palm_does_not_start_the_lathe(stage: Stage, window: MainWindow) -> 
     let_go(window)
 
 
-def test_no_start_with_the_drives_off_and_it_is_said(stage: Stage, window: MainWindow) -> None:
+def test_start_with_drives_off_is_rejected_with_reason(stage: Stage, window: MainWindow) -> None:
     desk: Desk = stage.desk
     later = stage.clock.now() + 0.1  # a start that is on when the control begins to look is no press
     stage.tick(lambda: stage.clock.now() >= later)

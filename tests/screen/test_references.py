@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 CALLS = 10_000
 
 
-def test_void_calls_keep_the_references_to_none(qtbot: QtBot) -> None:
+def test_qt_calls_without_result_do_not_leak_references_to_none(qtbot: QtBot) -> None:
     widget = QWidget()
     qtbot.addWidget(widget)
     before = sys.getrefcount(None)

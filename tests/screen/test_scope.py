@@ -89,7 +89,7 @@ def wheel(page: ScopePage, share: float, notches: int, held: Qt.KeyboardModifier
     QApplication.sendEvent(page.curve_area, event)
 
 
-def test_one_key_leads_there_and_back(hands: Hands) -> None:
+def test_shift_f10_opens_scope_and_returns(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.key(Key.Key_F5)
     hands.sees(lambda: hands.frame.current_page.NAME == page_table.JOG)
@@ -98,7 +98,7 @@ def test_one_key_leads_there_and_back(hands: Hands) -> None:
     assert hands.frame.current_page.NAME == page_table.JOG
 
 
-def test_f10_has_it_in_its_list(hands: Hands) -> None:
+def test_f10_list_contains_scope(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
@@ -109,7 +109,7 @@ def test_f10_has_it_in_its_list(hands: Hands) -> None:
     assert hands.frame.current_page.NAME == page_table.SCOPE
 
 
-def test_curves_are_drawn_in_their_colours(hands: Hands) -> None:
+def test_curves_are_drawn_in_their_colors(hands: Hands) -> None:
     page = opened(hands)
     image = page.curve_area.grab().toImage()
     seen = {image.pixelColor(x, y).name() for x in range(60, image.width(), 3) for y in range(image.height())}
@@ -126,7 +126,7 @@ def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
     hands.sees(lambda: page.scope_model.picture.is_live and page.scope_model.picture.zero_s > before + 4.9)
 
 
-def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: PlayedSamples) -> None:
+def test_level_curves_are_not_redrawn_while_scrolling(hands: Hands, played: PlayedSamples) -> None:
     page, scope = opened(hands), hands.desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     assert page.is_animating()  # they swing
@@ -163,7 +163,7 @@ def test_the_wheel_zooms_about_the_pointer(hands: Hands) -> None:
     assert window.begin_s + 0.25 * window.span_s == pytest.approx(before, abs=0.02)
 
 
-def test_shift_and_wheel_stretch_the_lane(hands: Hands) -> None:
+def test_shift_and_wheel_scale_lane(hands: Hands) -> None:
     page = frozen(hands)
     before = dict(page.scope_model.picture.lane_ranges)
     wheel(page, 0.5, 1)
@@ -190,7 +190,7 @@ def test_keys_zoom_pan_and_fit(hands: Hands) -> None:
     assert page.scope_model.time_window.span_s == pytest.approx(60.0, abs=0.01)
 
 
-def test_two_cursors_tell_the_difference(hands: Hands) -> None:
+def test_two_cursors_show_difference(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F5)
     scope = page.scope_model
@@ -206,13 +206,13 @@ def test_two_cursors_tell_the_difference(hands: Hands) -> None:
     assert hands.frame.current_page is page
 
 
-def test_cursors_stand_on_frozen_curves_only(hands: Hands) -> None:
+def test_cursors_are_available_on_frozen_curves_only(hands: Hands) -> None:
     opened(hands)
     hands.key(Key.Key_F5)
     hands.sees(lambda: shows(hands.prompt(), "scope.freeze-first"))
 
 
-def test_a_finger_takes_a_cursor_along(hands: Hands) -> None:
+def test_touch_drags_cursor(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F5)
     chart = page.curve_area.chart
@@ -244,7 +244,7 @@ def spread(page: ScopePage, *steps: tuple[QPoint, QPoint]) -> None:
     up.commit()
 
 
-def test_two_fingers_beside_each_other_zoom_time_about_their_middle(hands: Hands) -> None:
+def test_horizontal_two_finger_spread_zooms_time_about_its_center(hands: Hands) -> None:
     """From 100 to 200 pixels apart: the window is half as wide, and what was between them still is."""
     page = frozen(hands)
     hands.key(Key.Key_Z)
@@ -263,7 +263,7 @@ def test_two_fingers_beside_each_other_zoom_time_about_their_middle(hands: Hands
     assert (middle - scope.time_window.begin_s) / (span / 2.0) == pytest.approx(0.5, abs=0.02)
 
 
-def test_two_fingers_over_each_other_stretch_the_lane_between_them(hands: Hands) -> None:
+def test_vertical_two_finger_spread_scales_lane_between_touches(hands: Hands) -> None:
     page = frozen(hands)
     chart, scope = page.curve_area.chart, page.scope_model
     assert chart is not None
@@ -282,7 +282,7 @@ def test_two_fingers_over_each_other_stretch_the_lane_between_them(hands: Hands)
     assert scope.time_window.span_s == span
 
 
-def test_one_finger_left_of_two_drags_nothing(hands: Hands) -> None:
+def test_remaining_touch_after_spread_drags_nothing(hands: Hands) -> None:
     page = frozen(hands)
     chart, scope = page.curve_area.chart, page.scope_model
     assert chart is not None
@@ -292,7 +292,7 @@ def test_one_finger_left_of_two_drags_nothing(hands: Hands) -> None:
     assert (scope.time_window.begin_s, scope.time_window.end_s) == pytest.approx(before)
 
 
-def test_a_drag_goes_through_time(hands: Hands) -> None:
+def test_drag_scrolls_time(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_Z)
     before = page.scope_model.time_window.end_s
@@ -327,9 +327,7 @@ def test_a_ninth_curve_is_refused(hands: Hands) -> None:
     assert len(page.scope_model.shown) == 8
 
 
-def test_a_level_that_was_typed_meanwhile_is_the_one_that_freezes(
-    hands: Hands, played: PlayedSamples
-) -> None:
+def test_trigger_uses_level_typed_while_waiting_for_edge(hands: Hands, played: PlayedSamples) -> None:
     page = opened(hands)
     hands.key(Key.Key_F3)
     played.lets.clear()
@@ -383,7 +381,7 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     assert scope.frozen_curves.zero_s == pytest.approx(32.0 * np.pi + 6 * np.pi - np.arccos(0.762), abs=0.002)
 
 
-def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
+def test_invalid_trigger_level_is_rejected(hands: Hands) -> None:
     page = opened(hands)
     hands.key(Key.Key_F3)
     hands.key(Key.Key_Return)
@@ -396,7 +394,7 @@ def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
     assert page.scope_model.frozen_curves is None
 
 
-def test_what_is_seen_is_kept_and_opened_again(hands: Hands, tmp_path: Path) -> None:
+def test_frozen_curves_are_saved_and_opened_again(hands: Hands, tmp_path: Path) -> None:
     page = frozen(hands)
     scope = page.scope_model
     hands.key(Key.Key_F9)
@@ -411,7 +409,7 @@ def test_what_is_seen_is_kept_and_opened_again(hands: Hands, tmp_path: Path) -> 
     assert scope.time_window.span_s == pytest.approx(10.0)
 
 
-def test_an_earlier_record_lies_over(hands: Hands) -> None:
+def test_earlier_recording_is_overlaid(hands: Hands) -> None:
     page = frozen(hands)
     scope = page.scope_model
     hands.key(Key.Key_F9)
@@ -423,7 +421,7 @@ def test_an_earlier_record_lies_over(hands: Hands) -> None:
     hands.sees(lambda: not scope.picture.overlay_curves)
 
 
-def test_a_table_and_a_picture_are_written(hands: Hands, tmp_path: Path) -> None:
+def test_table_and_picture_are_exported(hands: Hands, tmp_path: Path) -> None:
     frozen(hands)
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F5)
@@ -436,7 +434,7 @@ def test_a_table_and_a_picture_are_written(hands: Hands, tmp_path: Path) -> None
     assert next((tmp_path / "records").glob("*.png")).read_bytes().startswith(b"\x89PNG")
 
 
-def test_live_curves_are_no_record_yet(hands: Hands, tmp_path: Path) -> None:
+def test_live_curves_cannot_be_saved(hands: Hands, tmp_path: Path) -> None:
     opened(hands)
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F2)
@@ -444,7 +442,7 @@ def test_live_curves_are_no_record_yet(hands: Hands, tmp_path: Path) -> None:
     assert not list((tmp_path / "records").glob("*"))
 
 
-def test_a_file_is_deleted_after_asking(hands: Hands, tmp_path: Path) -> None:
+def test_recording_is_deleted_after_confirmation(hands: Hands, tmp_path: Path) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F2)
@@ -457,7 +455,7 @@ def test_a_file_is_deleted_after_asking(hands: Hands, tmp_path: Path) -> None:
     assert not list((tmp_path / "records").glob("*.scope"))
 
 
-def test_what_is_no_record_is_told(hands: Hands, tmp_path: Path) -> None:
+def test_invalid_recording_is_reported(hands: Hands, tmp_path: Path) -> None:
     (tmp_path / "records").mkdir()
     (tmp_path / "records" / "bad.scope").write_bytes(b"no record")
     page = opened(hands)
@@ -468,7 +466,7 @@ def test_what_is_no_record_is_told(hands: Hands, tmp_path: Path) -> None:
     assert page.scope_model.is_live
 
 
-def test_hold_and_escape_stop_here_too(hands: Hands) -> None:
+def test_hold_and_esc_stop_machine_on_scope_page(hands: Hands) -> None:
     hands.load("bushing")
     hands.both_palms()
     hands.sees(lambda: hands.machine.now.state is MachineState.RUN)
@@ -480,7 +478,7 @@ def test_hold_and_escape_stop_here_too(hands: Hands) -> None:
     assert not [each for each in hands.machine.posted if not isinstance(each, FeedHold)]
 
 
-def test_rows_are_large_enough_for_a_finger(hands: Hands) -> None:
+def test_rows_are_touch_sized(hands: Hands) -> None:
     page = opened(hands)
     assert page.readings.row_height_px >= FINGERTIP_PX
     places = page.readings._places
@@ -489,7 +487,7 @@ def test_rows_are_large_enough_for_a_finger(hands: Hands) -> None:
     assert page.scope_model.marked == 2
 
 
-def test_other_colours_at_once(hands: Hands) -> None:
+def test_theme_change_recolors_curves_at_once(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_T)
     inks = {QColor(each).name() for each in CURVE_COLORS["light"][:4]}
@@ -502,7 +500,7 @@ def colours_of(image: QImage) -> set[str]:
     return {image.pixelColor(x, y).name() for x in across for y in down}
 
 
-def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
+def test_scope_without_recorder_shows_message(hands: Hands) -> None:
     scope = hands.desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     scope.live_samples = scope._carried = None
@@ -512,7 +510,7 @@ def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
     hands.sees(lambda: shows(hands.prompt(), "scope.nothing-recorded"))
 
 
-def test_a_full_disk_is_told(tmp_path: Path) -> None:
+def test_full_disk_is_reported(tmp_path: Path) -> None:
     def full(_record: object, _path: Path) -> None:
         raise OSError(28, "No space left on device")
 
@@ -523,7 +521,7 @@ def test_a_full_disk_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_the_desk_starts_without_pyqtgraph() -> None:
+def test_screen_starts_without_pyqtgraph() -> None:
     code = (
         "import sys; import app.screen.screen_startup, app.compose.screen_desk;"
         "import app.scope.scope_view; sys.exit('pyqtgraph' in sys.modules)"
@@ -531,7 +529,7 @@ def test_the_desk_starts_without_pyqtgraph() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path) -> None:
+def test_f7_opens_recording_of_alarm(hands: Hands, tmp_path: Path) -> None:
     record = record_of(seconds(90.0, 101.0))
     told = {**record.about, "alarm time": "100.0"}
     save_record(replace(record, about=told), tmp_path / "records" / "one-alarm301.scope")
@@ -555,7 +553,7 @@ def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path
     assert scope.time_window.begin_s == pytest.approx(-10.0)
 
 
-def test_a_record_that_is_gone_is_told(hands: Hands) -> None:
+def test_missing_recording_is_reported(hands: Hands) -> None:
     alarm = make_alarm("following", "X is .2 mm off its setpoint", 7, 0.0)
     hands.desk.hear(LogEvent(100.0, "alarm", alarm.text, 7, alarm, "gone-alarm301.scope"))
     hands.key(Key.Key_F7)

@@ -62,7 +62,7 @@ def confirmed(operator: Operator) -> None:
     assert model_of(operator).stage is SearchtoStage.READY
 
 
-def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(operator: Operator) -> None:
+def test_part_is_finished_from_interrupted_line_after_estop(operator: Operator) -> None:
     operator.stage.start()
     operator.until(lambda: operator.shot.line == 18, 120.0)
     operator.pause(0.2)
@@ -91,7 +91,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     operator.until(lambda: operator.shot.parts == 1, 240.0)
 
 
-def test_every_difference_is_marked_by_its_sign(operator: Operator) -> None:
+def test_restart_page_marks_every_state_that_must_change(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("7")
@@ -108,7 +108,7 @@ def test_every_difference_is_marked_by_its_sign(operator: Operator) -> None:
     assert page.state_panel.grab().width() > 0
 
 
-def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) -> None:
+def test_line_is_found_by_its_text_and_list_scrolls_to_it(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("(FINISH")
@@ -130,7 +130,7 @@ def press(panel: Panel, box: QRectF) -> None:
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
 
 
-def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
+def test_line_is_marked_or_its_number_typed_by_touch(operator: Operator) -> None:
     """The lines were no target, and nothing brought figures: a finger had F8 and F9 alone."""
     loaded(operator)
     operator.window.resize(1024, 600)
@@ -164,7 +164,7 @@ def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
     assert model_of(operator).search_refusal is not None or model_of(operator).restart_plan is not None
 
 
-def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> None:
+def test_line_without_valid_restart_offers_neighboring_lines(operator: Operator) -> None:
     desk = operator.stage.desk
     desk.program_choice.load_by_name("pin")
     desk.program_loader.wait_until_loaded(30.0)
@@ -182,7 +182,7 @@ def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> No
     assert page_of(operator).state_panel.content.title == text("search.state-at-line", line=after.line_number)
 
 
-def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> None:
+def test_palm_buttons_start_nothing_before_confirmation(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.palms()
@@ -194,7 +194,7 @@ def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> N
     assert operator.shot.starts is StartAction.RESTART
 
 
-def test_leaving_the_page_takes_a_ready_restart_back(operator: Operator) -> None:
+def test_leaving_page_cancels_ready_restart(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("7")
@@ -206,7 +206,7 @@ def test_leaving_the_page_takes_a_ready_restart_back(operator: Operator) -> None
     assert operator.shot.prepared_digest == ""
 
 
-def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> None:
+def test_coolant_and_approach_are_selected_by_operator(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("38")
@@ -226,7 +226,7 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     assert operator.shot.prepared_digest == ""
 
 
-def test_the_collet_must_be_as_the_line_has_it(operator: Operator) -> None:
+def test_collet_must_match_state_at_line(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F1, Key.Key_F4)
     operator.pause(0.05)
@@ -249,7 +249,7 @@ def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: O
     assert begins(operator.prompt(), "screen.program-runs-no-search")
 
 
-def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
+def test_restart_cannot_be_confirmed_with_drives_off(operator: Operator) -> None:
     desk = operator.stage.desk
     desk.program_choice.load_by_name("bushing")
     desk.program_loader.wait_until_loaded(30.0)
@@ -261,7 +261,7 @@ def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
     assert operator.prompt() == text("screen.drives-off-for-search")
 
 
-def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> None:
+def test_reloaded_program_is_searched_again(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("7")
@@ -279,7 +279,7 @@ def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> Non
     assert operator.shot.state is MachineState.IDLE
 
 
-def test_the_question_has_every_letter(operator: Operator) -> None:
+def test_search_field_accepts_every_letter(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("eh x")
@@ -287,7 +287,7 @@ def test_the_question_has_every_letter(operator: Operator) -> None:
     assert operator.shot.state is MachineState.IDLE
 
 
-def test_escape_goes_back_step_by_step(operator: Operator) -> None:
+def test_esc_goes_back_one_step_at_a_time(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("7")
@@ -298,7 +298,7 @@ def test_escape_goes_back_step_by_step(operator: Operator) -> None:
     assert operator.frame.current_page is operator.frame.automatic_page
 
 
-def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_is_told(
+def test_retract_uses_path_of_active_tool_and_skipped_lines_are_listed(
     operator: Operator,
 ) -> None:
     operator.stage.start()
@@ -313,7 +313,7 @@ def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_
     assert model_of(operator).restart_plan is not None
 
 
-def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator) -> None:
+def test_loop_pass_is_selected_by_keys_and_by_touch(operator: Operator) -> None:
     desk = operator.stage.desk
     desk.program_choice.load_by_name("pin")
     desk.program_loader.wait_until_loaded(30.0)
@@ -346,7 +346,7 @@ def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator)
     assert page_of(operator).state_panel.content.pass_text == text("search.pass", number=1, count=5)
 
 
-def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> None:
+def test_retract_alone_runs_after_confirmation_and_page_stays_open(operator: Operator) -> None:
     operator.stage.start()
     operator.until(lambda: operator.shot.line == 18, 120.0)
     operator.pause(0.2)
@@ -380,7 +380,7 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     assert operator.prompt() == text("search.tool-is-clear", tool=1)
 
 
-def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
+def test_interrupted_bore_is_finished_along_z(operator: Operator) -> None:
     operator.stage.start()
     operator.until(
         lambda: operator.shot.state is MachineState.PROGRAM_STOP or operator.shot.line == 38, 240.0
@@ -401,7 +401,7 @@ def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
     operator.until(lambda: operator.shot.parts == 1, 240.0)
 
 
-def test_the_stock_is_shown_as_the_line_finds_it(operator: Operator) -> None:
+def test_stock_is_shown_as_it_is_at_selected_line(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     page = page_of(operator)

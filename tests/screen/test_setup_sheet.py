@@ -59,7 +59,7 @@ def take_note(hands: Hands, text: str) -> None:
     hands.key(Key.Key_Return)
 
 
-def test_tools_offsets_stock_and_stops_stand_on_it(hands: Hands) -> None:
+def test_sheet_lists_tools_offsets_stock_and_stops(hands: Hands) -> None:
     page, _ = opened(hands)
     said = rows(page)
     offset = read_offsets(get_samples_folder() / "offsets.toml").tool_offsets[2]
@@ -73,7 +73,7 @@ def test_tools_offsets_stock_and_stops_stand_on_it(hands: Hands) -> None:
     assert drawn == {"T1", "T2", "T3"}
 
 
-def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
+def test_notes_follow_renamed_program(hands: Hands, journal: Journal) -> None:
     page, function = opened(hands)
     take_note(hands, "SOFT JAWS")
     take_note(hands, "BAR .02 OUT")
@@ -94,7 +94,7 @@ def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
     assert journal.read_setting("notes:other.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"]
 
 
-def test_a_note_goes_only_after_asking(hands: Hands) -> None:
+def test_note_is_deleted_only_after_confirmation(hands: Hands) -> None:
     page, function = opened(hands)
     take_note(hands, "SOFT JAWS")
     hands.sees(lambda: "NOTE 1" in rows(page))
@@ -106,7 +106,7 @@ def test_a_note_goes_only_after_asking(hands: Hands) -> None:
     assert hands.prompt() == wording("screen.mark-note")
 
 
-def test_escape_leaves_a_note_as_it_was(hands: Hands) -> None:
+def test_esc_leaves_note_unchanged(hands: Hands) -> None:
     _, function = opened(hands)
     take_note(hands, "SOFT JAWS")
     hands.key(Key.Key_Return)
@@ -116,7 +116,7 @@ def test_escape_leaves_a_note_as_it_was(hands: Hands) -> None:
     assert function.note_field is None
 
 
-def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
+def test_sheet_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
     _, function = opened(hands)
     take_note(hands, "<SOFT> JAWS & MORE")
     stick = tmp_path / "stick"
@@ -152,7 +152,7 @@ def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
 # --- what is refused
 
 
-def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
+def test_sheet_is_not_available_without_program(hands: Hands) -> None:
     page, function = opened(hands, "")
     hands.sees(lambda: page.table_panel.table.title == SETUP)
     assert page.table_panel.table.rows == ()
@@ -163,7 +163,7 @@ def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
     assert function.save_locations == ()
 
 
-def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
+def test_setup_sheet_uses_selected_language(hands: Hands, tmp_path: Path) -> None:
     _, function = opened(hands)
     function.list_media = lambda: (UsbStick("BLUE", tmp_path, 10**9),)
     hands.desk.settings_store.choose("language", "es")
@@ -178,7 +178,7 @@ def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
     assert text_in_spanish("screen.setup-sheet", program="bushing.nc") in page
 
 
-def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:
+def test_number_of_notes_is_limited(hands: Hands) -> None:
     _, function = opened(hands)
     function._keep([f"NOTE {n}" for n in range(MOST_NOTES)])
     hands.key(Key.Key_F2)
@@ -186,7 +186,7 @@ def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:
     assert function.note_field is None
 
 
-def test_a_place_that_cannot_be_written_is_told(hands: Hands, tmp_path: Path) -> None:
+def test_unwritable_location_is_reported(hands: Hands, tmp_path: Path) -> None:
     _, function = opened(hands)
     (tmp_path / "file").write_text("no folder")
     function.list_media = lambda: (UsbStick("GONE", tmp_path / "file", 0),)
@@ -197,7 +197,7 @@ def test_a_place_that_cannot_be_written_is_told(hands: Hands, tmp_path: Path) ->
     assert function.task_text == ""
 
 
-def test_a_full_disk_is_told(hands: Hands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_full_disk_is_reported(hands: Hands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _, function = opened(hands)
 
     def full(*_: object) -> None:

@@ -51,7 +51,7 @@ def stops(above: QWidget) -> AlarmList:
     return panel
 
 
-def test_a_finger_marks_a_stop_and_the_mark_leads_to_its_record(stops: AlarmList) -> None:
+def test_touch_marks_stop_and_selects_its_recording(stops: AlarmList) -> None:
     rows = [spot.box for spot in stops.list_targets() if spot.kind == "row"]
     assert 2 <= len(rows) == stops.rows < MANY
     press(stops, rows[1])
@@ -61,21 +61,21 @@ def test_a_finger_marks_a_stop_and_the_mark_leads_to_its_record(stops: AlarmList
 
 
 @pytest.mark.parametrize(("wanted", "marked"), [(-1, 0), (MANY, MANY - 1), (999, MANY - 1)])
-def test_no_mark_beyond_the_ends_of_the_stops(stops: AlarmList, wanted: int, marked: int) -> None:
+def test_mark_stays_within_list_of_stops(stops: AlarmList, wanted: int, marked: int) -> None:
     stops.mark(wanted)
     stops.grab()
     assert stops.marked == marked
     assert stops.first_row <= marked < stops.first_row + stops.rows
 
 
-def test_the_mark_of_the_stops_stays_in_sight_when_they_scroll(stops: AlarmList) -> None:
+def test_marked_stop_stays_visible_while_scrolling(stops: AlarmList) -> None:
     turn_wheel(stops, 5)
     assert (stops.first_row, stops.marked) == (5, 5)
     turn_wheel(stops, -100)
     assert (stops.first_row, stops.marked) == (0, stops.rows - 1)
 
 
-def test_without_stops_nothing_is_marked(above: QWidget) -> None:
+def test_nothing_is_marked_without_stops(above: QWidget) -> None:
     panel = AlarmList(ScreenTheme(DARK_PALETTE, SMALL), lambda _name: None, above)
     panel.mark(3)
     panel.scroll_by(3)
@@ -83,7 +83,7 @@ def test_without_stops_nothing_is_marked(above: QWidget) -> None:
     assert (panel.marked, panel.first_row, panel.recording_name, list(panel.list_targets())) == (0, 0, "", [])
 
 
-def test_a_finger_comes_to_every_line_of_mdi(above: QWidget) -> None:
+def test_every_mdi_line_is_reached_by_touch(above: QWidget) -> None:
     """The lines above the last ones were the arrows' alone."""
     taken: list[int] = []
     panel = MdiHistoryPanel(ScreenTheme(DARK_PALETTE, SMALL), taken.append, above)
@@ -93,7 +93,7 @@ def test_a_finger_comes_to_every_line_of_mdi(above: QWidget) -> None:
     assert chosen_rows(panel, lambda: taken[-1], [down, up]) == set(range(1, MANY + 1))
 
 
-def test_the_history_of_mdi_shows_what_is_taken_up_and_the_last_line_run(above: QWidget) -> None:
+def test_mdi_history_marks_recalled_line_and_shows_last_run_line(above: QWidget) -> None:
     panel = MdiHistoryPanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _back: None, above)
     panel.resize(500, 300)
     panel.history_lines = tuple(f"G1 X{n}" for n in range(MANY))
@@ -113,7 +113,7 @@ def scope_of(count: int) -> SimpleNamespace:
     return SimpleNamespace(marked=0, shown=shown, cursors=SimpleNamespace(shown=False))
 
 
-def test_a_finger_comes_to_every_curve_of_the_scope(above: QWidget) -> None:
+def test_every_scope_curve_is_reached_by_touch(above: QWidget) -> None:
     scope = scope_of(MANY)
 
     def choose(number: int) -> None:
@@ -144,7 +144,7 @@ class Codes:
         self.marked = max(0, min(len(self.choices) - 1, index))
 
 
-def test_the_wheel_goes_through_the_codes_and_no_further(above: QWidget) -> None:
+def test_wheel_scrolls_codes_up_to_last_one(above: QWidget) -> None:
     codes = Codes(MANY)
     panel = CodeChoiceList(ScreenTheme(DARK_PALETTE, SMALL), cast("CodeHelp", codes), lambda: None, above)
     panel.resize(240, 360)
@@ -154,14 +154,14 @@ def test_the_wheel_goes_through_the_codes_and_no_further(above: QWidget) -> None
     assert (codes.marked, panel.first_row) == (MANY - 1, MANY - panel.rows)
 
 
-def test_a_line_without_codes_has_no_rows(above: QWidget) -> None:
+def test_line_without_codes_shows_no_rows(above: QWidget) -> None:
     panel = CodeChoiceList(ScreenTheme(DARK_PALETTE, SMALL), cast("CodeHelp", Codes(0)), lambda: None, above)
     panel.resize(240, 360)
     turn_wheel(panel, 1)
     assert not panel.list_targets()
 
 
-def test_the_wheel_scrolls_the_comparison_to_its_end_and_leaves_the_version(above: QWidget) -> None:
+def test_wheel_scrolls_comparison_without_changing_version(above: QWidget) -> None:
     rows = tuple(
         SimpleNamespace(number=n, saved="2026-01-01T10:00:00+00:00", size=n, why="", who="") for n in range(3)
     )
@@ -179,9 +179,7 @@ def test_the_wheel_scrolls_the_comparison_to_its_end_and_leaves_the_version(abov
 
 
 @pytest.mark.parametrize(("line", "marked"), [(0, []), (1, [0]), (MANY, [-1])])
-def test_of_the_lines_of_a_program_the_executed_one_is_selected(
-    above: QWidget, line: int, marked: list[int]
-) -> None:
+def test_executed_line_of_program_is_selected(above: QWidget, line: int, marked: list[int]) -> None:
     panel = ProgramListing(ScreenTheme(DARK_PALETTE, SMALL), above)
     panel.on_line_touched = lambda _line: None
     panel.resize(500, 300)

@@ -48,7 +48,7 @@ def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
     return page.table_panel.table.rows[row].cells
 
 
-def test_the_list_is_walked_by_arrows_and_left_by_escape(hands: Hands) -> None:
+def test_list_is_navigated_by_arrows_and_closed_by_esc(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     assert hands.frame.title_line.page_title == page_table.SPECIAL
     page = hands.frame.current_page
@@ -63,7 +63,7 @@ def test_the_list_is_walked_by_arrows_and_left_by_escape(hands: Hands) -> None:
     assert hands.frame.current_page is hands.page
 
 
-def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
+def test_spindle_limit_is_calculated_and_applies_until_restart(hands: Hands) -> None:
     page = open_function(hands, 1)
     hands.type("1000+250")
     hands.key(Key.Key_Return)
@@ -93,7 +93,7 @@ def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
         ),
     ],
 )
-def test_a_limit_that_the_spindle_cannot_turn_is_refused(hands: Hands, typed: str, why: str) -> None:
+def test_spindle_limit_out_of_range_is_rejected(hands: Hands, typed: str, why: str) -> None:
     open_function(hands, 1)
     hands.type(typed)
     hands.key(Key.Key_Return)
@@ -101,13 +101,13 @@ def test_a_limit_that_the_spindle_cannot_turn_is_refused(hands: Hands, typed: st
     assert not any(isinstance(command, SetSpindleLimit) for command in hands.machine.posted)
 
 
-def test_lifting_no_limit_says_so(hands: Hands) -> None:
+def test_clearing_a_limit_that_is_not_set_shows_message(hands: Hands) -> None:
     open_function(hands, 1)
     hands.key(Key.Key_F4)
     assert hands.prompt() == wording("screen.no-limit")
 
 
-def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal) -> None:
+def test_reached_target_stops_cycle_repeat_and_is_reported(hands: Hands, journal: Journal) -> None:
     hands.load("pin")
     page = open_function(hands, 2)
     hands.type("2")
@@ -126,7 +126,7 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     hands.sees(lambda: hands.desk.program_runs.part_counter.count_text == "0/2")
 
 
-def test_the_counter_without_a_program_refuses(hands: Hands) -> None:
+def test_counter_without_program_is_rejected(hands: Hands) -> None:
     open_function(hands, 2)
     hands.type("5")
     hands.key(Key.Key_Return)
@@ -136,7 +136,7 @@ def test_the_counter_without_a_program_refuses(hands: Hands) -> None:
 
 
 @pytest.mark.parametrize("typed", ["1.5", "-3", "99999999"])
-def test_no_number_of_parts(hands: Hands, typed: str) -> None:
+def test_invalid_number_of_parts_is_rejected(hands: Hands, typed: str) -> None:
     hands.load("pin")
     open_function(hands, 2)
     hands.type(typed)
@@ -144,7 +144,7 @@ def test_no_number_of_parts(hands: Hands, typed: str) -> None:
     assert shows(hands.prompt(), "screen.no-number-of-parts")
 
 
-def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) -> None:
+def test_target_below_parts_made_is_rejected(hands: Hands, journal: Journal) -> None:
     for event in (LogEvent(0.0, "load", "pin.nc"), *(LogEvent(0.0, "part", "part"),) * 3):
         journal.hear(event)
     hands.sees(lambda: journal.runs.read_part_count("pin.nc") == 3)
@@ -170,7 +170,7 @@ def test_an_output_is_switched_after_asking(hands: Hands) -> None:
     hands.sees(lambda: cells(page, 0)[2] == "ON")
 
 
-def test_moving_the_mark_takes_the_question_back(hands: Hands) -> None:
+def test_moving_mark_cancels_question(hands: Hands) -> None:
     open_function(hands, 3)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_Down)
@@ -182,7 +182,7 @@ def test_moving_the_mark_takes_the_question_back(hands: Hands) -> None:
 @pytest.mark.parametrize(
     "state", [MachineState.RUN, MachineState.HOLD, MachineState.JOG, MachineState.FAULT, MachineState.ESTOP]
 )
-def test_no_output_is_switched_while_something_is_under_way(hands: Hands, state: MachineState) -> None:
+def test_output_is_not_switched_while_machine_is_busy(hands: Hands, state: MachineState) -> None:
     open_function(hands, 3)
     hands.machine.now = replace(hands.machine.now, state=state)
     hands.key(Key.Key_Return)
@@ -233,7 +233,7 @@ def test_the_log_is_searched_and_filtered(hands: Hands, journal: Journal) -> Non
     assert not page.accepts_key("h")
 
 
-def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
+def test_backup_is_created_and_restored(hands: Hands, journal: Journal) -> None:
     store = hands.desk.offset_book.store
     assert store is not None
     store.settings.save_setting("mark", "before").result(60)
@@ -258,7 +258,7 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     hands.sees(lambda: [e.text for e in journal.events("after the", (), 9)] == ["after the restore"])
 
 
-def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -> None:
+def test_backup_list_shows_condition_of_each_backup(hands: Hands, journal: Journal) -> None:
     store = hands.desk.offset_book.store
     assert store is not None
     store.offsets.tool_offsets.change_row(3, "x", {"x": 1.0, "z": 0.0}).result(60)
@@ -289,7 +289,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
 
 
 @pytest.mark.parametrize("row", [0, 1])
-def test_only_a_backup_on_a_stick_speaks_of_a_stick(hands: Hands, row: int, tmp_path: Path) -> None:
+def test_only_backup_on_stick_mentions_the_stick(hands: Hands, row: int, tmp_path: Path) -> None:
     page = open_function(hands, 6)
     backups = page.model.shown_function
     assert isinstance(backups, BackupFunction)
@@ -302,7 +302,7 @@ def test_only_a_backup_on_a_stick_speaks_of_a_stick(hands: Hands, row: int, tmp_
     hands.sees(lambda: shows(hands.prompt(), "screen.backup-on-stick" if row else "screen.backup-is-whole"))
 
 
-def test_backups_beside_data_that_cannot_be_read_point_to_the_terminal(
+def test_backup_next_to_damaged_data_refers_to_restore_command(
     hands: Hands, journal: Journal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def unreadable(_source: object) -> BackupVerdict:
@@ -320,7 +320,7 @@ def test_backups_beside_data_that_cannot_be_read_point_to_the_terminal(
     assert "turndesk store restore" in hands.desk.prompt_notice
 
 
-def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
+def test_restore_leaves_access_levels_on(hands: Hands, journal: Journal) -> None:
     """A backup of the time before levels switched them off."""
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
@@ -353,7 +353,7 @@ def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
     assert (row.who, row.text.startswith("restored; ")) == ("ANNA", True)
 
 
-def test_nothing_is_restored_under_way(hands: Hands) -> None:
+def test_restore_is_rejected_while_machine_is_busy(hands: Hands) -> None:
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
     hands.key(Key.Key_Return)
@@ -364,7 +364,7 @@ def test_nothing_is_restored_under_way(hands: Hands) -> None:
     assert hands.desk.prompt_notice == RESTORE_REFUSAL
 
 
-def test_settings_act_at_once_and_are_kept(hands: Hands, journal: Journal) -> None:
+def test_settings_apply_at_once_and_are_saved(hands: Hands, journal: Journal) -> None:
     page = open_function(hands, 7)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_Return)
@@ -392,7 +392,7 @@ def test_settings_act_at_once_and_are_kept(hands: Hands, journal: Journal) -> No
     hands.sees(all_kept)
 
 
-def test_the_station_is_not_hidden_with_its_estop_pressed(hands: Hands) -> None:
+def test_station_with_pressed_estop_cannot_be_hidden(hands: Hands) -> None:
     open_function(hands, 7)
     hands.key(Key.Key_E)
     for _ in range(4):
@@ -402,7 +402,7 @@ def test_the_station_is_not_hidden_with_its_estop_pressed(hands: Hands) -> None:
     assert hands.desk.settings_store.current.dock
 
 
-def test_hold_and_estop_work_in_the_middle_of_an_entry(hands: Hands) -> None:
+def test_hold_and_estop_work_during_an_entry(hands: Hands) -> None:
     open_function(hands, 1)
     hands.type("12")
     hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
@@ -412,7 +412,7 @@ def test_hold_and_estop_work_in_the_middle_of_an_entry(hands: Hands) -> None:
     hands.sees_state(MachineState.ESTOP)
 
 
-def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, journal: Journal) -> None:
+def test_uncounted_run_is_not_last_part_of_target(hands: Hands, journal: Journal) -> None:
     hands.load("pin")
     page = open_function(hands, 2)
     hands.type("1")
@@ -423,7 +423,7 @@ def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, 
     assert SetSwitch("cycle_repeat", False) not in hands.machine.posted
 
 
-def test_no_count_is_switched_by_key_and_finger_and_lights_a_lamp(hands: Hands) -> None:
+def test_no_count_is_switched_by_key_and_touch_and_lights_lamp(hands: Hands) -> None:
     assert not any(lamp.label == "NO COUNT" for lamp in hands.frame.strip.lamps)
     hands.key(Key.Key_P)
     assert hands.machine.now.no_count
@@ -433,7 +433,7 @@ def test_no_count_is_switched_by_key_and_finger_and_lights_a_lamp(hands: Hands) 
     assert not hands.machine.now.no_count
 
 
-def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
+def test_part_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
     hands.load("pin")
     page = open_function(hands, 2)
     hands.key(Key.Key_F3)
@@ -445,13 +445,13 @@ def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
     hands.sees(lambda: journal.runs.read_part_count("pin.nc") == 1)
 
 
-def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:
+def test_part_count_cannot_be_corrected_without_program(hands: Hands) -> None:
     open_function(hands, 2)
     hands.key(Key.Key_F2)
     assert begins(hands.prompt(), "screen.choose-program-for-count")
 
 
-def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
+def test_list_rows_are_touch_sized_and_can_be_scrolled(hands: Hands) -> None:
     """At 600 lines not all fit: the foot leafs without opening anything, 0 is the tenth function."""
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
@@ -492,7 +492,7 @@ def test_a_simulated_input_is_switched_and_one_of_the_station_is_not(hands: Hand
     assert shows(hands.prompt(), "screen.output-follows-machine")
 
 
-def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
+def test_lamps_and_sound_share_one_table_and_are_off_by_default(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
@@ -516,7 +516,7 @@ def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
 
 
 @pytest.mark.parametrize("number", range(1, 17))
-def test_every_function_is_chosen_by_its_number_and_return(hands: Hands, number: int) -> None:
+def test_every_function_is_opened_by_its_number_and_return(hands: Hands, number: int) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
@@ -527,7 +527,7 @@ def test_every_function_is_chosen_by_its_number_and_return(hands: Hands, number:
     assert not page.has_text_field()
 
 
-def test_no_digit_of_a_number_falls_into_a_field(hands: Hands) -> None:
+def test_digits_of_function_number_are_not_typed_into_a_field(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
@@ -542,7 +542,7 @@ def test_no_digit_of_a_number_falls_into_a_field(hands: Hands) -> None:
     )
 
 
-def test_the_next_digit_replaces_a_refused_speed(hands: Hands) -> None:
+def test_next_digit_replaces_rejected_speed(hands: Hands) -> None:
     page = open_function(hands, 1)
     hands.type("199999999999")
     hands.key(Key.Key_Return)

@@ -60,7 +60,7 @@ def started(tmp_path_factory: pytest.TempPathFactory) -> tuple[frozenset[str], l
 
 
 @pytest.mark.parametrize("later", [*OF_LATER, *OF_FEATURES])
-def test_what_a_page_or_a_proof_needs_is_loaded_with_it(
+def test_modules_for_pages_and_proofs_are_imported_only_when_needed(
     started: tuple[frozenset[str], list[str]], later: str
 ) -> None:
     if later not in OF_FEATURES or later.split(".")[2] in extras():
@@ -68,11 +68,11 @@ def test_what_a_page_or_a_proof_needs_is_loaded_with_it(
     assert not [name for name in started[0] if f"{name}.".startswith(f"{later}.")]
 
 
-def test_what_the_first_picture_needs_is_there(started: tuple[frozenset[str], list[str]]) -> None:
+def test_modules_for_first_picture_are_imported_at_start(started: tuple[frozenset[str], list[str]]) -> None:
     assert {"app.automatic.automatic_view", "core.executor.executor", "PySide6.QtWidgets"} <= started[0]
 
 
-def test_the_source_of_what_the_screen_imports_is_not_read(
+def test_source_of_imported_modules_is_not_read(
     started: tuple[frozenset[str], list[str]],
 ) -> None:
     """PySide would read all of it, by ``inspect``, which keeps in ``linecache`` what it has read."""

@@ -55,7 +55,7 @@ def entries(typist: Typist, name: str, known: set[object]) -> Iterator[Stroke]:
 
 
 @pytest.mark.parametrize("day", WHERE, indirect=True, ids=lambda each: each[1])
-def test_both_keys_stop_in_every_entry(day: Day, typists: list[Typist]) -> None:
+def test_both_stop_keys_act_in_every_entry(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     deaf, written = [], set()
@@ -79,7 +79,7 @@ def test_both_keys_stop_in_every_entry(day: Day, typists: list[Typist]) -> None:
 
 
 @pytest.mark.parametrize("day", WHERE, indirect=True, ids=lambda each: each[1])
-def test_both_drawn_buttons_stop_on_every_page(day: Day, typists: list[Typist]) -> None:
+def test_both_on_screen_stop_buttons_act_on_every_page(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     dock = day.frame.station_dock

@@ -18,7 +18,7 @@ from tests.screen.yes import twist_out, yes
 from tests.texts import begins, shows, text
 
 
-def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None:
+def test_cycle_start_hold_resume_single_block_estop_and_recovery(hands: Hands) -> None:
     hands.load("bushing")
     assert hands.frame.title_line.program_text == "bushing.nc"
     hands.both_palms()
@@ -52,7 +52,7 @@ def counted(hands: Hands) -> object:
     return times[0] if isinstance(times, tuple) else None
 
 
-def test_a_whole_cycle_counts_a_part_and_comes_back(hands: Hands) -> None:
+def test_complete_cycle_counts_a_part_and_returns_to_idle(hands: Hands) -> None:
     hands.machine.step = 0.5
     hands.load("grooves")
     hands.both_palms()
@@ -61,7 +61,7 @@ def test_a_whole_cycle_counts_a_part_and_comes_back(hands: Hands) -> None:
     hands.sees(lambda: counted(hands) == ("PARTS", "1"))
 
 
-def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:
+def test_optional_stop_shows_its_comment_in_large_text(hands: Hands) -> None:
     hands.machine.step = 1.0
     hands.load("bushing")
     hands.key(Key.Key_O)
@@ -73,7 +73,7 @@ def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:
     hands.sees(lambda: not hands.frame.alarm_notice.isVisible())
 
 
-def test_file_not_found_and_any_key_goes_on(hands: Hands) -> None:
+def test_file_not_found_is_cleared_by_any_key(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     hands.type("nosuch")
     hands.key(Key.Key_Return)
@@ -87,7 +87,7 @@ def test_file_not_found_and_any_key_goes_on(hands: Hands) -> None:
     assert hands.desk.program_loader.loaded.name == "knob.nc"
 
 
-def test_escape_keeps_the_program_that_is_there(hands: Hands) -> None:
+def test_esc_leaves_loaded_program_unchanged(hands: Hands) -> None:
     hands.load("pin")
     hands.key(Key.Key_F2)
     hands.type("knob")
@@ -98,7 +98,7 @@ def test_escape_keeps_the_program_that_is_there(hands: Hands) -> None:
     hands.sees(lambda: hands.machine.now.single_block)
 
 
-def test_the_list_is_picked_from_by_arrows(hands: Hands) -> None:
+def test_program_is_selected_from_list_by_arrows(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Down)
@@ -109,7 +109,7 @@ def test_the_list_is_picked_from_by_arrows(hands: Hands) -> None:
 
 
 @pytest.mark.parametrize("palm", [Key.Key_F11, Key.Key_F12])
-def test_one_palm_is_no_start(hands: Hands, palm: Key) -> None:
+def test_one_palm_button_does_not_start_cycle(hands: Hands, palm: Key) -> None:
     hands.load("pin")
     hands.down(palm)
     hands.up(palm)
@@ -117,7 +117,7 @@ def test_one_palm_is_no_start(hands: Hands, palm: Key) -> None:
     assert hands.prompt() == ONE_PALM_PRESSED
 
 
-def test_palms_that_repeat_by_being_held_are_one_press(hands: Hands) -> None:
+def test_auto_repeat_of_palm_keys_is_one_press(hands: Hands) -> None:
     hands.load("pin")
     hands.down(Key.Key_F11)
     for _ in range(5):
@@ -129,7 +129,7 @@ def test_palms_that_repeat_by_being_held_are_one_press(hands: Hands) -> None:
     hands.up(Key.Key_F11)
 
 
-def test_losing_the_keyboard_lets_a_palm_go(hands: Hands) -> None:
+def test_loss_of_keyboard_focus_releases_palm_button(hands: Hands) -> None:
     hands.load("pin")
     hands.down(Key.Key_F11)
     assert hands.machine.palms == {"left"}
@@ -145,7 +145,7 @@ def test_no_start_without_a_program(hands: Hands) -> None:
     hands.sees(lambda: hands.prompt() == text("screen.no-start", why="NO PROVED PROGRAM"))
 
 
-def test_no_start_while_an_alarm_stands(hands: Hands) -> None:
+def test_start_is_rejected_during_alarm(hands: Hands) -> None:
     hands.load("pin")
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
     hands.sees_state(MachineState.FAULT)
@@ -175,7 +175,7 @@ def test_a_program_with_errors_is_shown_and_refused(
     hands.sees(lambda: hands.prompt() == text("screen.no-start", why="THE PROGRAM HAS ERRORS"))
 
 
-def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
+def test_reset_of_interrupted_program_asks_once(hands: Hands) -> None:
     hands.load("pin")
     hands.both_palms()
     hands.sees_state(MachineState.RUN)
@@ -192,7 +192,7 @@ def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
     hands.sees_state(MachineState.IDLE)
 
 
-def test_no_other_program_and_no_leaving_while_one_runs(hands: Hands) -> None:
+def test_program_change_and_exit_are_rejected_while_one_runs(hands: Hands) -> None:
     hands.load("pin")
     hands.both_palms()
     hands.sees_state(MachineState.RUN)
@@ -203,7 +203,7 @@ def test_no_other_program_and_no_leaving_while_one_runs(hands: Hands) -> None:
     assert shows(hands.prompt(), "screen.program-runs-no-leaving")
 
 
-def test_a_cycle_started_at_the_station_takes_the_keyboard_from_the_question(hands: Hands) -> None:
+def test_cycle_started_at_station_closes_question(hands: Hands) -> None:
     hands.load("pin")
     hands.key(Key.Key_F2)
     hands.machine.post(CycleStart())
@@ -212,14 +212,14 @@ def test_a_cycle_started_at_the_station_takes_the_keyboard_from_the_question(han
     assert FeedHold() in hands.machine.posted
 
 
-def test_palm_keys_do_nothing_while_a_name_is_typed(hands: Hands) -> None:
+def test_palm_keys_start_nothing_while_a_name_is_typed(hands: Hands) -> None:
     hands.load("pin")
     hands.key(Key.Key_F2)
     hands.both_palms()
     assert CycleStart() not in hands.machine.posted
 
 
-def test_bare_arrows_do_nothing_and_with_control_they_move_the_picture(hands: Hands) -> None:
+def test_arrows_move_picture_only_with_ctrl(hands: Hands) -> None:
     hands.load("knob")
     hands.sees(lambda: hands.page.path_view.first_projection is not None)
     before = hands.page.path_view.first_projection
@@ -246,7 +246,7 @@ def test_block_delete_proves_the_program_again(hands: Hands) -> None:
     assert shorter.blocks < whole.blocks
 
 
-def test_drives_off_asks_for_the_drives(hands: Hands) -> None:
+def test_prompt_with_drives_off_asks_for_drives(hands: Hands) -> None:
     hands.machine.now = replace(hands.machine.now, state=MachineState.DISABLED)
     hands.sees(lambda: hands.prompt() == text("screen.drives-off"))
 

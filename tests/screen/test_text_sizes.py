@@ -94,7 +94,7 @@ PAGES = (
 )
 
 
-def test_the_angle_of_a_role_at_its_distance() -> None:
+def test_minimum_text_height_follows_from_viewing_distance() -> None:
     assert TextRole.POSITION.find_min_height_mm(is_small=False) == pytest.approx(2000 * tan(radians(20 / 60)))
     assert TextRole.POSITION.find_min_height_mm(is_small=False) == pytest.approx(11.64, abs=0.01)
     assert TextRole.PROMPT.find_min_height_mm(is_small=False) == pytest.approx(6.98, abs=0.01)
@@ -120,7 +120,7 @@ def test_a_panel_under_10_inches_is_small(name: str, small: bool) -> None:
         (154, 154),  # not the shape of its pixels
     ],
 )
-def test_an_implausible_size_counts_as_a_monitor_of_96_dots_per_inch(reported: tuple[int, int]) -> None:
+def test_implausible_panel_size_is_treated_as_96_dpi_monitor(reported: tuple[int, int]) -> None:
     size = make_panel_size(1024, 600, *reported)
     assert size.pixels_per_mm == pytest.approx(96 / 25.4)
     assert not size.is_small
@@ -143,7 +143,7 @@ def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
 
 @pytest.mark.parametrize("size", [(1024, 600), (1280, 800), (1920, 1080), (3840, 2160), (1080, 1920)])
 @pytest.mark.parametrize("dock", [True, False])
-def test_the_large_position_takes_2_8_units_of_a_page(size: tuple[int, int], dock: bool) -> None:
+def test_large_position_readout_uses_2_8_units_of_page(size: tuple[int, int], dock: bool) -> None:
     low, moves, u = (
         make_low_layout(*size, dock),
         make_low_layout(*size, dock, has_axis_motion=True),
@@ -157,7 +157,7 @@ def test_the_large_position_takes_2_8_units_of_a_page(size: tuple[int, int], doc
 
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("name", PANELS)
-def test_texts_of_all_pages_are_as_high_as_stated(
+def test_texts_on_all_pages_have_required_height(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, language: str
 ) -> None:
     size, lowest = make_panel_size(*PANELS[name]), dict[TextRole, tuple[float, str]]()
@@ -183,7 +183,7 @@ def test_texts_of_all_pages_are_as_high_as_stated(
 
 @pytest.mark.parametrize("page", [page_table.JOG, page_table.MDI, page_table.SEARCHTO_PAGE])
 @pytest.mark.parametrize("name", PANELS)
-def test_the_position_is_large_where_axes_can_move(
+def test_position_readout_is_large_where_axes_can_move(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, page: str
 ) -> None:
     size = make_panel_size(*PANELS[name])

@@ -34,7 +34,7 @@ SHAPES = [
 ]
 
 
-def test_a_colour_that_is_made_faint_stays_as_it_is_elsewhere() -> None:
+def test_alpha_of_returned_color_does_not_change_theme() -> None:
     """The part view draws holders through; the state in the title has the same colour."""
     look = ScreenTheme(DARK_PALETTE)
     look.get_color("off").setAlphaF(0.12)
@@ -56,7 +56,7 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
-def test_known_ratios() -> None:
+def test_known_contrast_ratios_are_calculated() -> None:
     assert contrast("#000000", "#ffffff") == pytest.approx(21.0)
     assert contrast("#777777", "#ffffff") == pytest.approx(4.48, abs=0.01)  # the well known near miss
     assert contrast("#123456", "#123456") == pytest.approx(1.0)
@@ -64,19 +64,19 @@ def test_known_ratios() -> None:
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize(("ink", "ground"), TEXT)
-def test_text_is_readable(palette: ColorPalette, ink: str, ground: str) -> None:
+def test_text_has_readable_contrast(palette: ColorPalette, ink: str, ground: str) -> None:
     assert contrast(getattr(palette, ink), getattr(palette, ground)) >= 4.5
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize(("shape", "ground"), SHAPES)
-def test_shapes_stand_out(palette: ColorPalette, shape: str, ground: str) -> None:
+def test_shapes_have_sufficient_contrast(palette: ColorPalette, shape: str, ground: str) -> None:
     assert contrast(getattr(palette, shape), getattr(palette, ground)) >= 3.0
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize("number", range(8))
-def test_curves_stand_out(palette: ColorPalette, number: int) -> None:
+def test_curves_have_sufficient_contrast(palette: ColorPalette, number: int) -> None:
     assert contrast(CURVE_COLORS[palette.name][number], palette.panel) >= 3.0
 
 
@@ -128,7 +128,7 @@ def lab(rgb: list[float]) -> tuple[float, float, float]:
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize("eyes", BLIND)
 @pytest.mark.parametrize(("one", "other"), TOLD_APART)
-def test_states_stay_apart_for_colour_blind_eyes(
+def test_state_colors_differ_for_color_blind_viewers(
     palette: ColorPalette, eyes: str, one: str, other: str
 ) -> None:
     """A difference of 10 in L*a*b* is seen at a glance; words and shapes tell the states as well."""
@@ -145,18 +145,18 @@ def test_states_stay_apart_for_colour_blind_eyes(
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
-def test_done_and_to_come_differ_in_lightness(palette: ColorPalette) -> None:
+def test_executed_and_remaining_path_differ_in_lightness(palette: ColorPalette) -> None:
     assert contrast(palette.done, palette.todo) >= 2.5
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
-def test_colours_are_written_as_six_digits(palette: ColorPalette) -> None:
+def test_colors_are_written_as_six_hex_digits(palette: ColorPalette) -> None:
     for field in fields(palette):
         value = getattr(palette, field.name)
         assert field.name == "name" or (len(value) == 7 and int(value[1:], 16) >= 0)
 
 
-def test_the_bundled_font_is_what_is_drawn_with() -> None:
+def test_bundled_font_is_used_for_drawing() -> None:
     assert "B612" in load_fonts()
     look = ScreenTheme(DARK_PALETTE, 12.0)
     info = QFontInfo(look.make_font(2.0, is_bold=True))
@@ -164,17 +164,17 @@ def test_the_bundled_font_is_what_is_drawn_with() -> None:
     assert info.bold()
 
 
-def test_figures_are_of_one_width() -> None:
+def test_digits_have_equal_width() -> None:
     metrics = QFontMetricsF(ScreenTheme(DARK_PALETTE, 12.0).make_font(7.0, is_bold=True))
     assert len({metrics.horizontalAdvance(digit) for digit in "0123456789"}) == 1
 
 
 @pytest.mark.parametrize("sign", "Ø−·—°")
-def test_every_sign_is_in_the_font(sign: str) -> None:
+def test_every_character_is_in_the_font(sign: str) -> None:
     assert QRawFont.fromFont(ScreenTheme(DARK_PALETTE, 12.0).make_font(2.0)).supportsCharacter(ord(sign))
 
 
-def test_text_that_is_too_long_is_made_smaller_but_never_unreadable() -> None:
+def test_long_text_is_shrunk_but_remains_readable() -> None:
     look, text = ScreenTheme(DARK_PALETTE, 12.0), "A PROGRAM NAME OF SOME LENGTH"
     font = look.fit_font(text, 3.0, 400.0, is_bold=True)
     assert QFontMetricsF(font).horizontalAdvance(text) <= 400.0
@@ -182,7 +182,7 @@ def test_text_that_is_too_long_is_made_smaller_but_never_unreadable() -> None:
 
 
 @pytest.mark.parametrize("bold", [False, True])
-def test_a_width_is_that_of_the_font_it_is_asked_for(bold: bool) -> None:
+def test_text_width_is_measured_in_requested_font(bold: bool) -> None:
     look = ScreenTheme(DARK_PALETTE, 12.0)
     for size in (1.5, 3.0, 1.5):
         font = look.make_font(size, is_bold=bold)

@@ -66,7 +66,7 @@ def colours(hands: Hands, table: ToolShapePanel) -> set[str]:
     return {image.pixelColor(x, y).name() for x in range(wide * 2 // 3, wide) for y in range(high)}
 
 
-def test_shape_of_the_tool_under_the_cursor_comes_up_and_goes_back(hands: Hands, store: Store) -> None:
+def test_shape_page_opens_for_tool_under_cursor_and_returns(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == "T2  KIND?")
     hands.key(Key.Key_F8)
@@ -79,7 +79,7 @@ def test_shape_of_the_tool_under_the_cursor_comes_up_and_goes_back(hands: Hands,
     assert hands.frame.current_page is hands.page
 
 
-def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
+def test_new_shape_is_entered_by_keyboard_only(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
@@ -94,7 +94,7 @@ def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.offsets.tool_shapes.read_rows()[2] == ShapeRow("turning", insert="DCMT 11T304"))
 
 
-def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> None:
+def test_letters_in_open_text_field_are_not_commands(hands: Hands, store: Store) -> None:
     """H holds, E stops, C and D mean something too: here they are letters."""
     page = opened(hands)
     for _ in range(5):
@@ -109,7 +109,7 @@ def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> 
     assert store.offsets.tool_shapes.read_rows()[1].holder == ""
 
 
-def test_a_finger_alone_makes_a_drill(hands: Hands, store: Store) -> None:
+def test_drill_shape_is_entered_by_touch_only(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
     enter, point, two, five = 19, 13, 9, 5  # places on the pad, row by row
     for _ in range(6):
@@ -124,7 +124,7 @@ def test_a_finger_alone_makes_a_drill(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.offsets.tool_shapes.read_rows()[2].diameter == pytest.approx(6.35))
 
 
-def test_every_field_is_as_large_as_a_finger(hands: Hands, store: Store) -> None:
+def test_every_field_is_touch_sized(hands: Hands, store: Store) -> None:
     store.offsets.tool_shapes.change_row(1, "set", {"kind": "threading"}).result(LIMIT)
     hands.desk.offset_book.read_store()
     page = opened(hands)
@@ -147,7 +147,7 @@ def test_outline_and_control_point_are_drawn(hands: Hands, store: Store, size: t
     assert look.get_color("ghost").name() not in colours(hands, page.table_panel)
 
 
-def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> None:
+def test_invalid_shape_is_reported_and_not_drawn(hands: Hands, store: Store) -> None:
     store.offsets.tool_shapes.change_row(1, "set", {"kind": "drill"}).result(LIMIT)
     hands.desk.offset_book.read_store()
     page = opened(hands)
@@ -157,7 +157,7 @@ def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> Non
     assert hands.window.theme.get_color("alarm").name() in colours(hands, page.table_panel)
 
 
-def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
+def test_f3_asks_before_deleting_shape(hands: Hands, store: Store) -> None:
     page = opened(hands)
     hands.key(Key.Key_F3)
     assert hands.prompt() == text("screen.forget-shape", number=1)
@@ -171,7 +171,7 @@ def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
     hands.sees(lambda: page.model.shape_row == ShapeRow("turning", insert="CNMG432"))
 
 
-def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
+def test_history_shows_changed_fields(hands: Hands, store: Store) -> None:
     store.offsets.tool_shapes.change_row(1, "sharper", {"insert": "CNMG431"}).result(LIMIT)
     page = opened(hands)
     hands.key(Key.Key_F5)
@@ -182,7 +182,7 @@ def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
     ]
 
 
-def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
+def test_shape_cannot_be_changed_while_program_runs(hands: Hands, store: Store) -> None:
     opened(hands)
     hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
     hands.sees(lambda: begins(hands.prompt(), "screen.program-runs-wear-only"))
@@ -192,14 +192,14 @@ def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> 
     assert len(store.offsets.tool_shapes.read_history()) == 1
 
 
-def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
+def test_change_without_store_shows_reason(hands: Hands) -> None:
     opened(hands)
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
     hands.sees(lambda: hands.prompt() == text("screen.no-offsets-kept"))
 
 
-def test_refusal_is_spanish_where_the_operator_is(hands: Hands, store: Store) -> None:
+def test_rejection_is_shown_in_spanish(hands: Hands, store: Store) -> None:
     hands.desk.settings_store.choose("language", "es")
     page = opened(hands)
     for _ in range(4):

@@ -124,7 +124,7 @@ def cells(hands: Hands) -> dict[str, str]:
     return {row.cells[0]: row.cells[1] for row in page(hands).table_panel.table.rows}
 
 
-def test_settings_by_arrows_and_return_are_kept(hands: Hands, journal: Journal) -> None:
+def test_settings_are_changed_by_arrows_and_saved_by_return(hands: Hands, journal: Journal) -> None:
     assert cells(hands)["BITS, PARITY, STOP BITS"] == "7E1"
     hands.key(Key.Key_Return)
     hands.sees(lambda: cells(hands)["PORT"] == "/dev/ttyS0")
@@ -140,7 +140,7 @@ def test_settings_by_arrows_and_return_are_kept(hands: Hands, journal: Journal) 
     hands.sees(kept)
 
 
-def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
+def test_received_program_gets_new_name_and_starts_nothing(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
     hands.key(Key.Key_F5)
@@ -162,7 +162,7 @@ def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
     assert len(hands.machine.posted) == posted
 
 
-def test_a_taken_name_is_refused_and_the_program_still_there(
+def test_existing_name_is_rejected_and_received_program_remains(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
     (tmp_path / "own").mkdir()
@@ -180,7 +180,9 @@ def test_a_taken_name_is_refused_and_the_program_still_there(
     assert page(hands).table_panel.table.question == text("screen.name-of-new-program")
 
 
-def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
+def test_received_program_is_discarded_after_confirmation(
+    hands: Hands, lines: FakeLines, tmp_path: Path
+) -> None:
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
@@ -193,7 +195,7 @@ def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path
     assert not (tmp_path / "own").exists()
 
 
-def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
+def test_canceled_reception_saves_nothing(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
     hands.key(Key.Key_F5)
     hands.sees(lambda: "STATUS" in cells(hands))
     hands.key(Key.Key_F6)
@@ -202,7 +204,7 @@ def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path)
     assert not (tmp_path / "own").exists()
 
 
-def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
+def test_transfer_error_is_reported(hands: Hands, lines: FakeLines) -> None:
     lines.fails = DriverError("parity error in line 7")
     hands.key(Key.Key_F5)
     assert lines.job is not None
@@ -211,7 +213,7 @@ def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
     assert hands.desk.prompt_answers.notice_kind is MessageKind.REFUSAL
 
 
-def test_where_no_port_is_there_that_is_told(hands: Hands) -> None:
+def test_missing_serial_port_is_reported(hands: Hands) -> None:
     section = page(hands).model.shown_function
     assert isinstance(section, SerialTransferFunction)
     port, section.port_names = section.line_settings.port, ()
@@ -223,13 +225,13 @@ def test_where_no_port_is_there_that_is_told(hands: Hands) -> None:
     assert not shows(hands.desk.prompt_notice, "screen.no-serial-port")
 
 
-def test_without_a_program_on_the_desk_nothing_is_sent(hands: Hands, lines: FakeLines) -> None:
+def test_nothing_is_sent_without_loaded_program(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F4)
     hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.nothing-to-send"))
     assert lines.said == []
 
 
-def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> None:
+def test_loaded_program_is_sent(hands: Hands, lines: FakeLines) -> None:
     assert hands.desk.program_choice.load_by_name("pin.nc")
     hands.sees(lambda: hands.desk.program_loader.loaded.path is not None)
     hands.key(Key.Key_F4)
@@ -243,7 +245,7 @@ def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> Non
     assert said[1].name == "pin.nc"
 
 
-def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
+def test_reception_continues_while_other_pages_are_open(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F5)
     hands.sees(lambda: "STATUS" in cells(hands))
     hands.key(Key.Key_Escape)
@@ -257,7 +259,7 @@ def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
     hands.sees(lambda: page(hands).table_panel.table.question != "")
 
 
-def test_while_a_program_runs_letters_are_the_name_of_what_was_received(
+def test_letters_name_received_program_while_another_one_runs(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
     hands.key(Key.Key_F5)

@@ -54,7 +54,7 @@ def moving(hands: Hands, state: MachineState = MachineState.RUN) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
 
 
-def test_the_windows_and_whether_esc_holds_are_shown(watched: tuple[Hands, Watched]) -> None:
+def test_watcher_is_informed_of_window_and_esc_function(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     hands.window.refresh()
     assert made.shown[-1] == FocusRecord(frozenset({int(window_of(hands).winId())}), is_esc_stop_key=False)
@@ -66,14 +66,14 @@ def test_the_windows_and_whether_esc_holds_are_shown(watched: tuple[Hands, Watch
     assert not made.shown[-1].is_esc_stop_key
 
 
-def test_a_hold_carries_the_number_of_its_press(watched: tuple[Hands, Watched]) -> None:
+def test_feed_hold_contains_number_of_its_key_press(watched: tuple[Hands, Watched]) -> None:
     hands, _ = watched
     send(hands, Key.Key_Pause, at=AT)
     (hold,) = [each for each in hands.machine.posted if isinstance(each, FeedHold)]
     assert hold.press == make_press_number(Key.Key_Pause, AT)
 
 
-def test_an_esc_that_has_held_leaves_no_page(watched: tuple[Hands, Watched]) -> None:
+def test_esc_that_caused_feed_hold_does_not_leave_page(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     hands.frame.open_page(page_table.MENU)
     moving(hands, MachineState.HOLD)  # by the watcher
@@ -84,7 +84,7 @@ def test_an_esc_that_has_held_leaves_no_page(watched: tuple[Hands, Watched]) -> 
     assert hands.machine.posted[-1].press == make_press_number(Key.Key_Escape, AT)  # type: ignore[attr-defined]
 
 
-def test_an_esc_that_has_not_held_leaves_the_page(watched: tuple[Hands, Watched]) -> None:
+def test_esc_that_caused_no_feed_hold_leaves_page(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     hands.frame.open_page(page_table.MENU)
     moving(hands, MachineState.HOLD)
@@ -95,14 +95,14 @@ def test_an_esc_that_has_not_held_leaves_the_page(watched: tuple[Hands, Watched]
     assert FeedHold() not in hands.machine.posted
 
 
-def test_an_estop_whose_key_never_comes_is_shown_pressed(watched: tuple[Hands, Watched]) -> None:
+def test_estop_reported_by_watcher_is_shown_as_pressed(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     made.send(StopKind.ESTOP, Key.Key_ScrollLock)
     hands.window.refresh()
     assert hands.desk.station_controls.is_estop_pressed
 
 
-def test_a_hold_whose_key_never_comes_is_not_posted_again(watched: tuple[Hands, Watched]) -> None:
+def test_feed_hold_reported_by_watcher_is_not_posted_again(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     made.send(StopKind.HOLD, Key.Key_Pause)
     hands.window.refresh()
@@ -110,7 +110,7 @@ def test_a_hold_whose_key_never_comes_is_not_posted_again(watched: tuple[Hands, 
     assert not hands.desk.station_controls.is_estop_pressed
 
 
-def test_without_an_x_server_nothing_is_started(hands: Hands) -> None:
+def test_watcher_is_not_started_without_x_server(hands: Hands) -> None:
     def never() -> None:
         raise AssertionError
 

@@ -22,9 +22,7 @@ from tests.screen.hands import Hands
         ("klartext", "TOOL TABLE", "PRESETS"),
     ],
 )
-def test_f8_and_f9_of_the_main_menu_open_what_they_open_elsewhere(
-    language: str, tools: str, offsets: str
-) -> None:
+def test_f8_and_f9_in_main_menu_open_same_pages_as_elsewhere(language: str, tools: str, offsets: str) -> None:
     keys = map_menu_keys(language)
     assert (keys["F8"].name, keys["F9"].name) == (tools, offsets)
 
@@ -37,7 +35,7 @@ def test_f8_and_f9_of_the_main_menu_open_what_they_open_elsewhere(
         ("klartext", ("M5 OFF", "M3 FWD", "M4 REV")),
     ],
 )
-def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tuple[str, ...]) -> None:
+def test_spindle_readout_uses_words_of_program_language(language: str, words: tuple[str, ...]) -> None:
     told = (make_spindle_readout(Snapshot(rpm_command=rpm), True, language) for rpm in (0.0, 900.0, -900.0))
     assert tuple(each.direction for each in told) == words
 
@@ -50,7 +48,7 @@ def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tup
         ("ac-table-mill", {"coolant": "M8 M9"}, {}),
     ],
 )
-def test_outputs_are_told_with_the_codes_that_this_machine_reads(
+def test_outputs_and_inputs_are_listed_with_codes_of_machine(
     hands: Hands, name: str, switched: dict[str, str], asked: dict[str, str]
 ) -> None:
     section = SignalsFunction(hands.desk, load_shipped_machine(name))
@@ -63,7 +61,7 @@ def test_outputs_are_told_with_the_codes_that_this_machine_reads(
 
 
 @pytest.mark.parametrize(("stops", "asked"), [(True, "GUARD"), (False, "")])
-def test_the_guard_is_asked_for_where_it_stops_the_cycle(hands: Hands, stops: bool, asked: str) -> None:
+def test_guard_code_is_listed_only_if_guard_stops_cycle(hands: Hands, stops: bool, asked: str) -> None:
     machine = load_shipped_machine("gt75")
     interlocks = replace(machine.interlocks, guard_stops=stops)
     section = SignalsFunction(hands.desk, replace(machine, interlocks=interlocks))

@@ -42,7 +42,7 @@ def enter(hands: Hands, text: str) -> None:
     hands.key(Key.Key_Return)
 
 
-def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
+def test_values_are_overwritten_and_saved(hands: Hands, store: Store) -> None:
     page = opened(hands)
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == f"G54  {wording('screen.x-radius')}")
     enter(hands, "1.5-.25")
@@ -61,7 +61,7 @@ def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.offsets.zero_offsets.read_rows().get(55) == ZeroRow(z=33.0))
 
 
-def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
+def test_rejected_entry_is_explained_and_remains_for_correction(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "9999")
     assert hands.prompt() == wording(
@@ -77,7 +77,7 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     assert store.offsets.zero_offsets.read_rows() == {}
 
 
-def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) -> None:
+def test_return_without_entry_moves_on_and_changes_nothing(hands: Hands, store: Store) -> None:
     page = opened(hands)
     for _ in range(18):
         hands.key(Key.Key_Return)
@@ -85,7 +85,7 @@ def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) ->
     assert store.offsets.zero_offsets.read_history() == ()
 
 
-def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
+def test_offset_is_cleared_restored_by_undo_and_listed_in_history(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "7")
     hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=7.0)})
@@ -107,7 +107,7 @@ def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     hands.sees(page.table_panel.isVisible)
 
 
-def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
+def test_zero_offset_cannot_be_changed_while_program_runs(hands: Hands, store: Store) -> None:
     opened(hands)
     hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
     hands.sees(lambda: hands.prompt() == wording("screen.program-runs-no-zero"))
@@ -118,7 +118,7 @@ def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> 
     assert store.offsets.zero_offsets.read_history() == ()
 
 
-def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) -> None:
+def test_esc_first_cancels_entry_and_then_leaves_page(hands: Hands, store: Store) -> None:
     page = opened(hands)
     hands.type("12")
     hands.key(Key.Key_Escape)
@@ -128,7 +128,7 @@ def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) 
     assert store.offsets.zero_offsets.read_rows() == {}
 
 
-def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
+def test_page_opens_from_other_offset_tables_and_returns(hands: Hands, store: Store) -> None:
     assert store.offsets.zero_offsets.read_rows() == {}
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F10)
@@ -137,14 +137,14 @@ def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
     assert hands.frame.title_line.page_title == page_table.SECCMP
 
 
-def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
+def test_change_without_store_shows_reason(hands: Hands) -> None:
     page = opened(hands)
     enter(hands, "3")
     hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
     assert page.table_panel.stored_rows == {}
 
 
-def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Store) -> None:
+def test_program_is_reloaded_when_offset_changes(hands: Hands, store: Store) -> None:
     hands.load("bushing")
     before = hands.desk.program_loader.loaded
     opened(hands)
@@ -157,7 +157,7 @@ def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Stor
     )
 
 
-def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store) -> None:
+def test_zero_is_set_so_that_current_position_reads_typed_value(hands: Hands, store: Store) -> None:
     """At machine Z -83.5 the face is touched with 1.5 to come off: Z 1.5 lies there, so zero is at -85."""
     page = opened(hands)
     hands.machine.now = replace(hands.machine.now, actual=(12.0, -83.5, 735.0))
@@ -173,7 +173,7 @@ def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store
     assert page.model.text == ""
 
 
-def test_an_axis_that_is_not_homed_is_no_place_to_count_from(hands: Hands, store: Store) -> None:
+def test_zero_cannot_be_set_from_unhomed_axis(hands: Hands, store: Store) -> None:
     opened(hands)
     hands.machine.now = replace(hands.machine.now, homed=(False, True, True))
     hands.key(Key.Key_F2)

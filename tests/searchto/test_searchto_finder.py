@@ -25,14 +25,14 @@ def typed(text: str, line: int = 1) -> LineCursor:
     return cursor
 
 
-def test_figures_are_a_number_and_with_a_quotation_mark_a_text() -> None:
+def test_digits_are_a_line_number_and_quoted_digits_a_text() -> None:
     assert typed("12").entered_number == 12
     assert typed('"12').entered_number is None
     assert typed('"12').search_text == "12"
     assert typed("x1").entered_number is None
 
 
-def test_next_and_previous_go_round_the_end_and_know_no_case() -> None:
+def test_search_wraps_around_and_ignores_case() -> None:
     cursor = typed("(face")
     assert cursor.find_text(1)
     assert cursor.selected_line == 2
@@ -44,7 +44,7 @@ def test_next_and_previous_go_round_the_end_and_know_no_case() -> None:
     assert cursor.selected_line == 5
 
 
-def test_a_text_that_is_nowhere_leaves_the_cursor_where_it_is() -> None:
+def test_text_not_found_leaves_cursor_in_place() -> None:
     cursor = typed("QQ", 3)
     assert not cursor.find_text(1)
     assert cursor.selected_line == 3
@@ -58,7 +58,7 @@ def test_the_cursor_stays_in_the_program(line: int, there: int) -> None:
     assert cursor.selected_line == there
 
 
-def test_editing_keys() -> None:
+def test_entry_is_edited_by_keys() -> None:
     cursor = typed("X.55")
     cursor.handle_key("Back")
     assert cursor.entry_text == "X.5"
@@ -102,7 +102,7 @@ def test_lines_are_found_one_after_the_other(finder: RestartFinder) -> None:
     finder.worker.close()
 
 
-def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: RestartFinder) -> None:
+def test_canceled_search_returns_nothing_and_next_line_is_found(finder: RestartFinder) -> None:
     long = job("G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n")
     finder.find_line(long, 7)
     finder.worker.cancel_request()

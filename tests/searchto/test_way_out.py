@@ -47,14 +47,14 @@ from tests.texts import begins, text
         ),
     ],
 )
-def test_the_words(found: Retract, words: str) -> None:
+def test_manual_retract_is_described_for_each_case(found: Retract, words: str) -> None:
     assert describe_manual_retract(found, 3) == words
 
 
 PART = ProgramSource("PART", "G90G94F300\nT1\nX.75Z1\nZ-.3\nM19\nCA30\nG94F5X.5\nF300X.75\nZ1\nM05\nM30\n")
 
 
-def test_a_cross_hole_is_left_only_while_c_stands_as_it_stood() -> None:
+def test_cross_hole_retract_is_known_only_at_unchanged_c_angle() -> None:
     cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
     row = next(
         n for n, line in zip(cut.block_number.tolist(), cut.line_number.tolist(), strict=True) if line == 7
@@ -80,7 +80,7 @@ def interrupted(block: int, **changes: object) -> tuple[Snapshot, InterruptedJob
     return Snapshot(program="PART", demand=(0.6 * INCH, -0.3 * INCH, 30.0), interrupted=found), found
 
 
-def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_there() -> None:
+def test_retract_states_feed_and_uses_frame_of_active_tool() -> None:
     cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
     row = next(
         n for n, line in zip(cut.block_number.tolist(), cut.line_number.tolist(), strict=True) if line == 7
@@ -96,7 +96,7 @@ def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_
     assert out.start_state.is_mdi_line
 
 
-def test_a_note_of_a_second_ago_is_told_from_a_place_at_rest() -> None:
+def test_changed_axis_position_is_tolerated_only_after_power_loss() -> None:
     cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
     before, _ = interrupted(3, why=POWER_LOST_REASON, where=(0.75 * INCH, -0.1 * INCH, 30.0))
     assert plan_retract(cut, before, make_job(PART, setup()), OperatorChoices()).error_text == ""

@@ -18,7 +18,7 @@ def answer(*dependencies: Mapping[str, object]) -> str:
     return json.dumps({"dependencies": list(dependencies), "fixes": []})
 
 
-def test_what_has_no_known_vulnerability_is_checked() -> None:
+def test_packages_without_known_vulnerability_are_counted_as_checked() -> None:
     told = answer(*({"name": name, "version": "1", "vulns": []} for name in PACKAGES))
     assert parse_audit_output("desk", PACKAGES, told) == AuditResult("desk", 2, [], [])
 
@@ -38,14 +38,14 @@ def test_a_vulnerability_is_named() -> None:
         answer(*({"name": name, "skip_reason": "not found on PyPI"} for name in PACKAGES)),
     ],
 )
-def test_what_was_skipped_or_not_answered_is_not_checked(told: str) -> None:
+def test_skipped_or_missing_packages_count_as_unchecked(told: str) -> None:
     """pip-audit itself ends with 0 and "No known vulnerabilities found" where it has skipped all."""
     result = parse_audit_output("desk", PACKAGES, told)
     assert (result.checked_count, tuple(result.unchecked_packages)) == (0, PACKAGES)
     assert "**no package was checked**" in format_page([result], "2026-11-29")
 
 
-def test_the_page_has_a_date_and_every_locked_file() -> None:
+def test_page_has_date_and_names_every_locked_file() -> None:
     written = PAGE_PATH.read_text(encoding="utf-8")
     assert re.search(r"\(\d{4}-\d\d-\d\d\)", written)
     for name in (*EXTRAS_BY_SET, INSTALLER_SET):

@@ -40,7 +40,7 @@ def run(path: Path, *words: object, **environment: str) -> subprocess.CompletedP
     )
 
 
-def test_it_unpacks_itself_and_leaves_nothing_behind(packed: Path, tmp_path: Path) -> None:
+def test_bundle_unpacks_runs_setup_and_removes_its_files(packed: Path, tmp_path: Path) -> None:
     room = tmp_path / "room"
     room.mkdir()
     told = run(packed, "--headless", "/opt/x", TMPDIR=str(room))
@@ -49,7 +49,7 @@ def test_it_unpacks_itself_and_leaves_nothing_behind(packed: Path, tmp_path: Pat
     assert list(room.iterdir()) == []
 
 
-def test_how_the_set_up_ends_is_how_the_bundle_ends(tmp_path: Path) -> None:
+def test_bundle_returns_exit_status_of_setup(tmp_path: Path) -> None:
     (tmp_path / "gathered").mkdir()
     (tmp_path / "gathered" / "VERSION").write_text("1.2", encoding="utf-8")
     (tmp_path / "gathered" / "install.sh").write_text("exit 2\n", encoding="utf-8")
@@ -57,7 +57,7 @@ def test_how_the_set_up_ends_is_how_the_bundle_ends(tmp_path: Path) -> None:
     assert run(tmp_path / "turndesk.run").returncode == 2
 
 
-def test_it_only_unpacks_when_that_is_said(packed: Path, tmp_path: Path) -> None:
+def test_bundle_only_unpacks_with_unpack_option(packed: Path, tmp_path: Path) -> None:
     assert run(packed, "--unpack", tmp_path / "nowhere").returncode == 2
     (tmp_path / "there").mkdir()
     assert run(packed, "--unpack", tmp_path / "there").returncode == 0
@@ -82,7 +82,7 @@ def test_a_damaged_bundle_is_not_unpacked(packed: Path, spoilt: str) -> None:
     assert told.stdout == ""
 
 
-def test_it_is_refused_on_another_machine(packed: Path, tmp_path: Path) -> None:
+def test_bundle_for_other_architecture_is_rejected(packed: Path, tmp_path: Path) -> None:
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin" / "uname").write_text("#!/bin/sh\necho riscv64\n", encoding="utf-8")
     (tmp_path / "bin" / "uname").chmod(0o755)
@@ -91,7 +91,7 @@ def test_it_is_refused_on_another_machine(packed: Path, tmp_path: Path) -> None:
     assert f"is for {MACHINE}, and this computer is riscv64" in told.stderr
 
 
-def test_wheels_of_every_glibc_up_to_that_of_qt() -> None:
+def test_platform_options_list_every_glibc_up_to_that_of_qt() -> None:
     asked = list(bundle.list_platform_options("aarch64"))
     assert asked[0] == "--platform=manylinux_2_39_aarch64"
     assert "--platform=manylinux_2_17_aarch64" in asked
@@ -107,20 +107,20 @@ def unpacked(tmp_path: Path) -> Path:
     return tmp_path / "install.sh"
 
 
-def test_a_folder_that_cannot_be_written_to(unpacked: Path) -> None:
+def test_unwritable_folder_is_reported(unpacked: Path) -> None:
     told = run(unpacked, unpacked / "below-a-file", BUNDLE="turndesk.run")
     assert told.returncode == 2
     assert "may not write to" in told.stderr
     assert "name another folder behind turndesk.run" in told.stderr
 
 
-def test_an_option_that_it_does_not_know(unpacked: Path) -> None:
+def test_unknown_option_shows_usage(unpacked: Path) -> None:
     told = run(unpacked, "--help", BUNDLE="turndesk.run")
     assert told.returncode == 2
     assert told.stderr == "Usage: sh turndesk.run [--headless] [FOLDER]\n"
 
 
-def test_no_bundle_is_a_sentence(
+def test_failed_bundle_build_is_reported_in_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def refuse(*_: object) -> None:

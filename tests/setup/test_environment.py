@@ -45,7 +45,7 @@ def python_named(folder: Path, name: str, version: str, *, supported: bool, bare
 
 
 @pytest.mark.parametrize("version", ["3.10", "3.15"])
-def test_a_python_outside_is_one_sentence(tmp_path: Path, version: str) -> None:
+def test_unsupported_python_is_reported_in_one_sentence(tmp_path: Path, version: str) -> None:
     python_named(tmp_path, "python3", version, supported=False)
     told = tell("find_python", PATH=str(tmp_path))
     assert told.returncode == 2
@@ -55,7 +55,7 @@ def test_a_python_outside_is_one_sentence(tmp_path: Path, version: str) -> None:
     )
 
 
-def test_another_python_beside_it_is_taken(tmp_path: Path) -> None:
+def test_another_installed_python_is_used_if_supported(tmp_path: Path) -> None:
     python_named(tmp_path, "python3", "3.15", supported=False)
     python_named(tmp_path, "python3.13", "3.13", supported=True)
     assert tell('find_python; echo "$PYTHON"', PATH=str(tmp_path)).stdout == "python3.13\n"
@@ -65,7 +65,7 @@ def test_the_running_python_is_supported() -> None:
     assert tell(f'supported "{sys.executable}"').returncode == 0
 
 
-def test_all_that_is_missing_is_asked_for_at_once(tmp_path: Path) -> None:
+def test_all_missing_packages_are_requested_at_once(tmp_path: Path) -> None:
     assert tell("python_packages", PATH=str(tmp_path)).stdout == "python3 python3-venv\n"
     python_named(tmp_path, "python3", "3.13", supported=True, bare=True)
     assert tell("python_packages", PATH=str(tmp_path)).stdout == "python3-venv\n"
@@ -73,7 +73,7 @@ def test_all_that_is_missing_is_asked_for_at_once(tmp_path: Path) -> None:
     assert tell("python_packages", PATH=str(tmp_path)).stdout == ""
 
 
-def test_who_may_not_install_is_told_what_to_ask_for(tmp_path: Path) -> None:
+def test_user_without_install_rights_is_shown_what_to_ask_for(tmp_path: Path) -> None:
     executable(tmp_path / "id", "#!/bin/sh\n[ $1 = -u ] && echo 1000 || echo anna\n")
     executable(tmp_path / "dpkg-query", "#!/bin/sh\nexit 1\n")
     executable(tmp_path / "apt-get", "#!/bin/sh\nexit 100\n")
@@ -133,7 +133,7 @@ def set_up(shop: Path, **environment: str) -> subprocess.CompletedProcess[str]:
 
 
 @needs_pip
-def test_a_newer_release_of_what_is_locked_changes_nothing(shop: Path) -> None:
+def test_newer_release_of_locked_package_changes_nothing(shop: Path) -> None:
     """A package asks for another with an extra, and the index has a newer one of that without a hash here."""
     lock(shop, wheel_in(shop, "tiny", "1.0", "other[more]>=1"), wheel_in(shop, "other", "1.0"))
     wheel_in(shop, "other", "2.0")
@@ -145,7 +145,7 @@ def test_a_newer_release_of_what_is_locked_changes_nothing(shop: Path) -> None:
 
 
 @needs_pip
-def test_a_package_that_was_tampered_with_is_refused(shop: Path) -> None:
+def test_modified_package_is_rejected(shop: Path) -> None:
     with zipfile.ZipFile(shop / "wheels" / "tiny-1.0-py3-none-any.whl", "a") as archive:
         archive.writestr("more.py", "import os")
     told = set_up(shop)
@@ -157,14 +157,14 @@ def test_a_package_that_was_tampered_with_is_refused(shop: Path) -> None:
 
 
 @needs_pip
-def test_a_package_that_was_cut_short_is_refused(shop: Path) -> None:
+def test_truncated_package_is_rejected(shop: Path) -> None:
     wheel = shop / "wheels" / "tiny-1.0-py3-none-any.whl"
     wheel.write_bytes(wheel.read_bytes()[:-9])
     assert "damaged on the way" in set_up(shop).stderr
 
 
 @needs_pip
-def test_a_network_that_does_not_answer_is_told_as_one(shop: Path) -> None:
+def test_unreachable_network_is_reported_as_such(shop: Path) -> None:
     # Port 9 of this computer: nobody is there.
     told = set_up(
         shop, PIP_NO_INDEX="0", PIP_INDEX_URL="http://127.0.0.1:9/", PIP_RETRIES="1", PIP_FIND_LINKS=""
@@ -175,7 +175,7 @@ def test_a_network_that_does_not_answer_is_told_as_one(shop: Path) -> None:
 
 
 @needs_pip
-def test_no_package_for_this_computer(shop: Path) -> None:
+def test_missing_package_for_this_computer_is_reported(shop: Path) -> None:
     (shop / "wheels" / "tiny-1.0-py3-none-any.whl").unlink()
     told = set_up(shop)
     assert told.returncode == 2
@@ -192,7 +192,7 @@ def test_no_package_for_this_computer(shop: Path) -> None:
         ("error: something new", "pip says:\nerror: something new"),
     ],
 )
-def test_the_cause_told_is_the_cause(shop: Path, pip_says: str, sentence: str) -> None:
+def test_reported_cause_is_the_actual_cause(shop: Path, pip_says: str, sentence: str) -> None:
     python = shop / ".venv" / "bin" / "python"
     pip = f"#!/bin/sh\n[ $1 = -m ] && {{ printf '%s\\n' '{pip_says.replace(chr(39), '')}' >&2; exit 1; }}\n"
     executable(python, f'{pip}exec "{sys.executable}" "$@"\n')
@@ -208,7 +208,7 @@ def pip_that_says(shop: Path, words: str) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
-def test_a_full_disk_is_named_though_nothing_can_be_written_there(shop: Path) -> None:
+def test_full_disk_is_reported_even_if_no_log_can_be_written(shop: Path) -> None:
     pip_that_says(shop, "OSError: [Errno 28] No space left on device")
     (shop / ".venv" / ".turndesk-log").symlink_to("/dev/full")
     told = set_up(shop)
@@ -218,7 +218,7 @@ def test_a_full_disk_is_named_though_nothing_can_be_written_there(shop: Path) ->
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
-def test_a_disk_that_is_full_before_the_first_file_is_named(tmp_path: Path) -> None:
+def test_disk_full_before_first_file_is_reported(tmp_path: Path) -> None:
     place = tmp_path / "env"
     executable(
         tmp_path / "bin" / "mkdir",
@@ -229,7 +229,7 @@ def test_a_disk_that_is_full_before_the_first_file_is_named(tmp_path: Path) -> N
     assert "No room left on the disk" in told.stderr
 
 
-def test_a_full_disk_is_named_where_python_does_not_say_it(shop: Path) -> None:
+def test_full_disk_is_reported_even_if_python_error_omits_it(shop: Path) -> None:
     pip_that_says(shop, "Error: ensurepip returned non-zero exit status 1")
     df = "#!/bin/sh\necho Filesystem\necho tmpfs 2048 2048 0 100% /x\n"
     executable(shop / "bin" / "df", df)
@@ -237,7 +237,7 @@ def test_a_full_disk_is_named_where_python_does_not_say_it(shop: Path) -> None:
     assert "No room left on the disk" in told.stderr
 
 
-def test_a_disk_without_room_for_packages_of_the_system_is_named(tmp_path: Path) -> None:
+def test_full_disk_during_system_package_install_is_reported(tmp_path: Path) -> None:
     executable(tmp_path / "dpkg-query", "#!/bin/sh\nexit 1\n")
     executable(tmp_path / "id", "#!/bin/sh\necho 0\n")
     executable(tmp_path / "apt-get", "#!/bin/sh\necho 'cannot copy: No space left on device'; exit 100\n")
@@ -246,7 +246,7 @@ def test_a_disk_without_room_for_packages_of_the_system_is_named(tmp_path: Path)
     assert "Its disk is full" in told.stderr
 
 
-def test_whoever_waits_is_told_at_least_every_ten_seconds(tmp_path: Path) -> None:
+def test_progress_is_shown_at_least_every_ten_seconds(tmp_path: Path) -> None:
     """Two signs of life; the command ends when the third is being waited for."""
     os.mkfifo(tmp_path / "end")
     executable(
@@ -264,7 +264,7 @@ def test_whoever_waits_is_told_at_least_every_ten_seconds(tmp_path: Path) -> Non
     assert all(int(seconds) <= 10 for seconds in (tmp_path / "slept").read_text().split())
 
 
-def test_nothing_is_shown_any_more_when_the_set_up_was_ended(tmp_path: Path) -> None:
+def test_progress_output_ends_when_setup_is_terminated(tmp_path: Path) -> None:
     """The end of its output comes when nobody has it open any more."""
     executable(tmp_path / "sleep", "#!/bin/sh\nexit 0\n")
     script = f'. "{SETUP_FOLDER / "environment.sh"}"; patiently "It works" kill -9 "$$"'
@@ -276,18 +276,18 @@ def test_nothing_is_shown_any_more_when_the_set_up_was_ended(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("status", [0, 3])
-def test_what_a_command_says_and_how_it_ends_is_kept(status: int) -> None:
+def test_output_and_exit_status_of_command_are_preserved(status: int) -> None:
     told = tell(
         f'patiently "It works" sh -c "echo out; echo err >&2; exit {status}" || echo "$?"; echo "$said"'
     )
     assert told.stdout == ("" if status == 0 else f"{status}\n") + "out\nerr\n"
 
 
-def test_a_folder_whose_name_begins_like_an_option_is_a_folder(tmp_path: Path) -> None:
+def test_folder_name_that_looks_like_an_option_is_a_folder(tmp_path: Path) -> None:
     assert tell('echo "$PYTHON_ENV"', TURNDESK_VENV="-rf").stdout == "./-rf\n"
 
 
-def test_an_environment_of_another_place_is_made_anew(shop: Path) -> None:
+def test_environment_moved_from_another_location_is_recreated(shop: Path) -> None:
     place = shop / ".venv" / ".turndesk-place"
     place.write_text(f"{shop} {shop / '.venv'}", encoding="utf-8")
     assert tell("right_environment", ROOT=str(shop)).returncode == 0
@@ -295,12 +295,12 @@ def test_an_environment_of_another_place_is_made_anew(shop: Path) -> None:
     assert tell("right_environment", ROOT=str(shop)).returncode == 1
 
 
-def test_an_environment_whose_python_is_gone_is_made_anew(shop: Path) -> None:
+def test_environment_without_its_python_is_recreated(shop: Path) -> None:
     (shop / ".venv" / "bin" / "python").unlink()
     assert tell("right_environment", ROOT=str(shop)).returncode == 1
 
 
-def test_a_folder_of_somebody_is_not_emptied(tmp_path: Path) -> None:
+def test_folder_with_other_files_is_not_emptied(tmp_path: Path) -> None:
     (tmp_path / "letters").touch()
     told = tell("new_environment", TURNDESK_VENV=str(tmp_path))
     assert told.returncode == 2

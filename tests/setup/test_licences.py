@@ -33,7 +33,7 @@ def _installed(name: str) -> bool:
 
 
 @pytest.mark.parametrize("name", ["desk", "tests"])
-def test_every_licence_is_compatible(name: str) -> None:
+def test_every_license_is_compatible(name: str) -> None:
     for package in read_locked_packages(name):
         assert is_compatible(get_license(distribution(package)))
 
@@ -49,7 +49,7 @@ def test_every_licence_is_compatible(name: str) -> None:
         ("MIT AND Zlib", True),
     ],
 )
-def test_what_is_compatible(expression: str, may_be: bool) -> None:
+def test_license_expressions_are_classified_as_compatible_or_not(expression: str, may_be: bool) -> None:
     assert is_compatible(expression) is may_be
 
 
@@ -70,7 +70,7 @@ def test_a_package_that_may_not_be_passed_on_is_named(stated: dict[str, str]) ->
         get_license(cast(Distribution, Stated(**stated)))
 
 
-def test_the_page_is_in_step() -> None:
+def test_license_page_is_up_to_date() -> None:
     text = PAGE_PATH.read_text(encoding="utf-8")
     listed = {(row.name, row.version) for row in parse_page(text)}
     assert listed == {
@@ -92,7 +92,9 @@ def document(tmp_path: Path) -> dict[str, object]:
     return build_sbom("0.1.0", [wheel], [build_system_component("libegl1", "1.7.0-1", package, "debian")])
 
 
-def test_the_sbom_names_all_with_licence_and_version(document: dict[str, list[dict[str, object]]]) -> None:
+def test_sbom_names_every_package_with_license_and_version(
+    document: dict[str, list[dict[str, object]]],
+) -> None:
     components = {each["bom-ref"]: each for each in document["components"]}
     for package in read_locked_packages("desk").values():
         assert components[package.name]["version"] == package.version
@@ -121,7 +123,7 @@ def test_the_sbom_has_the_hash_of_every_file(document: dict[str, list[dict[str, 
     assert components["deb:libegl1"]["hashes"] == [{"alg": "SHA-256", "content": sha256(b"").hexdigest()}]
 
 
-def test_the_sbom_says_who_needs_whom(document: dict[str, list[dict[str, object]]]) -> None:
+def test_sbom_lists_dependencies_of_each_package(document: dict[str, list[dict[str, object]]]) -> None:
     needs = {each["ref"]: each["dependsOn"] for each in document["dependencies"]}
     assert needs["pyside6-essentials"] == ["shiboken6"]
     assert needs["numpy"] == []

@@ -58,7 +58,7 @@ def _needs(name: str) -> set[str]:
 
 
 @pytest.mark.parametrize("name", EXTRAS_BY_SET)
-def test_what_pyproject_asks_for_is_locked(name: str) -> None:
+def test_requirements_in_pyproject_are_locked(name: str) -> None:
     locked = read_locked_packages(name)
     for each in _asked(EXTRAS_BY_SET[name]):
         package = locked.get(canonicalize_name(each.name))
@@ -67,7 +67,7 @@ def test_what_pyproject_asks_for_is_locked(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["tests", "desk"])
-def test_with_all_that_these_need_and_nothing_else(name: str) -> None:
+def test_lock_has_exactly_the_transitive_dependencies(name: str) -> None:
     locked = read_locked_packages(name)
     reached: set[str] = set()
     ahead = {str(canonicalize_name(each.name)) for each in _asked(EXTRAS_BY_SET[name])}
@@ -87,20 +87,20 @@ def test_every_package_has_its_hashes(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", EXTRAS_BY_SET)
-def test_no_place_to_fetch_from_is_written_down(name: str) -> None:
+def test_lock_contains_no_download_address(name: str) -> None:
     text = get_locked_file(name).read_text(encoding="utf-8")
     assert "://" not in text
     assert not re.search(r"^--(?!hash)", text, re.MULTILINE)
 
 
-def test_the_same_package_is_the_same_everywhere() -> None:
+def test_package_has_same_version_in_every_lock() -> None:
     tests = read_locked_packages("tests")
     for name in EXTRAS_BY_SET:
         for package in read_locked_packages(name).values():
             assert package == tests.get(package.name, package), LOCK
 
 
-def test_what_runs_here_is_what_is_locked() -> None:
+def test_installed_packages_match_lock() -> None:
     for package in read_locked_packages("tests").values():
         if package.name in {Requirement(each).name for each in list_build_requirements()}:
             continue
@@ -112,7 +112,7 @@ def test_what_runs_here_is_what_is_locked() -> None:
             assert here == package.version, "sh tests/run.sh sets up what is locked"
 
 
-def test_one_list_of_pythons() -> None:
+def test_supported_python_versions_agree_everywhere() -> None:
     """lock.py, pyproject.toml and the set-up's own question say the same."""
     asked = SpecifierSet(read_project_file()["project"]["requires-python"])
     minors = [f"3.{minor}" for minor in range(8, 20)]
@@ -124,7 +124,7 @@ def test_one_list_of_pythons() -> None:
     assert first <= sys.version_info[:2] <= last
 
 
-def test_a_spoilt_lock_is_not_read_as_whole() -> None:
+def test_damaged_lock_is_not_read_as_complete() -> None:
     text = get_locked_file("desk").read_text(encoding="utf-8")
     spoilt = text.replace("--hash=sha256:", "--hash=md5:", 1)
     assert sum(len(each.hashes) for each in parse_locked_file(spoilt)) < spoilt.count("--hash=")

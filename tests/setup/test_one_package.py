@@ -38,7 +38,7 @@ def names(data: bytes) -> list[str]:
     return zipfile.ZipFile(io.BytesIO(data)).namelist()
 
 
-def test_the_packages_are_inside_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_packages_are_merged_into_one(monkeypatch: pytest.MonkeyPatch) -> None:
     made = merge_packages(wheel(FILES))
     assert {name.partition("/")[0] for name in names(made)} == {"turndesk", INFO[:-1]}
     assert {"turndesk/core/x.py", "turndesk/app/__init__.py", "turndesk/__main__.py"} <= set(names(made))
@@ -56,7 +56,7 @@ def test_the_record_has_the_hash_of_every_file() -> None:
     assert rows[-1] == [f"{INFO}RECORD", "", ""]
 
 
-def test_the_order_of_the_files_changes_nothing_and_the_stated_time_does(
+def test_file_order_does_not_change_wheel_but_stated_time_does(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     backwards = dict(reversed(FILES.items()))
@@ -100,7 +100,7 @@ def installed(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     "start", [("-m", "turndesk"), ("-c", "import sys, turndesk; sys.exit(turndesk.console())")]
 )
-def test_the_command_uses_its_own_packages(installed: Path, start: tuple[str, str]) -> None:
+def test_installed_command_imports_its_own_packages(installed: Path, start: tuple[str, str]) -> None:
     done = subprocess.run(
         [sys.executable, "-S", *start], cwd=installed, capture_output=True, text=True, check=False
     )
@@ -109,7 +109,7 @@ def test_the_command_uses_its_own_packages(installed: Path, start: tuple[str, st
     )
 
 
-def test_another_program_does_not_find_them(installed: Path) -> None:
+def test_another_program_does_not_import_turndesk_packages(installed: Path) -> None:
     code = "import turndesk, app; print(app.NAME); import core"
     done = subprocess.run(
         [sys.executable, "-S", "-c", code], cwd=installed, capture_output=True, text=True, check=False
@@ -118,7 +118,7 @@ def test_another_program_does_not_find_them(installed: Path) -> None:
     assert "No module named 'core'" in done.stderr
 
 
-def test_every_process_of_turndesk_finds_its_modules() -> None:
+def test_every_turndesk_process_gets_its_module_environment() -> None:
     """A file that starts ``python -m`` of a module of TurnDesk gives it the environment for that."""
     starting = {
         str(path.relative_to(PROJECT_FOLDER))
@@ -135,7 +135,7 @@ def test_every_process_of_turndesk_finds_its_modules() -> None:
     assert without == []
 
 
-def test_the_environment_names_the_folder_of_the_packages_first(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_module_environment_lists_package_folder_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", "/elsewhere")
     assert make_module_environment(X="1")["PYTHONPATH"].split(":")[0] == str(PROJECT_FOLDER)
     assert make_module_environment(X="1")["PYTHONPATH"].split(":")[1:] == ["/elsewhere"]
@@ -144,6 +144,6 @@ def test_the_environment_names_the_folder_of_the_packages_first(monkeypatch: pyt
     assert make_module_environment()["PYTHONPATH"] == str(PROJECT_FOLDER)
 
 
-def test_the_packages_are_those_of_the_source_code() -> None:
+def test_merged_packages_are_those_of_the_source_tree() -> None:
     assert [name for name in PACKAGES if not (PROJECT_FOLDER / name / "__init__.py").is_file()] == []
     assert wheel_merge._LAUNCHER.is_file()

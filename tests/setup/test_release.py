@@ -40,9 +40,7 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def test_an_archive_has_the_same_bytes_at_another_time_and_of_another_owner(
-    folder: Path, tmp_path: Path
-) -> None:
+def test_archive_bytes_do_not_depend_on_time_or_owner(folder: Path, tmp_path: Path) -> None:
     reproducible_archives.set_times(folder)
     reproducible_archives.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
     (folder / "a").touch()
@@ -56,14 +54,14 @@ def test_an_archive_has_the_same_bytes_at_another_time_and_of_another_owner(
         assert members["x/link"].linkname == "/usr/bin/python3"
 
 
-def test_another_content_has_other_bytes(folder: Path, tmp_path: Path) -> None:
+def test_archive_bytes_depend_on_content(folder: Path, tmp_path: Path) -> None:
     reproducible_archives.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
     (folder / "a").write_text("b")
     reproducible_archives.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
     assert (tmp_path / "1.tar.gz").read_bytes() != (tmp_path / "2.tar.gz").read_bytes()
 
 
-def test_an_archive_of_others_is_put_in_order(tmp_path: Path) -> None:
+def test_archive_of_other_tool_is_made_reproducible(tmp_path: Path) -> None:
     made = []
     for number, names in enumerate((("a", "b"), ("b", "a"))):
         path = tmp_path / f"{number}.tar.gz"
@@ -85,7 +83,7 @@ def test_two_folders_are_compared_by_names_and_bytes(tmp_path: Path) -> None:
     assert release.list_differences(tmp_path / "1", tmp_path / "1") == []
 
 
-def test_sums_are_those_of_the_files(tmp_path: Path) -> None:
+def test_checksums_match_the_files(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"abc")
     release.write_checksums(tmp_path)
     release.write_checksums(tmp_path)  # the list itself is not in the list
@@ -97,7 +95,7 @@ def test_an_existing_folder_is_not_replaced(tmp_path: Path, capsys: pytest.Captu
     assert "exists already" in capsys.readouterr().err
 
 
-def test_a_version_with_a_commit_precedes_its_release() -> None:
+def test_version_with_commit_sorts_before_its_release() -> None:
     target = TARGETS["debian12"]
     assert get_debian_version("0.1.0", target) == "0.1.0+debian12"
     assert get_debian_version("0.1.0-20261201-1a2b3c4", target) == "0.1.0~202612010830.1a2b3c4+debian12"
@@ -108,25 +106,25 @@ def test_a_changed_checkout_has_no_version() -> None:
         get_debian_version("0.1.0-20261201-1a2b3c4-changed", TARGETS["debian12"])
 
 
-def test_the_pythons_of_the_targets_are_locked() -> None:
+def test_python_versions_of_targets_are_locked() -> None:
     assert {each.python_version for each in TARGETS.values()} <= set(PYTHONS)
 
 
 @pytest.mark.parametrize("name", ["control", "postinst", "prerm", "postrm"])
-def test_every_place_of_a_template_is_filled(name: str) -> None:
+def test_every_placeholder_of_template_is_filled(name: str) -> None:
     places = set(re.findall("@([A-Z]+)@", (DEBIAN / name).read_text(encoding="utf-8")))
     assert places <= WORDS
 
 
 @pytest.mark.parametrize("name", ["postinst", "prerm", "postrm", "kiosk", "turndesk"])
-def test_scripts_are_shell_that_ends_at_an_error(name: str) -> None:
+def test_scripts_are_valid_shell_and_exit_on_error(name: str) -> None:
     text = (DEBIAN / name).read_text(encoding="utf-8")
     assert subprocess.run(["/bin/sh", "-n"], input=text, text=True, check=False).returncode == 0
     assert "set -e" in text or "exec " in text
     assert "/home" not in text
 
 
-def test_the_package_depends_on_the_libraries_of_the_set_up() -> None:
+def test_package_depends_on_system_libraries_of_setup() -> None:
     control = (DEBIAN / "control").read_text(encoding="utf-8")
     text = (SETUP_FOLDER / "environment.sh").read_text(encoding="utf-8")
     wanted = " ".join(re.findall(r'^(?:QT|WINDOW|WAYLAND)_LIBRARIES="(.*)"$', text, re.MULTILINE)).split()
@@ -146,7 +144,7 @@ def test_the_copyright_names_every_package() -> None:
     assert "pytest" not in text
 
 
-def test_the_manual_page_has_every_command_and_no_bare_special_line() -> None:
+def test_manual_page_has_every_command_and_only_known_macros() -> None:
     page = manual_page.format_manual_page()
     headings = {
         line.removeprefix(".SS turndesk ").split()[0] for line in page.splitlines() if line[:3] == ".SS"
@@ -169,17 +167,17 @@ def test_special_characters_of_the_manual_are_escaped(text: str, expected: str) 
     assert manual_page.escape_text(text) == expected
 
 
-def test_the_menu_entry_is_that_of_the_command(tmp_path: Path) -> None:
+def test_menu_entry_starts_the_command(tmp_path: Path) -> None:
     assert "Exec=/usr/bin/turndesk %f" in format_entry("/usr/bin/turndesk %f")
 
 
-def test_the_sbom_of_a_release_is_the_same_each_time() -> None:
+def test_release_sbom_is_reproducible() -> None:
     assert build_sbom("1.2", []) == build_sbom("1.2", [])
     assert build_sbom("1.2", [])["serialNumber"] != build_sbom("1.3", [])["serialNumber"]
     assert build_sbom("1.2", [])["metadata"]["timestamp"] == "2026-12-01T08:30:00+00:00"
 
 
-def test_what_a_purge_may_leave_is_only_what_changes_anyway() -> None:
+def test_purge_check_ignores_only_files_that_change_anyway() -> None:
     ignored = release_check._IGNORED
     assert [
         name

@@ -61,17 +61,17 @@ RUN, IDLE = (
         (MachineState.HOMING, "", "READY", "no program is under way"),
     ],
 )
-def test_states(state: MachineState, waits: str, told: str, why: str) -> None:
+def test_execution_value_follows_machine_state(state: MachineState, waits: str, told: str, why: str) -> None:
     execution = ExecutionTracker(frozenset({"TB2-5", "1", "PLC-1"}))
     assert execution.update(Snapshot(state=state, waiting_for=waits)) == told, why
 
 
 @pytest.mark.parametrize("state", MachineState)
-def test_no_state_is_without_a_word(state: MachineState) -> None:
+def test_every_machine_state_has_an_execution_value(state: MachineState) -> None:
     assert ExecutionTracker().update(Snapshot(state=state)).isupper()
 
 
-def test_an_optional_stop_is_told_from_a_program_stop() -> None:
+def test_optional_stop_is_distinguished_from_program_stop() -> None:
     assert (
         ExecutionTracker().update(Snapshot(state=MachineState.PROGRAM_STOP, is_optional_stop=True))
         == "OPTIONAL_STOP"
@@ -83,7 +83,7 @@ def told(*snapshots: Snapshot) -> list[str]:
     return [execution.update(each) for each in snapshots]
 
 
-def test_a_program_that_has_ended_is_completed_until_something_else_happens() -> None:
+def test_ended_program_is_completed_until_next_change() -> None:
     done = replace(IDLE, ends=1)
     assert told(IDLE, RUN, done, done) == ["READY", "ACTIVE", "PROGRAM_COMPLETED", "PROGRAM_COMPLETED"]
     assert told(RUN, done, replace(done, state=MachineState.RUN))[-1] == "ACTIVE"
@@ -98,11 +98,11 @@ def test_a_program_that_has_ended_is_completed_until_something_else_happens() ->
     assert told(RUN, done, off, done)[1:] == ["PROGRAM_COMPLETED", "STOPPED", "READY"]
 
 
-def test_a_program_shorter_than_a_look_is_seen_by_its_end() -> None:
+def test_program_shorter_than_poll_interval_is_detected_by_its_end() -> None:
     assert told(IDLE, replace(IDLE, ends=1)) == ["READY", "PROGRAM_COMPLETED"]
 
 
-def test_programs_of_before_the_first_look_are_nobodys() -> None:
+def test_programs_ended_before_first_poll_are_ignored() -> None:
     assert told(replace(IDLE, ends=7)) == ["READY"]
 
 
@@ -110,7 +110,7 @@ def test_a_repeated_cycle_stays_active() -> None:
     assert told(RUN, replace(RUN, ends=1), replace(RUN, ends=2)) == ["ACTIVE"] * 3
 
 
-def test_a_program_that_was_given_up_is_stopped_and_not_completed() -> None:
+def test_canceled_program_is_stopped_and_not_completed() -> None:
     given_up = replace(IDLE, interrupted=broken_off(program="a.nc"))
     assert told(RUN, given_up, replace(RUN, interrupted=None)) == ["ACTIVE", "STOPPED", "ACTIVE"]
 
@@ -128,18 +128,18 @@ def test_a_program_that_was_given_up_is_stopped_and_not_completed() -> None:
         (replace(IDLE, state=MachineState.ESTOP), "AUTOMATIC"),
     ],
 )
-def test_modes(snapshot: Snapshot, mode: str) -> None:
+def test_controller_mode_follows_machine_state(snapshot: Snapshot, mode: str) -> None:
     assert find_controller_mode(snapshot) == mode
 
 
-def test_an_end_between_two_looks_is_told_before_the_drives_are_off() -> None:
+def test_end_between_two_polls_is_reported_before_drives_off() -> None:
     """A run without a screen switches everything off as soon as its program has ended."""
     execution, off = ExecutionTracker(), Snapshot(state=MachineState.DISABLED, program="a.nc", ends=1)
     execution.update(RUN)
     assert [execution.update(off), execution.update(off)] == ["PROGRAM_COMPLETED", "STOPPED"]
 
 
-def test_drives_off_in_the_middle_is_no_end() -> None:
+def test_drives_off_during_program_is_not_a_program_end() -> None:
     execution = ExecutionTracker()
     execution.update(RUN)
     assert execution.update(Snapshot(state=MachineState.DISABLED, program="a.nc")) == "STOPPED"

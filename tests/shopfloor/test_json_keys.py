@@ -28,7 +28,7 @@ def shots() -> list[Snapshot]:
     return [running, replace(running, state=MachineState.FAULT, alarms=(alarm,), interrupted=INTERRUPTED)]
 
 
-def test_status_json(tmp_path: Path) -> None:
+def test_status_json_keys_are_documented(tmp_path: Path) -> None:
     reader = MachineReader(load_shipped_machine("gt75"), lambda: 0.0)
     values = []
     for number, shot in enumerate(shots()):

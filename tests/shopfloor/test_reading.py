@@ -48,7 +48,7 @@ def values_of(snapshot: Snapshot, machine: Machine = LATHE) -> Mapping[str, Read
     return MachineReader(machine, lambda: 0.0).read_snapshot(snapshot).values
 
 
-def test_a_machine_in_a_cycle() -> None:
+def test_running_machine_gives_expected_values() -> None:
     assert values_of(AT) == {
         "avail": "AVAILABLE",
         "estop": "ARMED",
@@ -97,27 +97,29 @@ def test_a_machine_in_a_cycle() -> None:
         ({"inputs": frozenset({"guard", "end_of_bar"})}, "endbar", "YES"),
     ],
 )
-def test_one_thing_is_different(change: dict[str, object], key: str, told: ReadingValue) -> None:
+def test_each_change_of_machine_changes_its_value(
+    change: dict[str, object], key: str, told: ReadingValue
+) -> None:
     assert values_of(replace(AT, **change))[key] == told  # type: ignore[arg-type]
 
 
-def test_without_switches_nothing_is_known_of_what_they_would_tell() -> None:
+def test_values_of_missing_switches_are_unknown() -> None:
     values = values_of(AT, replace(LATHE, inputs={}))
     assert {values[key] for key in ("chuck", "door", "endbar", "part")} == {None}
 
 
-def test_an_input_called_part_is_a_part_in_the_chuck() -> None:
+def test_input_named_part_reports_part_in_chuck() -> None:
     wired = replace(LATHE, inputs={**LATHE.inputs, "part": InputModel("part", "IN-7")})
     assert values_of(AT, wired)["part"] == "NOT_PRESENT"
     assert values_of(replace(AT, inputs=frozenset({"part"})), wired)["part"] == "PRESENT"
 
 
-def test_without_a_c_axis_its_angle_means_nothing() -> None:
+def test_c_angle_is_unknown_without_c_axis() -> None:
     assert values_of(AT, replace(LATHE, is_c_enabled=False))["Cabs"] is None
 
 
 @pytest.mark.parametrize(("rpm", "told"), [(300.0, "ACTIVE"), (-300.0, "ACTIVE"), (1.0, "INACTIVE")])
-def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, told: str) -> None:
+def test_chuck_interlock_is_active_while_spindle_turns(rpm: float, told: str) -> None:
     strict = replace(LATHE, interlocks=replace(LATHE.interlocks, unclamp_while_turning=False))
     assert values_of(replace(AT, rpm_actual=rpm), strict)["chuckil"] == told
 
@@ -125,7 +127,7 @@ def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, t
 # --- a control that says nothing any more ----------------------------------------------------------------
 
 
-def test_of_a_silent_control_nothing_is_known() -> None:
+def test_nothing_is_known_of_silent_control() -> None:
     now = 100.0
     reader = MachineReader(LATHE, lambda: now)
     assert reader.read_snapshot(AT).is_available
@@ -157,7 +159,7 @@ def moved(axis: str) -> str:
     return text("executor.line-moves", line=12, axis=axis, place="150.000", unit="mm")
 
 
-def test_without_alarms_all_is_normal() -> None:
+def test_conditions_are_normal_without_alarms() -> None:
     assert active(AT) == {}
 
 
@@ -183,18 +185,18 @@ def test_without_alarms_all_is_normal() -> None:
         ("internal", "KeyError: 'X'", "system"),
     ],
 )
-def test_where_an_alarm_belongs(code: AlarmCode, detail: str, key: str) -> None:
+def test_alarm_is_reported_at_its_component(code: AlarmCode, detail: str, key: str) -> None:
     raised = alarm(code, detail)
     fault = ("FAULT", str(raised.number), f"{raised.text}: {raised.cause}")
     assert active(replace(AT, state=MachineState.FAULT, alarms=(raised,))) == {key: (fault,)}
 
 
 @pytest.mark.parametrize("code", CONDITION_PLACES)
-def test_every_place_is_that_of_an_alarm(code: AlarmCode) -> None:
+def test_every_assigned_alarm_code_exists(code: AlarmCode) -> None:
     assert alarm(code).code == code
 
 
-def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
+def test_unassigned_alarm_is_reported_at_system() -> None:
     unknown = cast("AlarmCode", "new")  # no catalogue has it
     new = Alarm(999, unknown, "SOMETHING NEW", "nobody knows", "")
     assert active(replace(AT, alarms=(new,))) == {
@@ -202,7 +204,7 @@ def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
     }
 
 
-def test_two_faults_of_a_slide_stand_side_by_side() -> None:
+def test_two_faults_of_one_axis_are_both_reported() -> None:
     both = (
         alarm("axis", "X: over current"),
         alarm("following", text("executor.off-setpoint", axis="X", distance="2.345")),
@@ -210,12 +212,12 @@ def test_two_faults_of_a_slide_stand_side_by_side() -> None:
     assert [code for _, code, _ in active(replace(AT, alarms=both))["Xservo"]] == ["101", "102"]
 
 
-def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() -> None:
+def test_interrupted_job_is_a_system_warning_until_cleared() -> None:
     left = replace(Snapshot(state=MachineState.IDLE), interrupted=broken_off())
     assert active(left) == {"system": (("WARNING", "interrupted", JOB),)}
 
 
-def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
+def test_automatic_feed_hold_is_a_warning() -> None:
     held = replace(AT, state=MachineState.HOLD, stop=make_alarm("low-queue", "", 4, 0.0))
     assert active(held) == {"system": (("WARNING", "904", CATALOG["low-queue"].text.upper()),)}
     assert active(replace(held, stop=make_alarm("feed-hold", "H at the keyboard", 4, 0.0))) == {}
@@ -229,7 +231,7 @@ def test_waiting_for_any_input_of_the_machine_is_waiting_for_a_device() -> None:
     assert values_of(replace(AT, state=MachineState.WAIT, waiting_for="TB9-9"))["execution"] == "ACTIVE"
 
 
-def test_of_a_machine_that_is_not_heard_the_last_figures_are_not_told() -> None:
+def test_last_values_of_unresponsive_machine_are_not_reported() -> None:
     values = values_of(replace(AT, unknown=ALL_UNKNOWN_PARTS))
     unheard = ("Xabs", "Zabs", "Cabs", "Srpm", "Sload", "Fact", "chuck", "door", "endbar", "part", "chuckil")
     assert [key for key in unheard if values[key] is not None] == []

@@ -45,12 +45,12 @@ def read(path: Path) -> dict[str, object]:
     return make_alarm
 
 
-def test_an_interrupted_job_is_told_with_line_tool_part_and_time() -> None:
+def test_status_of_interrupted_job_has_line_tool_part_and_time() -> None:
     status = make_status("GT-75", replace(RUNNING, interrupted_job=broken_off(line=8, tool=3, part=5)))
     assert status["interrupted"] == {"line": 8, "tool": 3, "part": 5, "at": "2026-05-04T09:30:00Z"}
 
 
-def test_what_it_says(tmp_path: Path) -> None:
+def test_status_file_has_expected_content(tmp_path: Path) -> None:
     path = tmp_path / "home" / "status.json"
     StatusFileWriter(path, Hours()).write_status(make_status("GT-75", RUNNING))
     assert read(path) == {
@@ -76,19 +76,17 @@ def test_what_it_says(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("load", "told"), [(42.6, 45), (41.9, 40), (0.0, 0), (None, None)])
-def test_the_load_of_the_spindle_is_told_in_steps_that_do_not_wear_out_a_disk(
-    load: float | None, told: int | None
-) -> None:
+def test_spindle_load_is_rounded_to_steps_to_limit_disk_writes(load: float | None, told: int | None) -> None:
     reading = replace(RUNNING, values={**RUNNING.values, "Sload": load})
     assert make_status("GT-75", reading)["spindle_load"] == told
 
 
-def test_of_a_silent_control_nothing_is_said() -> None:
+def test_status_of_silent_control_has_no_values() -> None:
     status = make_status("GT-75", MachineReading({"avail": "UNAVAILABLE"}))
     assert (status["available"], status["execution"], status["parts"]) == (False, None, None)
 
 
-def test_it_is_written_for_a_change_and_every_ten_looks(tmp_path: Path) -> None:
+def test_status_is_written_on_change_and_every_ten_polls(tmp_path: Path) -> None:
     path, hours = tmp_path / "status.json", Hours()
     file = StatusFileWriter(path, hours)
     for _ in range(10):
@@ -108,7 +106,7 @@ def test_it_is_written_for_a_change_and_every_ten_looks(tmp_path: Path) -> None:
     assert read(path)["since"] == read(path)["updated"] == "2026-01-01T00:00:04Z"
 
 
-def test_a_disk_that_fails_is_told_once_and_tried_again(
+def test_disk_error_is_reported_once_and_write_is_retried(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "home").write_text("a file where the folder should be")
@@ -122,14 +120,14 @@ def test_a_disk_that_fails_is_told_once_and_tried_again(
     assert read(tmp_path / "home" / "status.json")["execution"] == "ACTIVE"
 
 
-def test_a_file_that_was_left_half_written_is_replaced(tmp_path: Path) -> None:
+def test_partly_written_file_is_replaced(tmp_path: Path) -> None:
     (tmp_path / "status.json").write_text('{"upda')
     (tmp_path / "status.json.new").write_text("rubbish")
     StatusFileWriter(tmp_path / "status.json", Hours()).write_status({"execution": "READY"})
     assert read(tmp_path / "status.json")["execution"] == "READY"
 
 
-def test_whoever_reads_while_it_is_written_sees_a_whole_one(tmp_path: Path) -> None:
+def test_reader_during_write_sees_a_complete_file(tmp_path: Path) -> None:
     path = tmp_path / "status.json"
     file = StatusFileWriter(path, lambda: "now")
     file.write_status({"parts": 0})
@@ -149,7 +147,7 @@ def test_whoever_reads_while_it_is_written_sees_a_whole_one(tmp_path: Path) -> N
     assert seen == sorted(seen)  # type: ignore[type-var]
 
 
-def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
+def test_closed_status_updater_reports_unavailable_and_ends_thread(tmp_path: Path) -> None:
     looked = threading.Event()
 
     def look() -> StatusDocument:
@@ -167,7 +165,7 @@ def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_mistake_in_it_leaves_a_file_that_says_so(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_internal_error_is_reported_in_status_file(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     def look() -> StatusDocument:
         raise RuntimeError("a mistake of our own")
 

@@ -16,7 +16,7 @@ def writers() -> int:
     return sum(thread.name == "status" for thread in threading.enumerate())
 
 
-def test_the_screen_program_writes_its_status_from_its_start_to_its_end(home: Path) -> None:
+def test_screen_program_writes_status_from_start_to_end(home: Path) -> None:
     desk = build_desk()
     assert writers() == 1
     desk.close()
@@ -25,7 +25,7 @@ def test_the_screen_program_writes_its_status_from_its_start_to_its_end(home: Pa
     assert (status["machine"], status["available"]) == ("GT-75", False)  # the control has ended
 
 
-def test_a_store_that_another_has_leaves_its_status_alone(home: Path) -> None:
+def test_status_of_store_used_by_another_process_is_not_changed(home: Path) -> None:
     first = build_desk()
     try:
         second = build_desk()

@@ -45,11 +45,11 @@ def r(text: str, *behind: str) -> float:
         ("R2*R2", 100.0),
     ],
 )
-def test_a_formula(formula: str, value: float) -> None:
+def test_formula_is_evaluated(formula: str, value: float) -> None:
     assert r(f"R2=10\nR1={formula}") == pytest.approx(value, abs=1e-12)
 
 
-def test_words_and_targets_take_formulas() -> None:
+def test_words_and_targets_accept_formulas() -> None:
     ran = run("R1=10 R2=4\nG0 X=R1+2*R2 Z=-R2\nX=IC(R1-4) C=DC(R1*9)\nM30")
     assert ran.found == []
     last = ran.moves[-1]
@@ -81,7 +81,7 @@ def test_words_and_targets_take_formulas() -> None:
         ),
     ],
 )
-def test_where_a_program_goes_on(text: str, value: float) -> None:
+def test_control_structures_continue_at_the_right_block(text: str, value: float) -> None:
     assert r(text) == pytest.approx(value)
 
 
@@ -100,7 +100,7 @@ def test_an_endless_loop_is_an_error() -> None:
         ("REPEAT\nR1=1\nUNTIL R1==2\nM30", 3),
     ],
 )
-def test_a_jump_that_comes_round_unchanged_is_told(text: str, line: int) -> None:
+def test_jump_loop_without_change_is_reported(text: str, line: int) -> None:
     ran = run(text)
     assert [(each.code, each.line) for each in ran.found] == [("endless-loop", line)]
     assert len(ran.blocks) < 20
@@ -115,16 +115,16 @@ def test_a_jump_that_comes_round_unchanged_is_told(text: str, line: int) -> None
         "G0 Z50\nWHILE $AA_IW[Z]>10\nG0 Z=IC(-1)\nENDWHILE\nM30",  # goes by where it stands
     ],
 )
-def test_a_loop_that_ends_is_none(text: str) -> None:
+def test_loop_that_ends_is_not_reported_as_endless(text: str) -> None:
     assert run(text).errors == []
 
 
-def test_structures_in_a_subprogram_and_ret() -> None:
+def test_control_structures_and_ret_work_in_subprogram() -> None:
     sub = ("%_N_SUB_SPF", "FOR R2=1 TO 3", "R1=R1+1", "ENDFOR", "RET", "R1=99")
     assert r("%_N_MAIN_MPF\nR1=0\nSUB P2", *sub) == 6.0
 
 
-def test_coolant_before_and_behind_the_motion() -> None:
+def test_coolant_switches_on_before_motion_and_off_after_it() -> None:
     ran = run("G1 X10 F100 M8\nX20 M9\nM30")
     assert ran.errors == []
     told = [block.action if block.action is not None else "move" for block in ran.blocks[:4]]
@@ -149,7 +149,7 @@ def test_a_message_is_shown_and_its_semicolon_begins_no_comment() -> None:
         "WHILE R1<500\nR1=R1+1\nENDWHILE",
     ],
 )
-def test_a_loop_reads_no_line_at_each_pass(loop: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_loop_lines_are_not_read_again_at_each_pass(loop: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Once for its structure, once for a label, and twice when it runs first."""
     read: Counter[int] = Counter()
 
@@ -162,7 +162,7 @@ def test_a_loop_reads_no_line_at_each_pass(loop: str, monkeypatch: pytest.Monkey
     assert max(read.values()) <= 4
 
 
-def test_endfor_counts_on_after_a_jump_into_the_loop() -> None:
+def test_endfor_continues_counting_after_jump_into_loop() -> None:
     ran = run("GOTOF IN\nFOR R3=5 TO 6\nG0 X30\nIN: G0 X40\nENDFOR\nG0 Z=R3\nM30")
     assert (ran.found, ran.moves[-1].z) == ([], 7.0)  # from 0, which a parameter without a value is
 
@@ -172,7 +172,7 @@ def test_a_loop_whose_variable_is_not_defined_is_one_error(name: str) -> None:
     assert refused(f"FOR {name}=1 TO 3\nG0 X30\nENDFOR\nM30").code == "12550"
 
 
-def test_a_block_number_is_not_found_in_a_longer_one() -> None:
+def test_block_number_does_not_match_a_longer_one() -> None:
     assert [block.x for block in good("G0 X20\nGOTOF N3\nN33 G0 X30\nn3 G0 X40")] == [10.0, 20.0]
     assert refused("N20 GOTOF N3\nN33 G0 X30 ; N3").code == "14080"
 
@@ -188,17 +188,17 @@ def test_a_block_number_is_not_found_in_a_longer_one() -> None:
         ("G0 C=ACN(330)", "C", 330.0),
     ],
 )
-def test_positions_in_the_system_of_the_program(before: str, axis: str, value: float) -> None:
+def test_position_variables_are_in_program_coordinates(before: str, axis: str, value: float) -> None:
     for name in ("$AA_IW", "$P_EP"):
         assert r(f"{before}\nR1={name}[{axis}]") == pytest.approx(value)
 
 
 @pytest.mark.parametrize("text", ["R1=$AA_IW[Y]", "R1=$AA_IM[X]", "G70\nR1=$AA_IW[X]"])
-def test_positions_that_nothing_answers(text: str) -> None:
+def test_unavailable_position_variables_are_rejected(text: str) -> None:
     assert refused(text).code == "system-variable"
 
 
-def test_a_loop_whose_condition_has_no_value_is_one_error() -> None:
+def test_loop_with_undefined_condition_gives_one_error() -> None:
     """Its body is gone through for more mistakes, and no fault of the loop is told beside."""
     assert refused("WHILE $AA_IM[X]<100\nG0 Z=IC(1)\nENDWHILE\nM30").code == "system-variable"
     errors = run("WHILE NOBODY<100\nG0 Z=IC(0.001)\nG1 X\nENDWHILE\nM30").errors

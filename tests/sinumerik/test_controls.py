@@ -37,31 +37,31 @@ def of(control: str) -> Setup:
     ],
 )
 @pytest.mark.parametrize("control", ["802d", "808d"])
-def test_what_a_small_control_lacks(text: str, named: str, control: str) -> None:
+def test_function_missing_from_small_control_is_rejected(text: str, named: str, control: str) -> None:
     error = run(text, of(control)).errors[0]
     assert error.code == "not-in-control"
     assert f"{named} is not a function of the SINUMERIK {control.upper()}" in error.message
     assert '"control" under [machine]' in error.hint
 
 
-def test_cycle99_is_one_of_the_808d_and_none_of_the_802d() -> None:
+def test_cycle99_is_available_on_808d_and_not_on_802d() -> None:
     text = "S800 M3\nG0 X44 Z6\nCYCLE99(0,40,-20,40,4,2,0.92,0.05,30,,4,1,1.5,300103,1)"
     assert refused(text, of("802d")).code == "not-in-control"
     assert run(text, of("808d")).errors == []
 
 
 @pytest.mark.parametrize("control", CONTROL_NAMES)
-def test_what_all_of_them_have(control: str) -> None:
+def test_common_functions_are_available_on_all_controls(control: str) -> None:
     text = 'G18 G90 G71 DIAMON\nR1=1\nAGAIN: R1=R1+1\nIF R1<3 GOTOB AGAIN\nG0 X20 Z5\nMSG("A")\nM30'
     assert run(text, of(control)).errors == []
 
 
 @pytest.mark.parametrize("control", ["828d", "840d"])
-def test_the_large_ones_lack_nothing(control: str) -> None:
+def test_large_controls_lack_no_function(control: str) -> None:
     assert run("R1=1\nWHILE R1<2\nR1=2\nENDWHILE\nDIAM90\nG0 X20", of(control)).errors == []
 
 
-def test_the_machine_file_says_it() -> None:
+def test_control_is_specified_in_machine_file() -> None:
     text = load_shipped_machine("sinumerik-modulo").text
     machine = parse_machine(text.replace("[machine]", '[machine]\ncontrol = "802d"'), "t")
     assert get_control_limits(machine).control_model == "802d"
@@ -70,14 +70,14 @@ def test_the_machine_file_says_it() -> None:
         parse_machine(text.replace("[machine]", '[machine]\ncontrol = "810"'), "t")
 
 
-def test_the_page_names_everything_that_is_lacking() -> None:
+def test_page_names_every_missing_function() -> None:
     page = PAGE.read_text(encoding="utf-8")
     for control in CONTROL_NAMES:
         assert f"`{control}`" in page
         assert [name for name in MISSING_FUNCTIONS[control] if f"`{name}`" not in page] == []
 
 
-def test_only_what_there_is_can_be_lacking() -> None:
+def test_missing_functions_are_all_in_code_book() -> None:
     heads = {entry.head for entry in get_code_book(Dialect.SINUMERIK).entries}
     spoken = {name for lacks in MISSING_FUNCTIONS.values() for name in lacks} - {
         'T="NAME"',

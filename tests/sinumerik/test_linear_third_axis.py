@@ -37,14 +37,14 @@ def timed(text: str, lathe: Machine) -> list[tuple[Block, float]]:
     return times(text, lathe)
 
 
-def test_the_machine_has_a_slide_more(lathe: Machine) -> None:
+def test_machine_has_an_additional_linear_axis(lathe: Machine) -> None:
     axis = lathe.find_axis("C")
     assert (axis.is_rotary, axis.travel, lathe.third_axis_name) == (False, (-60.0, 60.0), "Y")
     assert axis.max_speed == pytest.approx(5000 / 60)
     assert not lathe.is_spindle_c_axis
 
 
-def test_alone_it_takes_f_as_its_own_speed(lathe: Machine) -> None:
+def test_single_linear_axis_moves_at_programmed_feed(lathe: Machine) -> None:
     """50 mm at 100 mm/min: 30 s. 20 mm at 0.5 mm a turn, 400 rpm: 6 s. At its limit of 5000: 0.6 s."""
     (_, rapid), (_, feed), *_ = timed("G0 X20 Z0 Y0\nG94 G1 Y50 F100", lathe)
     assert feed == pytest.approx(30.0)
@@ -53,7 +53,7 @@ def test_alone_it_takes_f_as_its_own_speed(lathe: Machine) -> None:
     assert timed("G94 G1 Y50 F9000", lathe)[-1][1] == pytest.approx(0.6)
 
 
-def test_with_x_and_z_it_takes_no_share_of_f(lathe: Machine) -> None:
+def test_linear_axis_moving_with_x_and_z_has_no_share_of_f(lathe: Machine) -> None:
     """30 mm of Z at 600 mm/min are 3 s; 50 mm of Y need 0.6 s at its limit, more than 1 mm of Z."""
     assert timed("G94 G1 Z=IC(-30) Y12 F600", lathe)[-1][1] == pytest.approx(3.0)
     assert timed("G94 G1 Z=IC(-1) Y50 F600", lathe)[-1][1] == pytest.approx(0.6)
@@ -75,13 +75,13 @@ def test_with_x_and_z_it_takes_no_share_of_f(lathe: Machine) -> None:
         ("G54 G0 Y10\nG53 G0 Y10", 10.0),
     ],
 )
-def test_it_counts_in_the_unit_of_lengths(text: str, end: float, lathe: Machine) -> None:
+def test_linear_axis_positions_are_in_length_units(text: str, end: float, lathe: Machine) -> None:
     passed = run(text, setup(lathe, zero={54: ZeroOffset(0.0, 0.0, 3.0)}))
     assert passed.errors == []
     assert passed.moves[-1].mc == pytest.approx(end)
 
 
-def test_its_feed_is_in_inches_under_g700(lathe: Machine) -> None:
+def test_linear_axis_feed_is_in_inches_under_g700(lathe: Machine) -> None:
     """1 in at 10 in/min: 6 s; under G70 F stays in mm: 25.4 mm at 10 mm/min are 152.4 s."""
     assert timed("G700 G94 G1 Y1 F10", lathe)[-1][1] == pytest.approx(6.0)
     assert timed("G70 G94 G1 Y1 F10", lathe)[-1][1] == pytest.approx(152.4)
@@ -101,15 +101,15 @@ def test_its_feed_is_in_inches_under_g700(lathe: Machine) -> None:
         ("TRANS Y=IC(3)", "offset-form"),
     ],
 )
-def test_what_it_refuses(line: str, code: str, lathe: Machine) -> None:
+def test_rotary_words_are_rejected_for_linear_axis(line: str, code: str, lathe: Machine) -> None:
     assert refused(line, setup(lathe)).code == code
 
 
-def test_no_part_turns_by_a_slide(lathe: Machine) -> None:
+def test_transmit_is_rejected_with_linear_third_axis(lathe: Machine) -> None:
     assert refused("T1 D1\nG17\nTRANSMIT", setup(lathe)).code == "14401"
 
 
-def test_the_whole_program_is_proved(lathe: Machine) -> None:
+def test_program_with_linear_axis_is_proved(lathe: Machine) -> None:
     report = prove(source("G94\nG0 X20 Z0 Y0\nG1 Y50 F100\nG0 Y60\nM30\n"), setup(lathe), lathe)
     assert report.errors == ()
     assert report.ranges.c_range == pytest.approx((0.0, 60.0))

@@ -22,14 +22,14 @@ def angles(text: str, machine: Machine) -> list[tuple[float, int]]:
 
 
 @pytest.mark.parametrize("machine", [MODULO, ORIENTED], ids=["modulo", "linear"])
-def test_the_spindle_counts_a_turn_however_c_counts(machine: Machine) -> None:
+def test_spindle_angle_is_modulo_360_regardless_of_c_axis_type(machine: Machine) -> None:
     text = "M19\nSPOS=350\nSPOS=DC(10)\nSPOS=ACP(5)\nSPOS=ACN(355)\nSPOSA=AC(20)\nWAITS\nSPOS=IC(-30)\n"
     made = angles(text, machine)
     # AC(20) from 355 does not cross 0, so it goes back; 20 - 30 is 350, backwards.
     assert made == [(0.0, 0), (350.0, 0), (10.0, 0), (5.0, 1), (355.0, -1), (20.0, -1), (350.0, -1)]
 
 
-def test_c_stays_where_it_is_and_may_move_while_the_spindle_is_held() -> None:
+def test_c_axis_may_move_while_spindle_is_oriented() -> None:
     passed = run("SPOS=90\nG0 C=DC(45)\nG1 X30 F100\nM30\n", setup())
     assert passed.errors == []
     assert [block.c for block in passed.moves] == [45.0, 45.0]
@@ -37,13 +37,13 @@ def test_c_stays_where_it_is_and_may_move_while_the_spindle_is_held() -> None:
 
 
 @pytest.mark.parametrize("ends", ["M5", "S300 M4"])
-def test_what_stops_or_turns_the_spindle_lets_its_angle_go(ends: str) -> None:
+def test_stopping_or_starting_spindle_clears_its_oriented_angle(ends: str) -> None:
     passed = run(f"SPOS=90\n{ends}\nG1 X30 F100\n", setup())
     assert passed.moves[-1].modal.oriented is None
     assert refused(f"SPOS=90\n{ends}\nSPOS=IC(10)\n", setup()).code == "spindle-position"
 
 
-def test_cycle86_holds_the_spindle_before_it_lifts_the_edge() -> None:
+def test_cycle86_orients_spindle_before_tool_lifts_off() -> None:
     assert angles(BORE.format(45), MODULO) == [(45.0, 0)]
     blocks = run(BORE.format(45), setup()).blocks
     held = next(n for n, block in enumerate(blocks) if isinstance(block.action, SpindlePositioning))
@@ -52,7 +52,7 @@ def test_cycle86_holds_the_spindle_before_it_lifts_the_edge() -> None:
 
 
 @pytest.mark.parametrize("text", ["SPOS=90\n", "SPOSA=90\n", "M19\n", BORE.format(0)])
-def test_where_nothing_orients_the_refusal_names_the_key_of_the_machine_file(text: str) -> None:
+def test_rejected_orientation_names_the_machine_file_key(text: str) -> None:
     error = refused(text, setup(LINEAR))
     assert error.code == "spindle-position"
     assert "cannot be oriented" in error.message
@@ -60,5 +60,5 @@ def test_where_nothing_orients_the_refusal_names_the_key_of_the_machine_file(tex
 
 
 @pytest.mark.parametrize("text", ["M70\n", "S100\nG331 Z-20 K1\n"])
-def test_what_moves_the_spindle_with_z_still_needs_c(text: str) -> None:
+def test_rigid_tapping_still_requires_c_axis(text: str) -> None:
     assert "not a C axis" in refused(text, setup()).message

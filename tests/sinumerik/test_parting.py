@@ -15,7 +15,7 @@ TOOLS = replace(setup(), tools={1: ToolOffset(quadrant=3)})
 START = "S900 M3 G95 F0.1\nT1 D1\nG0 X50 Z-30\n"
 
 
-def test_two_feeds_and_two_speeds() -> None:
+def test_parting_uses_two_feeds_and_two_speeds() -> None:
     """From 1 mm beside the diameter of 40 to that of 10, then on at half the feed, 0.5 beyond the axis."""
     passed = run(START + "CYCLE92(40,-30,10,-1,,1,,,,0.1,0.05,500)", TOOLS)
     assert passed.found == []
@@ -24,7 +24,7 @@ def test_two_feeds_and_two_speeds() -> None:
     assert (moves[0][1], moves[3][1]) == (21.0, 21.0)
 
 
-def test_a_surface_speed_beside_its_limit() -> None:
+def test_parting_uses_surface_speed_with_speed_limit() -> None:
     """120 m/min at most 2000 rpm: at 42 mm 909.457 rpm; behind the cycle S900 again."""
     passed = run(START + "CYCLE92(40,-30,10,-1,,1,120,2000,3,0.1,0.05,500)", TOOLS)
     ran = [b.action for b in passed.blocks if isinstance(b.action, SpindleRun)]
@@ -35,7 +35,7 @@ def test_a_surface_speed_beside_its_limit() -> None:
     assert begun.modal.max_css_rpm == 2000.0
 
 
-def test_a_surface_speed_in_feet_where_g96_counts_them() -> None:
+def test_surface_speed_is_in_feet_where_g96_uses_feet() -> None:
     """300 ft/min are 1524 mm/s, as G96 S300 behind it says; 300 m/min would be 5000."""
     text = "G700\nS900 M3 G95 F0.003\nT1 D1\nG0 X2 Z-1\nCYCLE92(1.5,-1,0.5,-0.04,,0.04,300,2000,3)\nG96 S300"
     passed = run(text, TOOLS)
@@ -43,7 +43,7 @@ def test_a_surface_speed_in_feet_where_g96_counts_them() -> None:
     assert ran == [None, pytest.approx(1524.0), None, pytest.approx(1524.0)]
 
 
-def test_a_spindle_that_it_has_started_is_known_to_turn() -> None:
+def test_spindle_started_by_cycle_is_known_to_turn() -> None:
     """Nothing was in force before: what goes on turning at 500 rpm is not told as a spindle that stands."""
     passed = run("T1 D1\nG0 X50 Z-30\nCYCLE92(40,-30,10,-1,,1,800,,3,0.1,0.05,500)\nG0 Z0", TOOLS)
     assert passed.found == []
@@ -51,7 +51,7 @@ def test_a_spindle_that_it_has_started_is_known_to_turn() -> None:
     assert (passed.moves[-1].rpm, passed.moves[-1].modal.spindle) == (500.0, 1)
 
 
-def test_from_inside_it_goes_out_first() -> None:
+def test_start_below_part_diameter_retracts_first() -> None:
     passed = run("S900 M3 G95 F0.1\nT1 D1\nG0 X36 Z2\nCYCLE92(40,-30,0,0)", TOOLS)
     assert [(b.x, b.z) for b in passed.moves if b.line == 4][:2] == [(21.0, 2.0), (21.0, -30.0)]
 
@@ -70,9 +70,9 @@ def test_from_inside_it_goes_out_first() -> None:
         ("M5\nCYCLE92(40,-30,10,-1)", "61102"),
     ],
 )
-def test_what_it_refuses(call: str, code: str) -> None:
+def test_invalid_parting_calls_are_rejected(call: str, code: str) -> None:
     assert refused(START + call, TOOLS).code == code
 
 
-def test_without_a_feed() -> None:
+def test_parting_without_feed_is_rejected() -> None:
     assert refused("S900 M3 G95\nT1 D1\nCYCLE92(40,-30,10,-1)", TOOLS).code == "61003"

@@ -32,7 +32,7 @@ STEP = spf("STEP", "PROC STEP(REAL DEPTH, INT TIMES=2, REAL MORE)\nG0 Z=DEPTH*TI
         ("STEP(-1,2.6)", -3),  # an INT parameter is a whole number
     ],
 )
-def test_parameters(call: str, z: float) -> None:
+def test_parameters_are_passed_to_procedure(call: str, z: float) -> None:
     assert stops(source(f"EXTERN STEP(REAL, INT, REAL)\nR1=-5\n{call}", STEP)) == [z]
 
 
@@ -47,32 +47,32 @@ def test_parameters(call: str, z: float) -> None:
         ("G0 X5 STEP(1)", "12080"),
     ],
 )
-def test_calls_that_do_not_fit(call: str, code: str) -> None:
+def test_calls_that_do_not_match_procedure_are_rejected(call: str, code: str) -> None:
     error = refused(source(f"G0 Z0\nN20 {call}", STEP))
     assert (error.code, error.line) == (code, 2)
 
 
-def test_var_writes_back_and_a_value_does_not() -> None:
+def test_var_parameter_is_written_back_and_value_parameter_is_not() -> None:
     twice = spf("TWICE", "PROC TWICE(VAR REAL AA, REAL BB)\nAA=AA*2\nBB=BB*2\nM17\n")
     text = "DEF REAL LENGTH=3, OTHER=5\nR7=10\nTWICE(LENGTH,OTHER)\nTWICE(R7,1)\nG0 Z=LENGTH+OTHER+R7"
     assert stops(source(text, twice)) == [31]  # 6 + 5 + 20
     assert refused(source("TWICE(3,1)", twice)).code == "12330"
 
 
-def test_a_proc_that_cannot_be_read_is_told_itself() -> None:
+def test_unreadable_proc_is_reported_at_its_own_line() -> None:
     error = refused(source("G0 Z1\nTWICE(3,1)", spf("TWICE", "PROC TWICE(REAL A)\nM17")))
     assert (error.code, error.line) == ("12080", 2)
     assert "TWICE.spf line 1" in error.message
 
 
-def test_variables_are_those_of_their_program() -> None:
+def test_variables_are_local_to_their_program() -> None:
     inner = spf("INNER", "DEF REAL DEPTH=7\nG0 Z=DEPTH\nM17\n")
     assert stops(source("DEF REAL DEPTH=1\nINNER\nG0 Z=DEPTH", inner)) == [7, 1]
     blind = spf("BLIND", "G0 Z=DEPTH\nM17\n")
     assert refused(source("DEF REAL DEPTH=1\nBLIND", blind)).code == "12550"
 
 
-def test_save_brings_back_g_functions_and_frame() -> None:
+def test_save_restores_g_functions_and_frame() -> None:
     text = "G90 G94 DIAMON F100\nTRANS Z5\nINNER\nG1 X20 Z1"
     loose = spf("INNER", "PROC INNER\nG91 DIAMOF\nTRANS\nM17\n")
     kept = spf("INNER", "PROC INNER SAVE DISPLOF\nG91 DIAMOF\nTRANS\nM17\n")
@@ -80,7 +80,7 @@ def test_save_brings_back_g_functions_and_frame() -> None:
     assert [(b.mx, b.mz) for b in good(source(text, kept))] == [(10, 6)]
 
 
-def test_arrays_and_r_by_index() -> None:
+def test_arrays_and_r_parameters_are_indexed() -> None:
     text = "DEF REAL DEPTHS[3]=2\nDEPTHS[1]=-4\nR2=1\nR[R2+1]=8\nG0 Z=DEPTHS[2]\nZ=R[2]\nZ=R2\nZ=DEPTHS[R2/8]"
     assert stops(text) == [2, 8, 8, -4]  # R2 is 8 from the fourth line on
     assert refused("DEF REAL DD[2]\nDD[2]=1").code == "17020"
@@ -98,7 +98,7 @@ def test_arrays_and_r_by_index() -> None:
         ("DEF REAL AA[4]=REP(2,2)\nG0 Z=AA[1]\nZ=AA[2]", [2, 0]),
     ],
 )
-def test_lists_fill_arrays(text: str, ends: list[float]) -> None:
+def test_value_lists_fill_arrays(text: str, ends: list[float]) -> None:
     assert stops(text) == ends
 
 
@@ -119,7 +119,7 @@ def test_lists_fill_arrays(text: str, ends: list[float]) -> None:
         ("DEF REAL AA[2]=REP(1,2,3)", "12080"),
     ],
 )
-def test_arrays_that_do_not_fit(text: str, code: str) -> None:
+def test_invalid_arrays_are_rejected(text: str, code: str) -> None:
     assert refused(text).code == code
 
 
@@ -127,7 +127,7 @@ SWAP = spf("SWAP", "PROC SWAP(VAR REAL LIST[2], VAR REAL GRID[,2])\nDEF REAL HEL
            "HELD=LIST[0]\nLIST[0]=GRID[1,0]\nGRID[1,0]=HELD\nM17\n")  # fmt: skip
 
 
-def test_an_array_of_var_comes_back() -> None:
+def test_var_array_is_written_back() -> None:
     text = "DEF REAL ONE[2]=(3,4), TWO[3,2]=(0,0,8)\nSWAP(ONE,TWO)\nG0 Z=ONE[0]\nZ=TWO[1,0]\nZ=ONE[1]"
     assert stops(source(text, SWAP)) == [8, 3, 4]
 
@@ -143,17 +143,17 @@ def test_an_array_of_var_comes_back() -> None:
         ("SWAP(ONE)", "12320"),
     ],
 )
-def test_arrays_of_var_that_do_not_fit(call: str, code: str) -> None:
+def test_mismatched_var_arrays_are_rejected(call: str, code: str) -> None:
     found = refused(source(f"DEF REAL ONE[2], TWO[3,2], LONG[3]\n{call}", SWAP))
     assert (found.code, found.line) == (code, 2)
 
 
-def test_an_array_without_var_is_told() -> None:
+def test_array_parameter_without_var_is_rejected() -> None:
     bare = spf("BARE", "PROC BARE(REAL LIST[2])\nM17\n")
     assert "needs VAR" in refused(source("DEF REAL ONE[2]\nBARE(ONE)", bare)).message
 
 
-def test_mcall_acts_behind_each_move_until_mcall_alone() -> None:
+def test_mcall_acts_after_each_move_until_empty_mcall() -> None:
     hole = spf("HOLE", "PROC HOLE(REAL DEPTH)\nG0 Z=DEPTH\nZ2\nM17\n")
     assert stops(source("MCALL HOLE(-5)\nR1=0\nG0 X10 Z2\nX20\nMCALL\nX30", hole)) == [2, -5, 2, 2, -5, 2, 2]
 
@@ -168,7 +168,7 @@ def test_mcall_acts_behind_each_move_until_mcall_alone() -> None:
         ("R1=0\nREPEAT\nR1=R1+1\nG0 Z=R1\nUNTIL R1==2", [1, 2]),
     ],
 )
-def test_repeat(text: str, ends: list[float]) -> None:
+def test_repeat_runs_blocks_again(text: str, ends: list[float]) -> None:
     assert stops(text) == ends
 
 
@@ -180,18 +180,18 @@ def test_repeat(text: str, ends: list[float]) -> None:
         ("G0 Z1\nAA: REPEAT AA", "12640"),
     ],
 )
-def test_repeat_refused(text: str, code: str) -> None:
+def test_invalid_repeat_is_rejected(text: str, code: str) -> None:
     assert refused(text).code == code
 
 
 @pytest.mark.parametrize(("value", "z"), [(1, 10), (2, 20), (3, 30)])
-def test_case_and_two_ifs_in_a_block(value: int, z: float) -> None:
+def test_case_and_two_ifs_in_one_block_jump_to_their_labels(value: int, z: float) -> None:
     ends = "AA:G0 Z10\nGOTOF QQ\nBB:G0 Z20\nGOTOF QQ\nCC:G0 Z30\nQQ:"
     assert stops(f"R1={value}\nCASE R1 OF 1 GOTOF AA 2 GOTOF BB DEFAULT GOTOF CC\n{ends}") == [z]
     assert stops(f"R1={value}\nIF R1==1 GOTOF AA IF R1==2 GOTOF BB\nGOTOF CC\n{ends}") == [z]
 
 
-def test_a_case_without_its_value_goes_on() -> None:
+def test_case_without_matching_value_continues() -> None:
     assert stops("R1=9\nCASE R1 OF 1 GOTOF AA\nG0 Z1\nAA:Z2") == [1, 2]
     assert refused("CASE R1 1 GOTOF AA").code == "12080"
 
@@ -201,7 +201,7 @@ def test_msg_joins_texts_and_numbers() -> None:
     assert [block.modal.comment for block in good(text)] == ["Ø 5 OF RING", ""]
 
 
-def test_alarms_of_the_program_and_lines_without_effect() -> None:
+def test_program_alarms_are_raised_and_ineffective_lines_are_ignored() -> None:
     assert refused("G0 Z1\nIF 1==1\nSETAL(65000)\nENDIF").code == "program-alarm"
     assert stops('STOPRE\nSBLOF\nSBLON\nDISPLOF\nGROUP_BEGIN(0,"ROUGH",0,0)\nG0 Z1\nGROUP_END(0,0)') == [1]
 
@@ -217,14 +217,14 @@ def test_alarms_of_the_program_and_lines_without_effect() -> None:
         ("CALL", "12080", "CALL"),
     ],
 )
-def test_refused_by_name(text: str, code: str, word: str) -> None:
+def test_unsupported_words_are_rejected_by_name(text: str, code: str, word: str) -> None:
     error = refused(f"G0 Z1\n{text}")
     assert (error.code, error.line) == (code, 2)
     assert word in error.message
     assert error.hint
 
 
-def test_a_contour_that_a_cycle_names_is_read_with_the_program(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_contour_named_in_cycle_is_loaded_with_program(tmp_path) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "kontur.spf").write_text("G1 X10 Z0\nM17\n")
     found = load_called_files(source('CYCLE95("KONTUR",1)'), [tmp_path])
     assert [each.name.lower() for each in found.subprograms] == ["kontur.spf"]

@@ -23,14 +23,14 @@ from tests.sinumerik.lathe import MODULO, good, run, setup, source
 WAY = "G0 X=R1 Z5"
 
 
-def test_a_program_begins_with_what_the_operator_has_set() -> None:
+def test_program_starts_with_r_parameters_set_by_operator() -> None:
     """X40 as a diameter: radius 20."""
     (move,) = good(WAY, replace(setup(), r={1: 40.0}))
     assert move.x == 20.0
     assert [b.x for b in good("R1=30\nG0 X=R1 Z5", replace(setup(), r={1: 40.0}))] == [15.0]
 
 
-def test_one_that_nobody_has_set_is_0_and_said_once() -> None:
+def test_unset_r_parameter_is_zero_and_reported_once() -> None:
     passed = run("G0 X=R7 Z5\nG0 Z=R7+1\nIF R8==0 GOTOF DONE\nG0 Z9\nDONE: G0 X=R7+2")
     assert [(each.line, each.code, each.severity) for each in passed.found] == [
         (1, "r-unset", Severity.WARNING),
@@ -42,16 +42,16 @@ def test_one_that_nobody_has_set_is_0_and_said_once() -> None:
 @pytest.mark.parametrize(
     ("text", "code"), [("G0 Z=1/R7", "arithmetic"), ("G0 Z=LENGTH", "12550"), ("G0 Z=R300", "12080")]
 )
-def test_what_has_no_value_all_the_same(text: str, code: str) -> None:
+def test_other_undefined_values_are_still_rejected(text: str, code: str) -> None:
     assert [each.code for each in run(text).errors] == [code]
 
 
-def test_other_values_are_another_job() -> None:
+def test_different_r_parameters_give_different_job_digests() -> None:
     jobs = [make_job(source(WAY), replace(setup(), r=r)).digest for r in ({}, {1: 40.0}, {1: 41.0})]
     assert len(set(jobs)) == 3
 
 
-def test_the_store_keeps_them(tmp_path: Path) -> None:
+def test_store_saves_r_parameters(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.settings.save_setting(R_PARAMETERS_SETTING, {"1": 40.0, "299": -2.5}).result()
     with Store.open(tmp_path) as store:
@@ -60,7 +60,7 @@ def test_the_store_keeps_them(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kept", [None, 3, [1], {"R1": 3.0}, {"300": 1.0}, {"1": "x"}, {"-1": 2.0}])
-def test_what_is_no_parameter_is_left_out(kept: object) -> None:
+def test_invalid_stored_parameters_are_left_out(kept: object) -> None:
     assert parse_r_parameters(kept) == {}
 
 
@@ -92,7 +92,7 @@ def row(page: RParametersFunction, number: int) -> tuple[str, ...]:
     return page.make_table(page.desk.read_snapshot()).rows[number].cells
 
 
-def test_what_is_typed_is_kept_for_every_program(page: RParametersFunction) -> None:
+def test_typed_value_is_saved_for_every_program(page: RParametersFunction) -> None:
     page.handle_key("Down")
     types(page, "2*20.5")
     assert row(page, 1) == ("R1", "41")
@@ -100,7 +100,7 @@ def test_what_is_typed_is_kept_for_every_program(page: RParametersFunction) -> N
     assert read_stored_offsets().r_parameters == {1: 41.0}
 
 
-def test_a_value_is_taken_away(page: RParametersFunction) -> None:
+def test_value_is_deleted(page: RParametersFunction) -> None:
     types(page, "5")
     assert page.parameter_values == {0: 5.0}
     page.make_function_keys()["F4"].action()
@@ -110,12 +110,12 @@ def test_a_value_is_taken_away(page: RParametersFunction) -> None:
 
 
 @pytest.mark.parametrize("typed", ["1..2", "1/0", "99999999999", "--", "("])
-def test_what_is_no_figure_is_refused(page: RParametersFunction, typed: str) -> None:
+def test_invalid_number_is_rejected(page: RParametersFunction, typed: str) -> None:
     types(page, typed)
     assert page.parameter_values == {}
 
 
-def test_the_mark_stays_on_the_300_parameters(page: RParametersFunction) -> None:
+def test_mark_stays_within_the_300_parameters(page: RParametersFunction) -> None:
     for _ in range(40):
         page.handle_key("Page down")
     assert page.marked == 299

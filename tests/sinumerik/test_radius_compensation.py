@@ -30,7 +30,7 @@ def ends(blocks: Sequence[Block]) -> list[tuple[float, float]]:
 STEP = "T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nZ-20\nX40\nG40 X60 Z5\n"
 
 
-def test_a_cylinder_and_a_shoulder_by_hand() -> None:
+def test_cylinder_and_shoulder_match_hand_calculation() -> None:
     """Tip 3: the tip lies R below and R to the left of the centre.
 
     On the cylinder the centre runs at 10 + R, so the tip at 10; square to its start the centre has the Z of
@@ -42,7 +42,7 @@ def test_a_cylinder_and_a_shoulder_by_hand() -> None:
     assert ends([away]) == [(30.0, 5.0)]
 
 
-def test_a_taper_by_hand() -> None:
+def test_taper_matches_hand_calculation() -> None:
     """45 degrees: the tip is off the taper by R (1 - tan 22.5°) = R (2 - sqrt 2) along Z."""
     moves = good("T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nX40 Z-10\nG40 X60 Z5\n", with_tool())
     taper = moves[2]
@@ -52,19 +52,19 @@ def test_a_taper_by_hand() -> None:
     assert off == pytest.approx(R * (sqrt(2.0) - 2.0))
 
 
-def test_the_centre_is_programmed_with_tip_9() -> None:
+def test_nose_center_is_programmed_with_tip_quadrant_9() -> None:
     _, approach, cylinder, _, _ = good(STEP, with_tool(9))
     assert ends([approach, cylinder]) == [(10.0 + R, 0.0), (10.0 + R, -20.0 + R)]
 
 
-def test_g41_is_the_other_side() -> None:
+def test_g41_compensates_on_the_other_side() -> None:
     """In a bore: tip 2 lies R above and R left of the centre, which runs at 10 - R."""
     text = "T1 D1\nG0 X8 Z5\nG41 G1 X20 Z0 F200\nZ-20\nG40 X8 Z-15\n"
     _, approach, bore, _ = good(text, with_tool(2))
     assert ends([approach, bore]) == [(10.0, -R), (10.0, -20.0 - R)]
 
 
-def test_each_move_turns_at_its_own_surface_speed() -> None:
+def test_each_move_runs_at_its_own_surface_speed() -> None:
     """G96 S200 on the cylinder of 20 is 3183 rpm, whatever comes behind it: another S, or the end."""
     head = "T1 D1\nG96 S200 M4 F.2\nG0 X60 Z5\nG42 G1 X20 Z0\nZ-20\n"
     slower = good(head + "X40\nS100\nX60\nG40 X80 Z5\n", with_tool())
@@ -74,28 +74,28 @@ def test_each_move_turns_at_its_own_surface_speed() -> None:
     assert slower[4].rpm == pytest.approx(-100e3 / (2.0 * pi * slower[4].x))
 
 
-def test_an_arc_of_the_contour_by_hand() -> None:
+def test_contour_arc_matches_hand_calculation() -> None:
     """G3 from X20 Z0 to X40 Z-10 bulges outwards: its radius of 10 is 10 + R for the centre."""
     text = "T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nG3 X40 Z-10 CR=10\nG40 G1 X60 Z5\n"
     arc = good(text, with_tool())[2]
     assert hypot(arc.x - arc.cx, arc.z - arc.cz) == pytest.approx(10.0 + R)
 
 
-def test_g450_goes_round_a_corner_on_an_arc() -> None:
+def test_g450_rounds_outside_corner_with_an_arc() -> None:
     moves = good("T1 D1\nG450 G0 X10 Z5\nG42 G1 X20 Z0 F200\nX40\nZ-20\nG40 X80 Z-10\n", with_tool(9))
     kinds = [block.kind.value for block in moves]
     assert kinds == ["rapid", "feed", "feed", "arc", "feed", "feed"]
     assert hypot(moves[3].x - 20.0, moves[3].z) == pytest.approx(R)
 
 
-def test_g451_goes_to_the_intersection() -> None:
+def test_g451_moves_to_the_intersection() -> None:
     """The centre's lines Z = R and X = 20 + R meet at that corner."""
     moves = good("T1 D1\nG451 G0 X10 Z5\nG42 G1 X20 Z0 F200\nX40\nZ-20\nG40 X80 Z-10\n", with_tool(9))
     assert "arc" not in [block.kind.value for block in moves]
     assert (20.0 + R, R) in ends(moves)
 
 
-def test_norm_refuses_where_kont_goes_round() -> None:
+def test_norm_rejects_approach_that_kont_makes_around_contour() -> None:
     """From behind the beginning of the contour, inside the bar, the straight way would cut it."""
     text = "T1 D1\n{} G0 X4 Z-10\nG42 G1 X20 Z0 F200\nZ-20\nG40 X60 Z5\n"
     error = refused(text.format("NORM"), with_tool(9))
@@ -110,7 +110,7 @@ def test_norm_refuses_where_kont_goes_round() -> None:
     assert ends([around]) == [(10.0 + R, 0.0)]
 
 
-def test_kont_leaves_round_the_end_too() -> None:
+def test_kont_also_departs_around_the_contour_end() -> None:
     text = "T1 D1\nKONT G0 X60 Z5\nG42 G1 X20 Z0 F200\nZ-20\nG40 X4 Z-10\n"
     moves = good(text, with_tool(9))
     around, straight = moves[3], moves[4]
@@ -173,7 +173,7 @@ def _distance(a: tuple[float, float], b: tuple[float, float], p: tuple[float, fl
         ("T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nZ-20 RND=0.5\nX40\nG40 X60 Z5", "comp-gouge", 4),
     ],
 )
-def test_refused(text: str, code: str | None, line: int) -> None:
+def test_invalid_compensation_is_rejected(text: str, code: str | None, line: int) -> None:
     if code is None:
         assert run(text, with_tool()).errors == []  # without offsets in force G53 changes nothing
         return
@@ -182,25 +182,25 @@ def test_refused(text: str, code: str | None, line: int) -> None:
     assert error.hint
 
 
-def test_a_nose_without_radius_or_quadrant_is_told() -> None:
+def test_nose_without_radius_or_quadrant_is_reported() -> None:
     assert [each.code for each in run(STEP, with_tool(3, 0.0)).found] == ["comp-no-radius"]
     assert [each.code for each in run(STEP, with_tool(0)).found] == ["comp-no-quadrant"]
 
 
-def test_mirrored_the_other_side_is_meant() -> None:
+def test_compensation_side_is_reversed_by_mirroring() -> None:
     """MIRROR Z: G41 along Z+ of the program is the same cut as G42 along Z-, seen in the machine."""
     text = "T1 D1\nMIRROR Z0\nG0 X60 Z-5\nG41 G1 X20 Z0 F200\nZ20\nX40\nG40 X60 Z-5\n"
     assert ends(good(text, with_tool())) == ends(good(STEP, with_tool()))
 
 
-def test_what_stands_in_between_is_done_beside_the_contour() -> None:
+def test_actions_between_moves_run_at_the_compensated_position() -> None:
     text = "T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nM8\nZ-20\nG4 F1\nX40\nG40 X60 Z5\n"
     blocks = run(text, with_tool()).blocks
     at = [(block.x, block.z) for block in blocks if block.action is not None][1:]
     assert at == [pytest.approx((10.0, -R)), pytest.approx((10.0, -20.0))]
 
 
-def test_g40_behind_which_nothing_moves() -> None:
+def test_g40_without_following_move_leaves_nose_at_contour_end() -> None:
     """The end of the program leaves the nose square to the end of the contour."""
     blocks = run("T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nZ-20\nG40\nM30\n", with_tool(9)).blocks
     assert (blocks[-1].x, blocks[-1].z) == pytest.approx((10.0 + R, -20.0))

@@ -38,13 +38,13 @@ def told(line: str) -> Diagnostic:
         ('WRITE(R1,"F","T")', "WRITE"),
     ],
 )
-def test_a_word_that_is_not_executed_is_refused_by_its_name(line: str, name: str) -> None:
+def test_unsupported_word_is_rejected_by_name(line: str, name: str) -> None:
     error = told(line)
     assert error.code == "not-in-subset"
     assert f" {name}: " in error.message
 
 
-def test_an_acceleration_is_no_feed() -> None:
+def test_rejected_acceleration_word_is_not_described_as_feed() -> None:
     """What ACC and FL are not must not be told of them: F, FB and OVR say the feed of the path alone."""
     assert "OVR" not in told("ACC[X]=50").message
     assert "OVR" not in told("FL[X]=1000").message
@@ -81,7 +81,7 @@ def test_an_acceleration_is_no_feed() -> None:
         ("(ROUGH)", 1, ";"),
     ],
 )
-def test_a_word_of_the_iso_mode_is_told_with_what_stands_for_it(line: str, column: int, written: str) -> None:
+def test_iso_mode_word_is_rejected_with_its_replacement(line: str, column: int, written: str) -> None:
     error = told(line)
     assert (error.code, error.column) == ("other-control", column)
     assert written in error.message + error.hint
@@ -96,11 +96,11 @@ def test_a_word_of_the_iso_mode_is_told_with_what_stands_for_it(line: str, colum
         ("X34 R2", "not-in-subset"),
     ],
 )
-def test_what_is_no_habit_of_another_control_keeps_its_own_code(line: str, code: str) -> None:
+def test_other_unsupported_words_retain_their_own_code(line: str, code: str) -> None:
     assert told(line).code == code
 
 
-def test_the_words_that_stand_for_them_run() -> None:
+def test_suggested_replacement_words_run() -> None:
     good("G94 F200\nG1 X30 Z0\nG2 X34 Z-2 CR=2\nG1 X40 CHR=1\nZ-9\nG4 F1\nG1 X=IC(2)")
 
 
@@ -114,13 +114,13 @@ def test_the_words_that_stand_for_them_run() -> None:
         ("G17\nCYCLE83(10,0,1,-30,,-5,,2,0,0,1,0.5)", "VARI"),
     ],
 )
-def test_a_count_takes_a_whole_number(call: str, name: str) -> None:
+def test_count_must_be_a_whole_number(call: str, name: str) -> None:
     error = refused(f"{HEAD}{call}")
     assert f"{name} is" in error.message
     assert "whole number" in error.message + error.hint
 
 
 @pytest.mark.parametrize(("word", "written"), [("T0101", "T1 D1"), ("T1212", "T12 D2"), ("T0300", "T3 D1")])
-def test_a_tool_with_its_offset_in_one_word_is_another_tool_here(word: str, written: str) -> None:
+def test_t_word_with_offset_digits_is_reported_with_correct_form(word: str, written: str) -> None:
     (found,) = run(word).found
     assert (found.code, written in found.hint) == ("tool-offset-missing", True)

@@ -125,7 +125,7 @@ def test_any_text_gives_blocks_or_findings(machine: Machine) -> None:
     assert ran > 400
 
 
-def test_any_signs_are_coloured_or_left() -> None:
+def test_any_characters_are_colored_or_left_plain() -> None:
     dice = random.Random(6)
     signs = "NGMXZCIKFSR0123456789.=+-(),;:/ \tßABLIMS%_?"
     for _ in range(3000):

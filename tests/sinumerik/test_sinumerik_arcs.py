@@ -41,7 +41,7 @@ QUARTERS = [  # a ball of radius 10 from its tip, as every book of turning has i
 
 
 @pytest.mark.parametrize("text", QUARTERS)
-def test_one_quarter_said_in_many_ways(text: str) -> None:
+def test_same_quarter_arc_can_be_programmed_in_several_forms(text: str) -> None:
     block = arc(text, (0.0, 0.0))
     assert (block.x, block.z) == pytest.approx((10, -10))
     assert centre(block) == pytest.approx((0, -10), abs=1e-9)
@@ -49,13 +49,13 @@ def test_one_quarter_said_in_many_ways(text: str) -> None:
     assert block.clockwise  # with X down, as blocks are seen
 
 
-def test_the_other_way_round_is_g2() -> None:
+def test_opposite_direction_is_g2() -> None:
     block = arc("G2 X20 Z-10 CR=10", (0.0, 0.0))
     assert centre(block) == pytest.approx((10, 0), abs=1e-9)
     assert not block.clockwise
 
 
-def test_a_radius_under_zero_takes_the_long_way() -> None:
+def test_negative_radius_gives_the_longer_arc() -> None:
     block = arc("G3 X20 Z-10 CR=-10", (0.0, 0.0))
     assert length(block) == pytest.approx(10 * pi * 1.5)
     assert dist(centre(block), (block.x, block.z)) == pytest.approx(10)
@@ -63,7 +63,7 @@ def test_a_radius_under_zero_takes_the_long_way() -> None:
 
 @pytest.mark.parametrize("angle", [30.0, 90.0, 179.0, 181.0, 270.0, 300.0])
 @pytest.mark.parametrize("code", [2, 3])
-def test_opening_angles(angle: float, code: int) -> None:
+def test_opening_angle_defines_arc(angle: float, code: int) -> None:
     block = arc(f"G{code} X26 Z-7 AR={angle}")
     radius = dist(centre(block), (block.x, block.z))
     assert dist(centre(block), (block.x0, block.z0)) == pytest.approx(radius)
@@ -72,14 +72,14 @@ def test_opening_angles(angle: float, code: int) -> None:
 
 @pytest.mark.parametrize("angle", [30.0, 200.0])
 @pytest.mark.parametrize("code", [2, 3])
-def test_opening_angle_and_centre(angle: float, code: int) -> None:
+def test_opening_angle_and_center_define_arc(angle: float, code: int) -> None:
     block = arc(f"G{code} I3 K-4 AR={angle} C=IC(20)")
     assert dist(centre(block), (block.x, block.z)) == pytest.approx(5)
     assert length(block) == pytest.approx(5 * angle / 180 * pi)
     assert block.c == pytest.approx(20)
 
 
-def test_a_full_circle() -> None:
+def test_full_circle_has_full_circumference() -> None:
     assert length(arc("G3 I5 K0")) == pytest.approx(10 * pi)
 
 
@@ -100,13 +100,13 @@ def test_a_full_circle() -> None:
         ("G3 C90", "arc-centre-missing"),
     ],
 )
-def test_refusals(text: str, code: str) -> None:
+def test_invalid_arcs_are_rejected(text: str, code: str) -> None:
     error = refused(f"N20 F100 {text}", setup(start=(10.0, 0.0, 0.0)))
     assert error.code == code
     assert "block N20" in error.message
 
 
-def test_offsets_move_the_centre_with_the_arc() -> None:
+def test_offsets_move_center_with_the_arc() -> None:
     (block,) = good("F100\nTRANS X5 Z7\nG3 X20 Z-10 K=AC(-10) I=AC(0)", setup(start=(5.0, 7.0, 0.0)))
     assert centre(block) == pytest.approx((0, -10))
     assert (block.mx, block.mz) == pytest.approx((15, -3))

@@ -42,7 +42,7 @@ def errors_of(entry: CodeBookEntry, lines: str, machine: Machine = MODULO) -> li
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.example], ids=lambda entry: entry.head
 )
-def test_the_example_proves(entry: CodeBookEntry) -> None:
+def test_code_book_example_is_proved_without_findings(entry: CodeBookEntry) -> None:
     found = errors_of(entry, entry.example)
     if any(each.code == "spindle-position" for each in found):
         found = errors_of(entry, entry.example, LIVE)
@@ -53,12 +53,12 @@ def test_the_example_proves(entry: CodeBookEntry) -> None:
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.refused], ids=lambda entry: entry.head
 )
-def test_what_is_no_program_is_refused(entry: CodeBookEntry) -> None:
+def test_code_book_counterexample_is_rejected(entry: CodeBookEntry) -> None:
     said = [f"{each.message} {each.hint}" for each in errors_of(entry, entry.refused)]
     assert any(entry.why in each for each in said), said
 
 
-def test_every_construct_has_its_entry() -> None:
+def test_every_construct_has_a_code_book_entry() -> None:
     """What the reader knows, by its own tables."""
     codes = {f"G{n}" for n in sinumerik_words.G_GROUPS} | {f"M{n}" for n in M_FUNCTIONS}
     words = sinumerik_words.VOCABULARY - {"G", "M"}
@@ -67,7 +67,7 @@ def test_every_construct_has_its_entry() -> None:
     ) - ENTRIES.keys() == set()
 
 
-def test_the_chapters_are_the_groups_of_the_table() -> None:
+def test_chapters_are_the_groups_of_the_g_code_table() -> None:
     groups: dict[str, set[str]] = {}
     for name, group in GROUP_BY_FUNCTION.items():
         groups.setdefault(group.capitalize(), set()).add(name)
@@ -76,27 +76,27 @@ def test_the_chapters_are_the_groups_of_the_table() -> None:
 
 
 @pytest.mark.parametrize("name", INEFFECTIVE_WORDS)
-def test_the_entry_of_a_word_without_effect_has_the_reason_of_the_note(name: str) -> None:
+def test_entry_of_ineffective_word_gives_same_reason_as_note(name: str) -> None:
     assert f"because {INEFFECTIVE_WORDS[name]}." in ENTRIES[name].what
 
 
 @pytest.mark.parametrize("name", UNSUPPORTED_CYCLES)
-def test_the_entry_of_a_rejected_cycle_has_the_reason_of_the_error(name: str) -> None:
+def test_entry_of_rejected_cycle_gives_same_reason_as_error(name: str) -> None:
     assert f": {UNSUPPORTED_CYCLES[name]}." in ENTRIES[name].what
 
 
 @pytest.mark.parametrize("name", CYCLE_PARAMETERS)
-def test_the_entry_of_a_cycle_has_its_parameters_in_their_order(name: str) -> None:
+def test_entry_of_cycle_lists_its_parameters_in_order(name: str) -> None:
     assert ENTRIES[name].words == f"({', '.join(CYCLE_PARAMETERS[name])})"
 
 
-def test_every_construct_is_shown_in_use_and_refused() -> None:
+def test_every_construct_has_an_example_and_a_counterexample() -> None:
     """A cycle that is refused by its name has no example; everything else has both."""
     assert [each.head for each in BOOK.entries if not each.example] == list(UNSUPPORTED_CYCLES)
     assert [each.head for each in BOOK.entries if not (each.refused and each.why)] == []
 
 
-def test_the_page_is_that_of_the_book() -> None:
+def test_code_page_matches_code_book() -> None:
     written = Path(__file__).parents[2] / "docs" / "sinumerik-codes.md"
     assert written.read_text(encoding="utf-8") == render_code_book(Dialect.SINUMERIK), (
         "print it anew: CONTRIBUTING.md"

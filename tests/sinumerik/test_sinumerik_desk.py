@@ -98,7 +98,7 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
     bench.close()
 
 
-def test_it_runs_to_its_end_and_c_is_shown_from_0_to_under_360(bench: Bench) -> None:
+def test_program_runs_to_end_and_c_is_shown_modulo_360(bench: Bench) -> None:
     bench.started()
     over = bench.until(lambda s: s.line == 4 and s.actual[2] > 500)
     assert 0.0 <= float(bench.c()) < 360.0
@@ -110,7 +110,7 @@ def test_it_runs_to_its_end_and_c_is_shown_from_0_to_under_360(bench: Bench) -> 
     assert end.actual[2] == pytest.approx(1080.0, abs=0.01)
 
 
-def test_held_while_c_turns_alone_and_gone_on(bench: Bench) -> None:
+def test_program_resumes_after_hold_while_c_alone_turns(bench: Bench) -> None:
     bench.started()
     bench.until(lambda s: s.line == 4 and s.actual[2] > 400)
     bench.desk.start_feed_hold()
@@ -127,7 +127,7 @@ def stands_behind(line: int, shot: Snapshot) -> bool:
     return shot.state is MachineState.SINGLE_BLOCK_STOP and shot.line == line
 
 
-def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None:
+def test_single_block_stops_between_move_and_c_rotation(bench: Bench) -> None:
     bench.desk.toggle_switch("single_block")
     bench.started()
     for line in (1, 2, 3, 4):
@@ -137,7 +137,7 @@ def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None
     bench.until(lambda s: s.line == 5)
 
 
-def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
+def test_c_offset_rotates_part(bench: Bench) -> None:
     bench.desk.offset_book.change_fields(OffsetKind.ZERO, 54, {"c": 30.0, "z": -5.0}, "turned")
     while not bench.desk.offset_book.zero_offsets:
         bench.desk.update()
@@ -152,7 +152,7 @@ def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
     assert end.modal.settable == 0
 
 
-def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_path: Path) -> None:
+def test_missing_subprogram_is_reported_before_any_motion(bench: Bench, tmp_path: Path) -> None:
     (tmp_path / "home" / "programs" / "facet.spf").unlink()
     bench.desk.program_choice.load_by_name("part")
     loaded = bench.desk.program_loader.wait_until_loaded(60.0)
@@ -164,7 +164,7 @@ def shown(bench: Bench) -> str:
     return make_status(bench.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True).position.unit
 
 
-def test_a_metric_lathe_counts_in_mm_before_in_and_after_a_program(bench: Bench) -> None:
+def test_metric_lathe_displays_mm_before_during_and_after_a_program(bench: Bench) -> None:
     assert shown(bench) == "MM"
     bench.started()
     assert shown(bench) == "MM"
@@ -173,9 +173,7 @@ def test_a_metric_lathe_counts_in_mm_before_in_and_after_a_program(bench: Bench)
     assert bench.desk.read_snapshot().modal.metric
 
 
-def test_and_so_it_does_after_a_program_in_inches_and_after_one_that_was_given_up(
-    bench: Bench, tmp_path: Path
-) -> None:
+def test_metric_lathe_displays_mm_after_inch_or_canceled_program(bench: Bench, tmp_path: Path) -> None:
     (tmp_path / "home" / "programs" / "part.mpf").write_text("G70 G0 X1 Z.1\nG1 Z-.4 F50\nM30\n")
     bench.started()
     bench.until(lambda s: s.line == 2)
@@ -189,9 +187,7 @@ def test_and_so_it_does_after_a_program_in_inches_and_after_one_that_was_given_u
     assert shown(bench) == "MM"
 
 
-def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
-    bench: Bench, tmp_path: Path
-) -> None:
+def test_program_without_unit_runs_in_mm_with_a_warning(bench: Bench, tmp_path: Path) -> None:
     """What names no unit runs in the control's; the editor and the list prove it as it will run."""
     bench.until(lambda s: s.state is MachineState.DISABLED)
     path = tmp_path / "home" / "programs" / "plain.nc"

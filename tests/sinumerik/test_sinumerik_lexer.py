@@ -16,35 +16,35 @@ def words(text: str) -> list[tuple[str, float | None]]:
     return [(word.name, word.value) for word in line.words]
 
 
-def test_letters_may_stand_without_blanks_and_without_equals() -> None:
+def test_single_letter_words_need_no_blanks_or_equal_signs() -> None:
     assert words("G1X10Z-2.5F.4") == [("G", 1), ("X", 10), ("Z", -2.5), ("F", 0.4)]
     assert words("G1 X=10 Z = -2.5 F=.4") == [("G", 1), ("X", 10), ("Z", -2.5), ("F", 0.4)]
     assert words("S270") == words("S270.0") == words("S=270.") == [("S", 270)]
 
 
-def test_words_of_more_than_a_letter_take_equals() -> None:
+def test_words_of_several_letters_require_equal_signs() -> None:
     assert words("X10CR=5 LIMS=2500") == [("X", 10), ("CR", 5), ("LIMS", 2500)]
     assert lex_line(1, "CR5").errors[0].code == "12080"
 
 
-def test_any_case() -> None:
+def test_words_are_case_insensitive() -> None:
     assert words("g1 x=ic(3) diamon") == words("G1 X=IC(3) DIAMON")
 
 
 @pytest.mark.parametrize("text", ["TRANS=3", "NORM = -R1", "NORM[1]=3", "G1 SETMS=(1)", "WAITS[R1]=SET(1)"])
-def test_words_without_a_value_do_not_take_equals(text: str) -> None:
+def test_words_without_value_do_not_accept_equal_signs(text: str) -> None:
     line = lex_line(1, text)
     assert [error.code for error in line.errors] == ["12080"]
     assert all(word.name == "G" for word in line.words)
 
 
 @pytest.mark.parametrize("form", ["AC", "IC", "DC", "ACP", "ACN"])
-def test_targets(form: str) -> None:
+def test_target_forms_are_read(form: str) -> None:
     (word,) = lex_line(1, f"C = {form}( -7.25 )").words
     assert (word.position_form, word.value, word.text) == (PositionForm(form), -7.25, f"C={form}(-7.25)")
 
 
-def test_r_parameters_are_values() -> None:
+def test_r_parameters_are_accepted_as_values() -> None:
     (word,) = lex_line(1, "C=DC(R12)").words
     assert (word.position_form, word.value, word.formula) == (PositionForm.DC, None, Parameter("R", 12, 6))
     assert lex_line(1, "X=R3").words[0].formula == Parameter("R", 3, 3)
@@ -65,19 +65,19 @@ def test_r_parameters_are_values() -> None:
         ("X1", "in line 1", "", None),
     ],
 )
-def test_what_stands_before_the_words(text: str, block: str, label: str, skip: int | None) -> None:
+def test_prefix_before_words_is_read(text: str, block: str, label: str, skip: int | None) -> None:
     line = lex_line(1, text)
     assert (line.block_name, line.label, line.skip_level, len(line.words)) == (block, label, skip, 1)
 
 
-def test_a_comment_is_no_word_and_brackets_are_no_comment() -> None:
+def test_comment_is_not_a_word_and_brackets_are_not_a_comment() -> None:
     line = lex_line(1, "X1 ; Y5 (T1)")
     assert (len(line.words), line.comment_column, line.errors) == (1, 4, ())
     assert lex_line(1, "X1 (here)").errors
     assert not lex_line(1, "   ; only this").is_executable
 
 
-def test_calls() -> None:
+def test_subprogram_calls_are_read() -> None:
     line = lex_line(1, "N5 NUT_1 P3 ; three times")
     assert (line.called_name, line.execution_count, line.errors) == ("NUT_1", 3, ())
     assert lex_line(1, "L100").called_name == "L100"
@@ -89,7 +89,7 @@ def test_calls() -> None:
     assert lex_line(1, "NUT P0").errors
 
 
-def test_one_mistake_a_block_with_its_column() -> None:
+def test_first_error_of_block_is_reported_with_its_column() -> None:
     (error,) = lex_line(4, "N5 G1 X=DC( Z?").errors
     assert (error.line, error.column) == (4, 7)
 
@@ -113,12 +113,12 @@ def test_one_mistake_a_block_with_its_column() -> None:
         "R" + "9" * 400 + "=1",
     ],
 )
-def test_nothing_breaks_the_lexer(text: str) -> None:
+def test_lexer_survives_any_text(text: str) -> None:
     lex_line(1, text)
     color_line(text)
 
 
-def test_the_parts_of_a_line() -> None:
+def test_line_parts_are_colored_by_kind() -> None:
     text = "N5 G1 C = DC(5) F100 DIAMON ; turn"
     found = {text[start : start + length]: ink for start, length, ink in color_line(text)}
     assert found == {
@@ -131,12 +131,12 @@ def test_the_parts_of_a_line() -> None:
     }
 
 
-def test_the_parts_of_other_lines() -> None:
+def test_headers_calls_and_errors_are_colored_by_kind() -> None:
     assert color_line("%_N_NUT_SPF")[0].kind is SyntaxKind.CALL
     assert color_line("NUT P2")[0] == (0, 3, SyntaxKind.CALL)
     assert color_line("X5 B1")[-1] == (3, 1, SyntaxKind.ERROR)
 
 
-def test_numbers_without_end_are_refused() -> None:
+def test_numbers_with_too_many_digits_are_rejected() -> None:
     for letter in "GMXFS":
         assert lex_line(1, letter + "9" * 400).errors[0].code == "12080"

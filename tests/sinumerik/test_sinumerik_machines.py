@@ -44,7 +44,7 @@ def test_the_shipped_lathes_have_the_limits_of_the_specification() -> None:
     assert (LINEAR.is_c_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
 
 
-def test_the_shipped_gang_lathe_has_the_spindle_for_its_c() -> None:
+def test_shipped_gang_lathe_uses_spindle_as_c_axis() -> None:
     assert GT75.is_c_modulo
     assert GT75.is_spindle_c_axis
 
@@ -58,7 +58,7 @@ def test_the_shipped_gang_lathe_has_the_spindle_for_its_c() -> None:
         ("own_drive = true ", "own_drives = true "),
     ],
 )
-def test_keys_are_read_strictly(line: str, new: str) -> None:
+def test_machine_file_keys_are_read_strictly(line: str, new: str) -> None:
     with pytest.raises(MachineFileError):
         changed(line, new)
 
@@ -70,7 +70,7 @@ def test_c_is_not_moved_by_a_spindle_that_turns() -> None:
     assert codes("S500 M3\nG0 X20\nG1 Z-3 F100", GT75) == []
 
 
-def test_the_executor_looks_once_more() -> None:
+def test_executor_checks_block_again() -> None:
     (moved,) = good("S500 M3\nG0 C90", setup(GT75, HOME))
     with pytest.raises(AlarmError) as told:
         check_block(moved, GT75)
@@ -78,26 +78,26 @@ def test_the_executor_looks_once_more() -> None:
     check_block(moved, MODULO)
 
 
-def test_the_same_program_takes_the_limits_of_each_lathe() -> None:
+def test_same_program_is_limited_by_each_lathe() -> None:
     (block,) = good("G0 C90", setup(GT75, HOME))
     assert block.feed == pytest.approx(200 * 6)  # 200 rpm of C
     (block,) = good("G0 C90", setup(MODULO, HOME))
     assert block.feed == pytest.approx(120)
 
 
-def test_slides_leave_their_travel_by_no_offset() -> None:
+def test_offset_cannot_move_axes_beyond_travel() -> None:
     assert codes("G0 Z790", MODULO) == []
     assert codes("TRANS Z20\nG0 Z790", MODULO) == ["soft-limit"]
 
 
-def test_a_mill_cannot_run_it() -> None:
+def test_program_is_rejected_on_a_mill() -> None:
     around = replace(setup(), start=(0.0,) * 5)
     passed = run("G0 X1", around)
     assert [each.code for each in passed.errors] == ["machine-kind"]
     assert passed.blocks == []
 
 
-def test_a_machine_file_makes_c_linear_or_takes_it_away() -> None:
+def test_machine_file_makes_c_linear_or_removes_it() -> None:
     linear = changed("modulo = true ", "modulo = false ")
     assert linear.axes[2].travel == (-360.0, 360.0)
     assert codes("G0 C=DC(5)", linear) == ["16800"]
@@ -106,7 +106,7 @@ def test_a_machine_file_makes_c_linear_or_takes_it_away() -> None:
     assert codes("G0 X5", without) == []
 
 
-def test_fixed_points_of_the_shipped_lathes_lie_away_from_the_part() -> None:
+def test_fixed_points_of_shipped_lathes_are_away_from_the_part() -> None:
     """The part is cut towards -Z and the axis of the spindle; the ends of the travel are X300 and Z800."""
     for machine in (MODULO, LINEAR):
         x, z, c = machine.axes
@@ -114,7 +114,7 @@ def test_fixed_points_of_the_shipped_lathes_lie_away_from_the_part() -> None:
         assert codes("TRANS Z20\nG0 X20 Z5\nG75 X1=0 Z1=0", machine) == []
 
 
-def test_a_fixed_point_behind_the_soft_limit_stops_the_proof() -> None:
+def test_fixed_point_beyond_soft_limit_stops_proof() -> None:
     """As where the travel has been made smaller: the machine file would not have been read."""
     x, *others = MODULO.axes
     shorter = replace(MODULO, axes=(replace(x, travel=(-20.0, 298.0)), *others))
@@ -133,12 +133,12 @@ def test_a_fixed_point_behind_the_soft_limit_stops_the_proof() -> None:
         ("[nan]", "wrong-value", "[first, second]"),
     ],
 )
-def test_fixed_points_refused(new: str, code: str, value: str) -> None:
+def test_invalid_fixed_points_are_rejected(new: str, code: str, value: str) -> None:
     with raises_code(MachineFileError, code, "axis.X.fixed_points", value):
         changed("fixed_points = [299.0] ", f"fixed_points = {new} ")
 
 
-def test_fixed_points_need_no_order_and_a_mill_has_one() -> None:
+def test_fixed_points_need_no_order_and_mill_accepts_only_one() -> None:
     machine = changed("fixed_points = [299.0] ", "fixed_points = [100.0, 20.0, -20.0, 300.0] ")
     assert machine.axes[0].fixed_points == (100.0, 20.0, -20.0, 300.0)
     mill = resources.read_machine_file("ac-table-mill.toml")
@@ -159,7 +159,7 @@ M30
 """
 
 
-def test_a_mills_program_on_a_lathe_is_told_once_an_axis() -> None:
+def test_mill_program_on_lathe_is_reported_once_per_axis() -> None:
     """Y first on line 3, A on line 5."""
     assert [(each.line, each.column, each.code) for each in run(MILL).errors] == [
         (3, 8, "not-in-subset"),
@@ -167,10 +167,10 @@ def test_a_mills_program_on_a_lathe_is_told_once_an_axis() -> None:
     ]
 
 
-def test_each_axis_that_a_lathe_lacks_has_its_own_finding() -> None:
+def test_each_missing_axis_has_its_own_finding() -> None:
     errors = run("G0 X10 Y1\nG0 B2\nG0 Y3\nG0 B4\nG0 A5").errors
     assert [each.line for each in errors] == [1, 2, 5]
 
 
-def test_another_fault_of_the_same_program_is_still_told() -> None:
+def test_another_error_in_same_program_is_still_reported() -> None:
     assert [each.line for each in run("G0 X10 Y1\nG0 Y3\nG999\nG0 Y4").errors] == [1, 3]

@@ -73,7 +73,7 @@ def stretches(machine: Machine) -> tuple[Timeline, list[MotionSpan]]:
 
 
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])
-def test_c_and_the_slides_begin_and_end_together_in_every_block(machine: Machine) -> None:
+def test_c_and_linear_axes_start_and_end_together_in_every_block(machine: Machine) -> None:
     """At any moment of a straight block C has done the share of its travel that the slides have of theirs."""
     timeline, found = stretches(machine)
     assert timeline.has_errors is False, timeline.diagnostics
@@ -125,7 +125,7 @@ def test_setpoints_do_not_jump(machine: Machine) -> None:
         last = stretch.chunk.profile.positions_at(stretch.chunk.profile.duration_s)[0]
 
 
-def test_the_modulo_axis_counts_on_in_the_machine() -> None:
+def test_modulo_axis_position_continues_past_360_in_machine() -> None:
     """Past 360 and past 0 its setpoints go on; only what is shown wraps."""
     text = "G0 C=DC(350)\nC=DC(10)\nC=ACP(5)\nC=ACN(4)\nC=IC(-720)"
     timeline = Timeline.from_program(source(text), setup(MODULO, HOME), MODULO)
@@ -137,7 +137,7 @@ def test_the_modulo_axis_counts_on_in_the_machine() -> None:
 
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])
 @pytest.mark.long
-def test_it_runs_on_the_simulated_lathe(machine: Machine) -> None:
+def test_program_runs_on_simulated_lathe(machine: Machine) -> None:
     around = setup(machine, HOME, ZERO)
     report = prove(program(machine), around, machine)
     assert report.errors == ()
@@ -166,7 +166,7 @@ def _run(executor: Executor, clock: ManualClock, commands: list[object]) -> Snap
     return executor.snapshot
 
 
-def test_another_subprogram_or_offset_is_another_job() -> None:
+def test_different_subprogram_or_offset_gives_different_job() -> None:
     around = setup(MODULO, HOME, ZERO)
     job = make_job(program(MODULO), around)
     other = ProgramSource(NUT.name, NUT.text + " ", NUT.specified_dialect)

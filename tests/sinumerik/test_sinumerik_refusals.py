@@ -104,7 +104,7 @@ def one_speed() -> Setup:
         ("N30 G96 S1 G1 X5 F1 G97", "12060"),
     ],
 )
-def test_refused_with_block_and_code(text: str, code: str) -> None:
+def test_program_error_is_reported_with_block_and_alarm_code(text: str, code: str) -> None:
     error = refused(f"G0 X1\n{text}")
     assert error.code == code
     assert error.line == 2
@@ -115,7 +115,7 @@ def test_refused_with_block_and_code(text: str, code: str) -> None:
         assert error.message.startswith(f"Alarm {code}: ")
 
 
-def test_the_axis_is_named() -> None:
+def test_error_message_names_the_axis() -> None:
     assert refused("N30 G0 C=DC(360)").message.startswith("Alarm 16830: channel 1 block N30 axis C: ")
     assert "axis X" in refused("N30 G0 X=DC(10)").message
 
@@ -123,32 +123,32 @@ def test_the_axis_is_named() -> None:
 @pytest.mark.parametrize(
     ("text", "name"), [("G0 C-1", "in line 1"), ("WEG: G0 C-1", "WEG"), (":7 G0 C-1", ":7")]
 )
-def test_a_block_is_named_by_number_label_or_line(text: str, name: str) -> None:
+def test_error_message_names_block_by_number_label_or_line(text: str, name: str) -> None:
     assert f"block {name} axis C" in refused(text).message
 
 
 @pytest.mark.parametrize("text", ["G0 C359.999", "G0 C=DC(0)", "g0 c = dc( 0 )", "G91\nG0 C=AC(10)"])
-def test_fine(text: str) -> None:
+def test_valid_blocks_are_accepted(text: str) -> None:
     assert len(good(text)) == 1
 
 
-def test_the_bad_block_is_not_started_and_the_later_ones_neither() -> None:
+def test_erroneous_block_and_later_blocks_are_not_run() -> None:
     passed = run("G0 Z1\nG0 C400\nG0 Z2")
     assert [block.line for block in passed.blocks] == [1]
 
 
-def test_every_mistake_is_told_in_one_pass() -> None:
+def test_every_error_is_reported_in_one_pass() -> None:
     found = run("G0 C400\nG0 X=DC(1)\nM99\nC=DC()\nG0 Z3").errors
     assert [each.code for each in found] == ["16830", "16800", "m-unknown", "12080"]
 
 
-def test_what_follows_from_a_mistake_is_not_told() -> None:
+def test_consequential_errors_are_not_reported() -> None:
     """Where the machine stands after the bad block nobody knows, so the arc behind it may be right."""
     assert refused("G0 X=DC(20) Z0\nG3 X60 Z-20 I0 K-20 F100").code == "16800"
     assert refused("G1 X=DC(20) F100\nZ0").code == "16800"
 
 
-def test_a_machine_without_a_third_axis() -> None:
+def test_c_words_are_rejected_without_third_axis() -> None:
     for text in ("G0 C10", "G1 X5 C=IC(3) F1", "TRANS C5"):
         error = refused(text, without_c())
         assert error.code == "unknown-axis"
@@ -157,38 +157,38 @@ def test_a_machine_without_a_third_axis() -> None:
 
 
 @pytest.mark.parametrize("text", ["G4 S30", "S500 M3", "G96 S100", "LIMS=100"])
-def test_a_spindle_that_is_not_controlled(text: str) -> None:
+def test_speed_words_are_rejected_without_controlled_spindle(text: str) -> None:
     assert refused(f"N30 {text}", one_speed()).code == "no-controlled-spindle"
 
 
-def test_a_spindle_of_one_speed_starts_without_s() -> None:
+def test_single_speed_spindle_starts_without_s() -> None:
     assert run("M3\nG0 X5", one_speed()).blocks[-1].rpm == pytest.approx(MODULO.spindle.max_rpm)
 
 
-def test_the_speed_is_at_zero() -> None:
+def test_spindle_start_and_dwell_are_rejected_at_zero_speed() -> None:
     assert refused("S0\nN5 M3").code == "speed-missing"
     assert refused("S100 M3\nS0\nN30 G4 S2").code == "dwell-spindle-stopped"
 
 
-def test_m5_beside_a_move_by_the_revolution() -> None:
+def test_m5_in_block_with_feed_per_revolution_is_rejected() -> None:
     """M5 acts before the axes move, so the move has no speed to go by."""
     assert refused("S500 M3 G95 F0.1\nN30 G1 Z0 M5").code == "g95-spindle-stopped"
 
 
-def test_arcs_belong_to_g18() -> None:
+def test_arcs_outside_g18_are_rejected() -> None:
     assert refused("G17\nG2 X5 Z5 CR=50 F1").code == "arc-plane"
 
 
-def test_a_block_of_more_than_512_characters() -> None:
+def test_block_of_more_than_512_characters_is_rejected() -> None:
     assert refused("G0 X1 ;" + "x" * 510).code == "12080"
     assert good("G0 X1 ;" + "x" * 500)
 
 
-def test_more_than_five_m_codes() -> None:
+def test_more_than_five_m_codes_are_rejected() -> None:
     assert refused("M0 M0 M3 M3 M30 S1").code in {"m-conflict", "m-too-many"}
 
 
-def test_the_linear_axis_names_its_range() -> None:
+def test_error_for_linear_axis_states_its_range() -> None:
     error = refused("N30 G0 C400", setup(LINEAR))
     assert error.code == "10720"
     assert "-360 to +360" in error.message
@@ -197,9 +197,7 @@ def test_the_linear_axis_names_its_range() -> None:
 @pytest.mark.parametrize(
     ("block", "named"), [("M80", "M80"), ("M9 M50", "M50"), ("M50 M80 M81", "M50 M80 M81"), ("M138", "M138")]
 )
-def test_m_functions_of_another_builder_are_told_once_each_and_the_rest_goes_on(
-    block: str, named: str
-) -> None:
+def test_unknown_m_functions_are_reported_once_each_with_remedy(block: str, named: str) -> None:
     """The control itself raises no alarm; the lines that bind the code are told letter by letter."""
     passed = run(f"N10 G0 X20 Z5\nN20 {block}\nN30 {block}\nN40 G0 X30")
     assert passed.errors == []
@@ -222,7 +220,7 @@ def test_m_functions_that_the_machine_file_ignores_do_nothing() -> None:
     assert len(passed.blocks) == 1
 
 
-def test_what_a_post_switches_off_is_taken_and_what_it_would_switch_on_is_not() -> None:
+def test_ineffective_switch_off_words_are_accepted_and_switch_on_rejected() -> None:
     """No transformation is ever on, and no other language."""
     assert run("G290\nTRAFOOF\nG0 X20 Z5").found == []
     assert refused("N10 G291").code == refused("N10 TRAANG").code == "not-in-subset"

@@ -33,14 +33,14 @@ def slants(blocks: list[Block]) -> list[tuple[float, float, float, float]]:
     return [(b.x0, b.z0, b.x, b.z) for b in blocks if b.x != b.x0 and b.z != b.z0]
 
 
-def test_both_flanks_rise_outwards_from_the_bottom() -> None:
+def test_both_flanks_slope_outward_from_groove_bottom() -> None:
     """From -10 at radius 20 to -10.882 at 15; the bottom ends at -18.882, the top at -19.763."""
     right, left = slants(cuts("CYCLE93(40,-10,8,5,,10,10,,,,,,,2,0.5,5)"))
     assert right == pytest.approx((20.0, -10.0, 15.0, -10.0 - RUN))
     assert left == pytest.approx((20.0, -18.0 - 2 * RUN + WIDTH, 15.0, -18.0 - RUN + WIDTH))
 
 
-def test_the_first_angle_is_that_of_the_side_where_it_begins() -> None:
+def test_first_angle_is_that_of_the_starting_side() -> None:
     """VARI 1 begins at the left: ANG1 is the left flank, and the right one is square."""
     (left,) = slants(cuts("CYCLE93(40,-20,8,5,,10,,,,,,,,2,0.5,1)"))
     assert left == pytest.approx((20.0, -20.0 + WIDTH, 15.0, -20.0 + RUN + WIDTH))
@@ -48,13 +48,13 @@ def test_the_first_angle_is_that_of_the_side_where_it_begins() -> None:
     assert right == pytest.approx((20.0, -12.0 + RUN, 15.0, -12.0))
 
 
-def test_a_bore_is_grooved_outwards() -> None:
+def test_bore_is_grooved_outward() -> None:
     (right,) = slants(cuts("CYCLE93(60,-10,8,5,,10,,,,,,,,2,0.5,7)"))
     assert right == pytest.approx((30.0, -10.0, 35.0, -10.0 - RUN))
 
 
 @pytest.mark.parametrize(("first", "second"), [(10, 10), (0, 45), (60, 20), (80, 80)])
-def test_no_cut_goes_through_a_flank(first: float, second: float) -> None:
+def test_no_cut_crosses_a_flank(first: float, second: float) -> None:
     """At each depth both corners of the tool stay between the flanks, and roughing leaves 0.1 beside them."""
     call = f"CYCLE93(40,-30,8,5,,{first},{second},,,,,0.1,0.1,2,0.5,5)"
     high, low = -30.0 - 5 * tan(radians(first)), -38.0 - 5 * tan(radians(first))
@@ -73,7 +73,7 @@ def test_a_wide_flank_is_roughed_in_steps() -> None:
     assert {x for x, _ in plunges} == {15.0, 16.0, 17.0, 18.0, 19.0}
 
 
-def test_a_tool_that_the_table_lacks_is_taken_for_a_usual_one() -> None:
+def test_tool_missing_from_table_is_assumed_standard_with_warning() -> None:
     """The machine starts nothing with it; what it would do is shown, with a warning."""
     passed = run(HEAD + "CYCLE93(40,-20,5,6,0,10,10,0,0,0,0,0.1,0.1,2,0.5,5)")
     assert {(each.code, each.severity) for each in passed.found} == {

@@ -27,7 +27,7 @@ def places(text: str | ProgramSource, around: Setup | None = None) -> list[tuple
     return [(round(b.x * 2, 4), round(b.z, 4)) for b in good(text, around) if b.line > 2]
 
 
-def test_a_hole_in_one_go() -> None:
+def test_cycle81_drills_in_one_pass() -> None:
     assert places(HOLE + "CYCLE81(4,0,2,-12)") == [(0, 2), (0, -12), (0, 4)]
     assert places(HOLE + "CYCLE81(4,1,2,,12)") == [(0, 3), (0, -11), (0, 4)]  # DPR from the reference plane
     blocks = [b for b in good(HOLE + "CYCLE81(4,0,2,-12)") if b.line > 2]
@@ -36,14 +36,14 @@ def test_a_hole_in_one_go() -> None:
 
 
 @pytest.mark.parametrize(("dwell", "seconds"), [("0.5", 0.5), ("-10", 0.6)])  # 10 turns at 1000 rpm
-def test_a_dwell_at_the_bottom(dwell: str, seconds: float) -> None:
+def test_cycle82_dwells_at_bottom(dwell: str, seconds: float) -> None:
     actions = [b.action for b in run(HOLE + f"CYCLE82(4,0,2,-12,,{dwell})").blocks if b.action]
     last = actions[-1]
     assert isinstance(last, Dwell)
     assert last.seconds == pytest.approx(seconds)
 
 
-def test_pecks_grow_smaller_and_the_last_two_are_alike() -> None:
+def test_pecks_get_smaller_and_last_two_are_equal() -> None:
     # 10, then 8, then 6 of 30; 6 are left, and 4 would leave 2: twice 3.
     depths = [z for _, z in places(HOLE + "CYCLE83(4,0,1,-30,,-10,,2,0,0,1,1)") if z < 0]
     assert depths == [-10, -9, -18, -17, -24, -23, -27, -26, -30]
@@ -53,12 +53,12 @@ def test_pecks_grow_smaller_and_the_last_two_are_alike() -> None:
     assert (first, second) == pytest.approx((1.0, 2.0))  # FRF for the first alone
 
 
-def test_boring_feeds_out() -> None:
+def test_cycle85_feeds_out() -> None:
     blocks = [b for b in good(HOLE + "CYCLE85(4,0,1,-9,,0,60,240)") if b.line > 2]
     assert [(b.z, b.feed) for b in blocks[1:3]] == [(-9, pytest.approx(1.0)), (1, pytest.approx(4.0))]
 
 
-def test_mcall_drills_at_each_place() -> None:
+def test_mcall_drills_at_each_position() -> None:
     ends = places(HOLE + "MCALL CYCLE81(4,0,2,-3)\nX10\nX20\nMCALL\nX30")
     assert ends == [(10, 5), (10, 2), (10, -3), (10, 4), (20, 4), (20, 2), (20, -3), (20, 4), (30, 4)]
 
@@ -95,7 +95,7 @@ def material_left(blocks: list[Block], x: float, z: float) -> float:
     ("z", "radius"),
     [(-5, 10), (-12, 12), (-15, 15), (-18, 18), (-22, 25 - sqrt(25 - 4)), (-24.5, 25 - sqrt(25 - 20.25))],
 )
-def test_stock_removal_leaves_the_contour(z: float, radius: float) -> None:
+def test_stock_removal_leaves_allowance_on_contour(z: float, radius: float) -> None:
     """The arc's centre is (25, -20): clockwise with X up from (20, -20) to (25, -25)."""
     blocks = good(source(CUT + 'CYCLE95("KONTUR",2,0,0,,0.3,0.1,0.12,9)', KONTUR))
     assert material_left(blocks, 30, z) == pytest.approx(radius, abs=0.13)  # the slope times .06
@@ -110,7 +110,7 @@ def with_nose(radius: float, quadrant: int) -> Setup:
 
 @pytest.mark.parametrize("nose", [0.4, 0.8])
 @pytest.mark.parametrize("vari", [5, 9])
-def test_tapers_and_arcs_have_their_size_whatever_the_nose(nose: float, vari: int) -> None:
+def test_tapers_and_arcs_have_correct_size_for_any_nose_radius(nose: float, vari: int) -> None:
     """The centre lies the nose radius from the tip in X and Z; a taper of 45 degrees, and an arc."""
     call = f'CYCLE95("KONTUR",2,0.1,0.2,,0.3,0.1,0.12,{vari})'
     text = source(CUT.replace("G95", "T1 D1 G95") + call, KONTUR)
@@ -125,7 +125,7 @@ def test_tapers_and_arcs_have_their_size_whatever_the_nose(nose: float, vari: in
         assert min(compute_distance_to_point(each, tip) for each in cuts) == pytest.approx(nose, abs=2e-3)
 
 
-def test_the_allowance_is_left_by_the_nose_too() -> None:
+def test_nose_compensation_leaves_allowance_too() -> None:
     """0.5 everywhere: the nose's edge stays so far from the taper when it roughs alone."""
     text = source(CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("KONTUR",2,,,0.5,0.3,0.1,0.12,1)', KONTUR)
     cuts = [
@@ -138,7 +138,7 @@ def test_the_allowance_is_left_by_the_nose_too() -> None:
     )
 
 
-def test_inside_the_nose_lies_on_the_other_side() -> None:
+def test_inside_contour_is_compensated_on_the_other_side() -> None:
     inner = ProgramSource("BORE.spf", "G1 X40 Z0\nX30 Z-10\nZ-30\nM17", Dialect.SINUMERIK)
     text = 'S1000 M3 T1 D1 G95 F0.2\nG0 X16 Z5\nCYCLE95("BORE",2,,,,0.3,0.1,0.12,7)'
     cuts = [
@@ -150,7 +150,7 @@ def test_inside_the_nose_lies_on_the_other_side() -> None:
     assert min(compute_distance_to_point(each, tip) for each in cuts) == pytest.approx(0.4, abs=2e-3)
 
 
-def test_along_x_the_nose_counts_too() -> None:
+def test_facing_contour_is_compensated_for_nose_radius() -> None:
     """A face with a taper of 45 degrees from Ø40 Z-12 to Ø20 Z-2."""
     face = ProgramSource("FACE.spf", "G1 X50 Z-12\nX40\nX20 Z-2\nX0\nM17", Dialect.SINUMERIK)
     text = CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("FACE",2,0.2,,,0.3,0.1,0.12,10)'
@@ -161,7 +161,7 @@ def test_along_x_the_nose_counts_too() -> None:
     )
 
 
-def test_without_a_tip_quadrant_the_tip_runs_along_and_that_is_told() -> None:
+def test_tip_follows_contour_without_tip_quadrant_with_warning() -> None:
     text = source(CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("KONTUR",2,,,,0.3,0.1,0.12,5)', KONTUR)
     passed = run(text, with_nose(0.4, 0))
     assert [each.code for each in passed.found] == ["comp-no-quadrant"]
@@ -180,7 +180,7 @@ def test_passes_are_equal_and_no_deeper_than_mid() -> None:
     assert levels == [22.75, 18.5, 14.25, 10.0]
 
 
-def test_a_neck_before_the_shoulder_does_not_turn_the_cycle_round() -> None:
+def test_neck_before_shoulder_does_not_reverse_cut_direction() -> None:
     """Deep is the end of the contour that is so, whatever falls between: the passes go from right to left."""
     neck = ProgramSource("NECK.spf", "G1 X20 Z0\nZ-10\nX16 Z-14\nZ-20\nX40\nM17", Dialect.SINUMERIK)
     blocks = good(source(CUT + 'CYCLE95("NECK",2,,,,0.3,0.1,0.12,1)', neck))
@@ -188,7 +188,7 @@ def test_a_neck_before_the_shoulder_does_not_turn_the_cycle_round() -> None:
     assert ways == {True}
 
 
-def test_the_contour_between_labels_and_inside() -> None:
+def test_contour_is_read_between_labels_and_for_inside_cut() -> None:
     text = CUT + 'CYCLE95("AA:BB",3,,,,0.3,0.1,0.12,9)\nGOTOF CC\nAA: G1 X20 Z0\nZ-10\nBB: X40\nCC: Z5'
     assert material_left(good(text), 30, -5) == pytest.approx(10, abs=1e-6)
     bore = (
@@ -201,13 +201,13 @@ def test_the_contour_between_labels_and_inside() -> None:
         b.z < -10.001 for b in good(bore)) else True  # fmt: skip
 
 
-def test_facing_takes_passes_along_x() -> None:
+def test_facing_makes_passes_along_x() -> None:
     text = CUT + 'CYCLE95("AA:BB",1,,,,0.3,0.1,0.12,2)\nGOTOF CC\nAA: G1 X50 Z-4\nX20\nBB: Z0\nCC: Z5'
     cuts = [b for b in good(text) if b.line == 3 and b.kind is BlockKind.FEED and b.z == b.z0 and b.x < b.x0]
     assert sorted({round(b.z, 4) for b in cuts}) == [-4, -3, -2, -1]
 
 
-def test_a_taper_begins_in_its_line_wherever_the_thread_lies() -> None:
+def test_tapered_thread_starts_on_its_extended_line() -> None:
     """Ø20 at Z-5, Ø24 at Z-25: R .1 a mm; 5 before it R9.5, 3 behind it R12.3; a depth of 1."""
     (cut,) = [
         b for b in good(THREAD + "CYCLE97(2,,-5,-25,20,24,5,3,1,0,0,,1,0,1,1)") if b.kind is BlockKind.THREAD
@@ -215,7 +215,7 @@ def test_a_taper_begins_in_its_line_wherever_the_thread_lies() -> None:
     assert (cut.x0, cut.z0, cut.x, cut.z) == pytest.approx((8.5, 0.0, 11.3, -28.0))
 
 
-def test_a_thread_in_passes_of_equal_chip() -> None:
+def test_thread_passes_have_equal_chip_area() -> None:
     text = THREAD + "CYCLE97(2,,0,-20,24,24,6,3,1.2,0.1,30,,3,1,3,1)"
     cuts = [b for b in good(text) if b.kind is BlockKind.THREAD]
     depths = [1.1 * sqrt(1 / 3), 1.1 * sqrt(2 / 3), 1.1, 1.2, 1.2]
@@ -227,14 +227,14 @@ def test_a_thread_in_passes_of_equal_chip() -> None:
     assert max(b.x for b in clear) == 13  # DM1 and 1 mm
 
 
-def test_starts_of_a_thread_are_parts_of_the_lead() -> None:
+def test_thread_starts_are_offset_by_parts_of_the_lead() -> None:
     cuts = [
         b for b in good(THREAD + "CYCLE97(6,,0,-20,24,24,8,3,1.2,0,0,,1,0,1,3)") if b.kind is BlockKind.THREAD
     ]
     assert [b.z0 for b in cuts] == pytest.approx([8, 10, 12])
 
 
-def test_a_tapered_thread_keeps_its_cone_over_run_in_and_run_out() -> None:
+def test_tapered_thread_retains_its_taper_over_run_in_and_run_out() -> None:
     (cut,) = [
         b for b in good(THREAD + "CYCLE97(2,,0,-20,20,24,5,5,1,0,0,,1,0,1,1)") if b.kind is BlockKind.THREAD
     ]
@@ -242,7 +242,7 @@ def test_a_tapered_thread_keeps_its_cone_over_run_in_and_run_out() -> None:
     assert (cut.x0, cut.x) == pytest.approx((8.5, 11.5))
 
 
-def test_size_names_the_coarse_lead() -> None:
+def test_nominal_size_sets_coarse_lead() -> None:
     (cut,) = [
         b
         for b in good(THREAD + "CYCLE97(,24,0,-20,24,24,8,3,1.2,0,0,,1,0,1,1)")
@@ -256,7 +256,7 @@ def grooving() -> Setup:
     return replace(setup(), tools={3: ToolOffset(0.0, 0.0), 200_003: ToolOffset(0.0, 3.0)})
 
 
-def test_a_groove_is_as_wide_as_it_says() -> None:
+def test_groove_has_programmed_width() -> None:
     text = "S900 M3 G95 F0.1 T3 D1\nG0 X44 Z0\nCYCLE93(40,-10,8,5,,,,,,,,,,2,0.5,5)"
     cuts = [b for b in good(text, grooving()) if b.line == 3 and b.kind is BlockKind.FEED]
     # D1 is the right corner: it stands from -10 to -15, where the left one stands at -18.
@@ -267,7 +267,7 @@ def test_a_groove_is_as_wide_as_it_says() -> None:
     assert any(isinstance(b.action, Dwell) for b in run(text, grooving()).blocks)
 
 
-def test_the_second_corner_is_the_one_that_dn_names() -> None:
+def test_dn_selects_second_groove_tool_corner() -> None:
     """D2 is a finishing edge elsewhere, D5 the left corner, 3 mm from D1: the same ways as with D2 there."""
     text = "S900 M3 G95 F0.1 T3 D1\nG0 X44 Z0\nCYCLE93(40,-10,8,5,,,,,,,,,,2,0.5,5,,{})"
     around = grooving()
@@ -323,7 +323,7 @@ def test_a_groove_needs_both_corners_of_its_tool() -> None:
         ('CYCLE952("A")', "not-in-subset", "CYCLE952"),
     ],
 )  # fmt: skip
-def test_bounds_by_the_parameters_name(call: str, code: str, named: str) -> None:
+def test_parameter_limits_are_reported_by_parameter_name(call: str, code: str, named: str) -> None:
     before = HOLE if call[5:7] in {"81", "83", "84"} else HOLE.replace("G17", "G18")
     error = refused(source(before + call, KONTUR))
     assert (error.code, error.line) == (code, 3)
@@ -341,7 +341,7 @@ def test_bounds_by_the_parameters_name(call: str, code: str, named: str) -> None
         ("G0 X60 Z5\nG96 S100 M3", "CYCLE97(2,,0,-20,24,24,6,3,1.2,0,0,,3,1,3,1)", "thread-under-css"),
     ],
 )
-def test_what_is_in_force_before_a_cycle(before: str, call: str, code: str) -> None:
+def test_missing_preconditions_of_cycle_are_rejected(before: str, call: str, code: str) -> None:
     error = refused(f"{before}\n{call}")
     assert (error.code, error.line) == (code, 3)
 
@@ -349,7 +349,7 @@ def test_what_is_in_force_before_a_cycle(before: str, call: str, code: str) -> N
 @pytest.mark.parametrize(
     "line", ["CALL NUT", "G33 Z-5 K1", "GOTOF AA", "TRANS X5", "G41 X30", "C30", "G1 X=IC("]
 )
-def test_what_no_contour_holds(line: str) -> None:
+def test_blocks_not_allowed_in_contour_are_rejected(line: str) -> None:
     bad = ProgramSource("KONTUR.spf", f"G1 X20 Z0\nZ-10\n{line}\nX40\nM17", Dialect.SINUMERIK)
     passed = run(source(CUT + 'CYCLE95("KONTUR",2,,,,0.3,0.1,0.1,9)', bad))
     (error,) = passed.errors

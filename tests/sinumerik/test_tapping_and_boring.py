@@ -31,7 +31,7 @@ def error(text: str) -> tuple[str, str]:
     return found.code, f"{found.message} {found.hint}"
 
 
-def test_a_rigid_tap_turns_with_its_way() -> None:
+def test_rigid_tap_rotates_with_its_feed() -> None:
     into, out = [b for b in blocks("CYCLE84(5,0,2,-13,,,3,,1.5,0,200,300)") if b.c != b.c0]
     # 15 mm by 1.5 are ten turns; 1.5 mm a turn at 200 and at 300 rpm.
     assert (into.z, into.c - into.c0, into.feed) == (-13, pytest.approx(3600.0), pytest.approx(5.0))
@@ -41,7 +41,7 @@ def test_a_rigid_tap_turns_with_its_way() -> None:
     assert (after.action, after.modal.spindle) == (SpindleRun(300.0), 1)
 
 
-def test_left_hand_by_size_in_steps_and_at_an_angle() -> None:
+def test_left_hand_tap_by_size_pecks_and_starts_at_an_angle() -> None:
     turned = [b for b in blocks("CYCLE84(5,0,2,-10,,,5,-6,,90,100,,,,,2,4)") if b.c != b.c0]
     assert (turned[0].kind, turned[0].c) == (BlockKind.FEED, pytest.approx(90.0))  # POSS, before it goes in
     # M6 has a lead of 1: 4 of 12 mm, out, 8, out, 12, out; the left-hand tap turns against C+.
@@ -50,7 +50,7 @@ def test_left_hand_by_size_in_steps_and_at_an_angle() -> None:
     ]  # fmt: skip
 
 
-def test_with_a_compensating_chuck_the_spindle_turns_back() -> None:
+def test_spindle_reverses_with_compensating_chuck() -> None:
     made = blocks("CYCLE840(5,0,2,-12,,0,0,3,0,,1.25)")
     fed = [b for b in made if b.kind is BlockKind.FEED]
     assert [(b.z, b.feed) for b in fed] == [
@@ -66,13 +66,13 @@ def test_with_a_compensating_chuck_the_spindle_turns_back() -> None:
     assert [b.feed for b in by_feed] == [pytest.approx(5.0)] * 2  # ENC 1: 300 mm/min, whatever PIT says
 
 
-def test_g331_and_g332() -> None:
+def test_g331_and_g332_tap_and_retract_with_spindle_rotation() -> None:
     into, out = [b for b in blocks("SPOS=0\nG331 Z-10 K0.5 S120\nG332 Z5") if b.c != b.c0]
     assert (into.c - into.c0, into.feed) == (pytest.approx(30 * 360.0), pytest.approx(1.0))
     assert (out.z, out.c - out.c0) == (5, pytest.approx(-30 * 360.0))
 
 
-def test_boring_with_the_edge_lifted() -> None:
+def test_cycle86_bores_and_retracts_with_edge_lifted() -> None:
     made = blocks("CYCLE86(5,0,2,-20,,0,3,-1,0,0.5,45)")
     assert [(b.x, b.z) for b in made if b.kind in {BlockKind.RAPID, BlockKind.FEED}] == [
         (0, 2), (0, -20), (0, -20), (-1, -19.5), (-1, 5), (0, 5)
@@ -82,7 +82,7 @@ def test_boring_with_the_edge_lifted() -> None:
 
 
 @pytest.mark.parametrize("call", ["CYCLE87(5,0,2,-20,,3)", "CYCLE88(5,0,2,-20,,0,3)"])
-def test_boring_that_stops_for_the_operator(call: str) -> None:
+def test_boring_cycle_stops_for_the_operator(call: str) -> None:
     actions = [b.action for b in blocks(call) if b.action is not None]
     assert actions == [SpindleStop(waits_for_standstill=True), ProgramStop(optional=False)]
 
@@ -109,13 +109,13 @@ def test_boring_that_stops_for_the_operator(call: str) -> None:
         ("SPOS=0\nG331 X3 Z-5 K1", "word-unused", "only along Z"),
     ],
 )
-def test_refusals(text: str, code: str, part: str) -> None:
+def test_invalid_tapping_and_boring_calls_are_rejected(text: str, code: str, part: str) -> None:
     found, said = error(text)
     assert found == code
     assert part in said
 
 
-def test_a_speed_that_c_does_not_reach_is_told() -> None:
+def test_tapping_speed_beyond_c_limit_is_reported() -> None:
     passed = run(HOLE + "CYCLE84(5,0,2,-13,,,5,,1.5,0,900)", around())
     assert [each.code for each in passed.found] == ["tap-speed"]
     assert [b.feed for b in passed.blocks if b.c != b.c0] == [pytest.approx(10.0)] * 2  # 400 rpm by 1.5

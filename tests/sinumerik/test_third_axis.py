@@ -38,14 +38,14 @@ FORMS = (PositionForm.AC, PositionForm.DC, PositionForm.ACP, PositionForm.ACN)
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
-def test_the_table_of_the_modulo_axis(row: tuple[float, ...]) -> None:
+def test_modulo_travel_matches_reference_table(row: tuple[float, ...]) -> None:
     start, target, *travels = row
     for form, travel in zip(FORMS, travels, strict=True):
         assert compute_modulo_travel(form, target, start) == pytest.approx(travel, abs=1e-9)
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
-def test_the_table_by_words_of_a_program(row: tuple[float, ...]) -> None:
+def test_programmed_modulo_moves_match_reference_table(row: tuple[float, ...]) -> None:
     start, target, *travels = row
     words = [f"C={form}({target})" for form in FORMS]
     for word, travel in zip([f"C{target}", *words], [travels[0], *travels], strict=True):
@@ -54,7 +54,7 @@ def test_the_table_by_words_of_a_program(row: tuple[float, ...]) -> None:
         assert (block.mc - target) % 360 == pytest.approx(0, abs=1e-9)
 
 
-def test_the_makers_own_example() -> None:
+def test_modulo_moves_match_manufacturer_example() -> None:
     blocks = good("G0 C=ACP(100)\nC=ACN(300)\nC=ACP(240)\nC=AC(0)", setup(start=(0.0, 0.0, 0.0)))
     assert [b.c - b.c0 for b in blocks] == pytest.approx([100, -160, 300, -240])
     assert [b.mc % 360 for b in blocks] == pytest.approx([100, 300, 240, 0])
@@ -63,19 +63,19 @@ def test_the_makers_own_example() -> None:
 @pytest.mark.parametrize(
     ("start", "by", "shown"), [(350, 20, 10), (10, -20, 350), (0, 360, 0), (0, -1080, 0)]
 )
-def test_distances_take_any_number_of_turns(start: float, by: float, shown: float) -> None:
+def test_incremental_moves_can_be_any_number_of_revolutions(start: float, by: float, shown: float) -> None:
     for text in (f"G0 C=IC({by})", f"G91 G0 C{by}"):
         (block,) = good(text, setup(start=(0.0, 0.0, start)))
         assert block.c - block.c0 == pytest.approx(by)
         assert block.mc % 360 == pytest.approx(shown)
 
 
-def test_a_form_says_more_than_g91() -> None:
+def test_target_form_overrides_g91() -> None:
     (block,) = good("G91 G0 C=AC(10)", setup(start=(0.0, 0.0, 300.0)))
     assert block.c - block.c0 == pytest.approx(-290)
 
 
-def test_20_000_random_moves_end_where_they_should() -> None:
+def test_random_20_000_moves_end_at_their_targets() -> None:
     dice, at = random.Random(7), 0.0
     for _ in range(20_000):
         target = round(dice.uniform(0, 359.4), dice.randrange(4))
@@ -93,7 +93,7 @@ def test_20_000_random_moves_end_where_they_should() -> None:
         at += dice.uniform(-2000, 2000) if form is PositionForm.IC else ways[form]
 
 
-def test_20_000_random_moves_of_a_program() -> None:
+def test_random_20_000_program_moves_end_at_their_targets() -> None:
     """Forms in turn; the blocks follow each other without a jump, and each ends at its target."""
     dice = random.Random(11)
     rows = [(dice.choice(FORMS), round(dice.uniform(0, 359.99), 2)) for _ in range(20_000)]
@@ -110,7 +110,7 @@ def test_20_000_random_moves_of_a_program() -> None:
 
 
 @pytest.mark.parametrize("noise", [1e-12, -1e-12, 3e-10, -3e-10])
-def test_noise_of_sums_turns_nothing_round(noise: float) -> None:
+def test_rounding_noise_causes_no_extra_revolution(noise: float) -> None:
     """A position that is 0 but for binary noise is 0: no whole turn comes of it."""
     for form in FORMS:
         assert compute_modulo_travel(form, 0.0, noise) == pytest.approx(0, abs=1e-9)
@@ -121,7 +121,7 @@ def test_noise_of_sums_turns_nothing_round(noise: float) -> None:
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("value", [-1.0, 360.0, 400.0, -0.001])
-def test_a_modulo_axis_has_0_to_under_360(form: PositionForm, value: float) -> None:
+def test_modulo_axis_targets_are_limited_to_0_to_below_360(form: PositionForm, value: float) -> None:
     with pytest.raises(TargetError) as told:
         compute_modulo_travel(form, value, 0.0)
     assert told.value.alarm_number == 16830
@@ -141,7 +141,7 @@ def test_a_modulo_axis_has_0_to_under_360(form: PositionForm, value: float) -> N
         (0, "C360", +360),
     ],
 )
-def test_the_linear_axis(start: float, word: str, travel: float) -> None:
+def test_linear_axis_moves_by_programmed_travel(start: float, word: str, travel: float) -> None:
     (block,) = good(f"G0 {word}", setup(LINEAR, (0.0, 0.0, start)))
     assert block.c - block.c0 == pytest.approx(travel)
     assert block.mc == pytest.approx(start + travel)
@@ -151,26 +151,26 @@ def test_the_linear_axis(start: float, word: str, travel: float) -> None:
     ("start", "text"),
     [(350, "G0 C=IC(20)"), (0, "G0 C=IC(400)"), (0, "TRANS C30\nG0 C350"), (0, "G0 C-360.001")],
 )
-def test_beyond_the_range_of_the_linear_axis(start: float, text: str) -> None:
+def test_target_beyond_linear_axis_range_is_rejected(start: float, text: str) -> None:
     error = refused(text, setup(LINEAR, (0.0, 0.0, start)))
     assert error.code == str(third_axis.WRONG_AXIS_RANGE)
     assert "axis C" in error.message
 
 
-def test_an_offset_inside_the_range_of_the_linear_axis() -> None:
+def test_offset_within_linear_axis_range_is_accepted() -> None:
     (block,) = good("TRANS C30\nG0 C330", setup(LINEAR, (0.0, 0.0, 0.0)))
     assert block.mc == pytest.approx(360)
     assert block.c == pytest.approx(330)
 
 
 @pytest.mark.parametrize(("form", "alarm"), [("DC", "16800"), ("ACP", "16810"), ("ACN", "16820")])
-def test_the_linear_axis_has_no_rotary_targets(form: str, alarm: str) -> None:
+def test_rotary_target_forms_are_rejected_for_linear_axis(form: str, alarm: str) -> None:
     assert refused(f"G0 C={form}(10)", setup(LINEAR)).code == alarm
     with pytest.raises(TargetError):
         compute_linear_travel(PositionForm(form), 10.0, 0.0)
 
 
-def test_the_end_of_the_range_itself_is_inside() -> None:
+def test_range_limit_itself_is_within_range() -> None:
     check_axis_range(360.0)
     check_axis_range(-360.0)
     with raises_code(TargetError, "10720"):

@@ -38,13 +38,13 @@ def around(name: str) -> Setup:
         ("Y", "G0 X30 Y90"), ("A", "G0 A=ACP(90) X30"),
     ],
 )  # fmt: skip
-def test_its_words_turn_the_third_axis(name: str, words: str) -> None:
+def test_words_with_axis_name_move_the_third_axis(name: str, words: str) -> None:
     (block,) = good(words, around(name.upper()))
     assert (block.c, block.mx) == (90.0, 15.0)
     assert block.text == words
 
 
-def test_its_offsets_and_distances() -> None:
+def test_offsets_and_distances_use_the_axis_name() -> None:
     """G54 turns it by 15, TRANS by 30: position 10 of the program is 55; then 20 on."""
     zero = replace(around("B"), zero={54: ZeroOffset(c=15.0)})
     first, second = good("G54\nTRANS B30\nG0 B=DC(10)\nG91 B20", zero)
@@ -65,26 +65,26 @@ def test_its_offsets_and_distances() -> None:
         ("Y", "M5\nTRANSMIT", "14401", "third axis of this machine is Y"),
     ],
 )
-def test_what_is_refused(name: str, text: str, code: str, said: str) -> None:
+def test_words_with_wrong_axis_name_are_rejected(name: str, text: str, code: str, said: str) -> None:
     error = refused(text, around(name))
     assert error.code == code
     assert said in error.message
 
 
-def test_texts_and_variables_stay_what_they_are() -> None:
+def test_texts_and_variables_with_axis_name_are_unchanged() -> None:
     passed = run('DEF REAL CB1=3\nMSG("C90 B90")\nG0 Z=CB1\nLABEL_B:\nR1=2', around("B"))
     assert passed.errors == []
     line = lex_line(1, 'N10 MSG("B90 C90")', "B")
     assert line.errors == ()
 
 
-def test_a_line_of_mdi_knows_it_too() -> None:
+def test_mdi_line_uses_the_axis_name() -> None:
     begin = PassStart(Checkpoint(run("G0 X20", around("Q1")).blocks[-1].modal), is_mdi_line=True)
     blocks = run("G0 Q1=45", replace(around("Q1"), begin=begin)).moves
     assert [block.c for block in blocks] == [45.0]
 
 
-def test_the_machine_file_says_it() -> None:
+def test_axis_name_is_specified_in_machine_file() -> None:
     assert get_control_limits(of("Q1")).third_axis_name == "Q1"
     assert load_shipped_machine("sinumerik-modulo").third_axis_name == "C"
     for wrong in ("X", "Z", "Q", "SPINDLE", "Q10", ""):
@@ -92,7 +92,7 @@ def test_the_machine_file_says_it() -> None:
             of(wrong)
 
 
-def test_positions_and_keys_call_it_so() -> None:
+def test_readout_shows_the_axis_name() -> None:
     machine = of("Q1")
     assert [way.displayed_axis for way in make_jog_directions(machine) if way.axis == "C"] == ["Q1", "Q1"]
     shown = make_position_readout(Snapshot(), ReadoutKind.POSITION, True, True, machine.third_axis_name)

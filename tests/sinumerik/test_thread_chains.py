@@ -21,7 +21,7 @@ def threads(text: str) -> list[Block]:
     return [block for block in good(BEGIN + text) if block.kind is BlockKind.THREAD]
 
 
-def test_a_chain_is_one_pass() -> None:
+def test_thread_chain_is_one_continuous_pass() -> None:
     blocks = [b for b in good(BEGIN + "G33 Z-10 K1\nX26 Z-20 K2\nZ-30 K2\nX40 Z-31 K2\nG0 Z5") if b.line > 2]
     assert [b.continues for b in blocks] == [False, True, True, False, False]
     ends, rests = SectionEndDetector(), []
@@ -32,7 +32,7 @@ def test_a_chain_is_one_pass() -> None:
     assert rests == [True, False, False, False, True]
 
 
-def test_the_lead_grows_and_shrinks() -> None:
+def test_g34_increases_and_g35_decreases_the_lead() -> None:
     (grown,) = threads("G34 Z-15 K1 F0.2")
     # lead² = 1 + 2 · 0.2 · 20 = 9: from 1 to 3 mm, in (3 - 1) / 0.2 = 10 turns over 20 mm.
     assert (grown.feed, grown.growth) == (pytest.approx(2.0), 0.2)
@@ -40,7 +40,7 @@ def test_the_lead_grows_and_shrinks() -> None:
     assert (shrunk.feed, shrunk.growth, on.feed) == (pytest.approx(2.0), -0.2, pytest.approx(1.0))
 
 
-def test_the_way_of_a_growing_lead() -> None:
+def test_position_under_growing_lead_matches_formula() -> None:
     (grown,) = threads("G34 Z-15 K1 F0.2")
     curve = build_thread_curve([grown], LIMITS)
     assert curve.length_mm == pytest.approx(10.0)  # turns, the first lead being 1
@@ -48,7 +48,7 @@ def test_the_way_of_a_growing_lead() -> None:
         assert curve.evaluate(turns)[1] == pytest.approx(5.0 - turns - 0.1 * turns * turns, abs=2e-4)
 
 
-def test_the_way_of_a_chain_is_followed_within_what_the_slides_can() -> None:
+def test_thread_chain_is_followed_within_axis_limits() -> None:
     chain = threads("G33 Z-10 K1\nX26 Z-20 K2")
     path = ThreadPath.from_blocks(chain, LIMITS)
     assert path.length_mm == pytest.approx(15.0 + 5.0)  # turns times 1 mm: 15, and 10 mm by 2
@@ -66,7 +66,7 @@ def test_the_way_of_a_chain_is_followed_within_what_the_slides_can() -> None:
     assert segments.positions[0, 1] == pytest.approx(5.0)
 
 
-def test_a_start_angle_begins_further_back() -> None:
+def test_start_angle_moves_thread_start_back() -> None:
     back, cut = [b for b in good(BEGIN + "G33 Z-20 K2 SF=90") if b.line == 3]
     assert (back.kind, back.z, cut.z0, cut.z) == (BlockKind.RAPID, 5.5, 5.5, -20.0)
     back, cut = [b for b in good(BEGIN + "G34 Z-20 K2 F0.4 SF=180") if b.line == 3]
@@ -77,14 +77,14 @@ def test_a_start_angle_begins_further_back() -> None:
     assert (taper.x, taper.z) == pytest.approx((10.0 - 5.0 / 25.0, 6.0))
 
 
-def test_a_start_angle_of_a_whole_turn_is_none() -> None:
+def test_start_angle_of_360_degrees_has_no_effect() -> None:
     def ways(words: str) -> list[tuple[BlockKind, float, float]]:
         return [(b.kind, b.z0, b.z) for b in good(BEGIN + f"G33 Z-20 K2 {words}") if b.line == 3]
 
     assert ways("SF=360") == ways("SF=0") == ways("") == [(BlockKind.THREAD, 5.0, -20.0)]
 
 
-def test_cycle98_goes_along_the_crest_less_its_depth() -> None:
+def test_cycle98_cuts_along_crest_minus_thread_depth() -> None:
     made = good(BEGIN + "CYCLE98(0,30,-20,30,-40,36,-50,36,6,3,1,0,0,,1,0,1.5,2,3,1)")
     cut = [b for b in made if b.kind is BlockKind.THREAD]
     assert [(b.x0, b.z0, b.x, b.z, b.feed) for b in cut] == [
@@ -93,7 +93,7 @@ def test_cycle98_goes_along_the_crest_less_its_depth() -> None:
     assert [b.continues for b in cut] == [False, True, True]
 
 
-def test_cycle99_is_cycle97_in_another_order() -> None:
+def test_cycle99_equals_cycle97_with_other_parameter_order() -> None:
     new = good(BEGIN + "CYCLE99(0,40,-20,40,4,2,0.92,0.05,30,0,4,1,1.5,300103,2)")
     old = good(BEGIN + "CYCLE97(1.5,,0,-20,40,40,4,2,0.92,0.05,30,0,4,1,3,2)")
     assert [(b.kind, b.x, b.z, b.feed) for b in new] == [(b.kind, b.x, b.z, b.feed) for b in old]
@@ -102,7 +102,7 @@ def test_cycle99_is_cycle97_in_another_order() -> None:
 @pytest.mark.parametrize(
     ("flank", "kind", "sides"), [(30, 300103, "++++++"), (30, 300203, "+-+-+-"), (-30, 300103, "+-+-+-")]
 )
-def test_cycle99_feeds_along_one_flank_or_both_in_turn(flank: int, kind: int, sides: str) -> None:
+def test_cycle99_infeeds_along_one_flank_or_alternately(flank: int, kind: int, sides: str) -> None:
     """Each pass begins beside Z4 by its depth under X20 times tan 30."""
     made = good(BEGIN + f"CYCLE99(0,40,-20,40,4,2,0.92,0.05,{flank},0,4,1,1.5,{kind},1)")
     cut = [b for b in made if b.kind is BlockKind.THREAD]
@@ -127,11 +127,11 @@ def test_cycle99_feeds_along_one_flank_or_both_in_turn(flank: int, kind: int, si
         ("CYCLE99(0,40,-20,40,4,2,0.92,0,0,0,4,1,1.5,300103,1,,,,2)", "not-in-subset"),
     ],
 )
-def test_refusals(text: str, code: str) -> None:
+def test_invalid_thread_chains_are_rejected(text: str, code: str) -> None:
     assert refused(BEGIN + text).code == code
 
 
-def test_a_feed_of_before_is_not_the_change_of_a_lead() -> None:
+def test_previous_feed_is_not_used_as_lead_change() -> None:
     passed = run(BEGIN + "G95 F0.3\nG34 Z-15 K1 F0.2\nG1 Z-20")
     assert passed.errors == []
     assert passed.moves[-1].feed == 0.3

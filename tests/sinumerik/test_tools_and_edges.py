@@ -28,34 +28,34 @@ def ends(text: str) -> list[tuple[float, float]]:
     return [(block.mx, block.mz) for block in good(text, around())]
 
 
-def test_length_and_zero_offset_are_summed() -> None:
+def test_tool_length_and_zero_offset_are_added() -> None:
     """X20 is a radius of 10; the slide stands 30 further, and Z -200 + 40 from where Z5 is."""
     assert ends("G54 T1 D1\nG0 X20 Z5") == [(40.0, 5.0 - 200.0 + 40.0)]
 
 
-def test_t_takes_d1_and_d_another_edge() -> None:
+def test_t_activates_d1_and_d_selects_another_edge() -> None:
     assert ends("T1\nG0 X20 Z5\nD2\nX20 Z5\nD0\nX20 Z5") == [(40.0, 45.0), (41.0, 41.0), (10.0, 5.0)]
 
 
-def test_the_slides_stay_where_t_and_d_stand() -> None:
+def test_t_and_d_alone_cause_no_motion() -> None:
     """Only the words behind it go to the new place: Z stays where it was."""
     assert ends("T1\nG0 X20 Z5\nT2\nX20") == [(40.0, 45.0), (5.0, 45.0)]
 
 
 @pytest.mark.parametrize("word", ['T="ROUGHER"', 'T="rougher"', "T=1", "R1=1 T=R1", "T1 D1", "T01"])
-def test_one_tool_by_many_names(word: str) -> None:
+def test_tool_can_be_called_in_several_forms(word: str) -> None:
     assert ends(f"{word}\nG0 X20 Z5") == [(40.0, 45.0)]
 
 
-def test_g53_leaves_the_tool_and_d0_takes_it_away() -> None:
+def test_g53_retains_tool_offset_and_d0_cancels_it() -> None:
     assert ends("G54 T1\nG53 G0 X20 Z5\nSUPA G0 X20 Z5 D0") == [(40.0, 45.0), (10.0, 5.0)]
 
 
-def test_t0_is_no_tool() -> None:
+def test_t0_cancels_the_tool() -> None:
     assert ends("T1\nT0\nG0 X20 Z5") == [(10.0, 5.0)]
 
 
-def test_the_edges_are_told_to_whoever_cuts() -> None:
+def test_used_cutting_edges_are_listed() -> None:
     passed = run("T1\nG0 X20\nD2\nX22\nT2 D1", around())
     assert [block.action.tool for block in passed.blocks if isinstance(block.action, ToolChange)] == [
         1, make_row_number(1, 2), 2,
@@ -66,7 +66,7 @@ def test_the_edges_are_told_to_whoever_cuts() -> None:
 
 
 @pytest.mark.parametrize("word", ["T7", 'T="NOBODY"'])
-def test_a_tool_that_nobody_has_measured_is_told_and_will_not_start(word: str) -> None:
+def test_tool_without_offset_is_reported_and_blocks_start(word: str) -> None:
     program = interpret_program(source(f"G0 X50\nN20 {word}\nG0 X20"), around())
     list(program.generate_blocks())
     (found,) = program.diagnostics
@@ -86,7 +86,7 @@ def test_a_tool_that_nobody_has_measured_is_told_and_will_not_start(word: str) -
         ("T1\nN30 G91 X5", None),
     ],
 )
-def test_refused(text: str, code: str | None) -> None:
+def test_invalid_tools_and_edges_are_rejected(text: str, code: str | None) -> None:
     if code is None:
         assert refused(f"G0 {text}", around()).code == "distance-behind-tool"
         return
@@ -95,7 +95,7 @@ def test_refused(text: str, code: str | None) -> None:
     assert error.hint
 
 
-def test_a_distance_behind_a_position_is_fine() -> None:
+def test_incremental_move_after_absolute_move_is_accepted() -> None:
     assert ends("T1\nG0 X20 Z5\nG91 X2 Z1") == [(40.0, 45.0), (41.0, 46.0)]
 
 
@@ -114,7 +114,7 @@ def test_a_distance_behind_a_position_is_fine() -> None:
         ("R1=$P_TOOLNO", 0.0),
     ],
 )
-def test_a_program_reads_its_tool(text: str, value: float) -> None:
+def test_program_reads_tool_data(text: str, value: float) -> None:
     tools = {3: ToolOffset(nose_radius=0.4), make_row_number(3, 2): ToolOffset(nose_radius=0.8)}
     ran = run(f"{text}\nG0 Z=R1", replace(setup(), tools=tools))
     assert ran.found == []

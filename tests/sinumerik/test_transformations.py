@@ -44,7 +44,7 @@ def error(text: str, radius: float = 0.0) -> tuple[str, str]:
     return found.code, f"{found.message} {found.hint}"
 
 
-def test_a_line_beside_the_axis_in_polar_coordinates() -> None:
+def test_off_center_line_is_converted_to_polar_coordinates() -> None:
     (_, line) = ways(FACE + "G1 X20 Y-15\nY15")
     for (x, z, c), y in zip(slides(line), np.linspace(-15.0, 15.0, 9), strict=True):
         assert (x, z) == pytest.approx((hypot(20.0, y), 2.0))
@@ -53,7 +53,7 @@ def test_a_line_beside_the_axis_in_polar_coordinates() -> None:
     assert line.feed == pytest.approx(10.0)
 
 
-def test_a_circle_beside_the_axis() -> None:
+def test_off_center_circle_is_converted_to_polar_coordinates() -> None:
     (_, circle) = ways(FACE + "G1 X30 Y0\nG3 X30 Y0 I-10 J0")
     for (x, _, c), angle in zip(slides(circle), np.linspace(0.0, 2.0 * pi, 9), strict=True):
         px, py = 20.0 + 10.0 * cos(angle), 10.0 * sin(angle)
@@ -62,7 +62,7 @@ def test_a_circle_beside_the_axis() -> None:
     assert circle.kind is BlockKind.PLANE_ARC
 
 
-def test_the_part_that_comes_of_it_is_the_one_of_the_same_places_by_c() -> None:
+def test_transmit_and_c_positions_meet_on_the_part() -> None:
     """A hole by C-60 and a line that ends at 60 degrees of TRANSMIT meet on the part."""
     (line,) = ways(FACE + f"G1 X={20 * cos(radians(60))!r} Y={20 * sin(radians(60))!r}")
     (x, y, _) = make_plane_path(line.plane)[-1] if line.plane else (0.0, 0.0, 0.0)
@@ -71,7 +71,7 @@ def test_the_part_that_comes_of_it_is_the_one_of_the_same_places_by_c() -> None:
     assert (x, y) == pytest.approx((20.0 * cos(angle), 20.0 * sin(angle)))
 
 
-def test_compensation_round_a_square() -> None:
+def test_compensation_follows_a_square() -> None:
     blocks = ways(FACE + "G42 G1 X15 Y0\nY15\nX-15\nY-15\nX15\nY0\nG40 X40", radius=4.0)
     ends = [block.plane.end[:2] for block in blocks if block.plane and block.kind is BlockKind.PLANE_LINE]
     # 19 mm from the axis all round; the first and the last lead to it and off it.
@@ -84,7 +84,7 @@ def test_compensation_round_a_square() -> None:
     assert beside[0].plane.end[:2] == pytest.approx((19.5, 0.0))
 
 
-def test_a_way_through_the_axis_turns_c_there() -> None:
+def test_path_through_center_rotates_c_there() -> None:
     passed = run(FACE + "G1 X20 Y0\nX-20", around())
     turned = [block for block in passed.blocks if block.kind is BlockKind.ROTATE]
     assert [(b.x, abs(b.c - b.c0)) for b in turned] == [(0.0, pytest.approx(180.0))]
@@ -92,7 +92,7 @@ def test_a_way_through_the_axis_turns_c_there() -> None:
     assert min(float(slides(b)[:, 0].min()) for b in passed.blocks if b.plane) >= 0.0
 
 
-def test_the_frame_of_the_plane() -> None:
+def test_frames_apply_in_the_plane_and_end_with_trafoof() -> None:
     (line,) = ways(FACE + "TRANS X5 Z-1\nAROT RPL=90\nG1 X10 Y2 Z0")
     assert line.plane
     assert line.plane.end == pytest.approx((3.0, 10.0, -1.0))
@@ -100,7 +100,7 @@ def test_the_frame_of_the_plane() -> None:
     assert passed.moves[-1].x == pytest.approx(10.0)  # the shift ends with the transformation
 
 
-def test_chamfers_roundings_and_another_tool() -> None:
+def test_chamfers_roundings_and_tool_change_work_in_plane() -> None:
     blocks = ways(FACE + "G1 X20 Y0\nY20 RND=5\nX-20")
     assert [b.kind for b in blocks] == [
         BlockKind.PLANE_LINE,
@@ -117,7 +117,7 @@ def test_chamfers_roundings_and_another_tool() -> None:
     assert (other[-1].mx, other[-1].mz) == pytest.approx((hypot(20.0, 10.0) + 5.0, 2.0))
 
 
-def test_the_side_unrolled() -> None:
+def test_unrolled_side_is_converted_to_c_and_z() -> None:
     line, arc = ways(SIDE + "G1 X38 Y10 Z-20\nG3 Y20 Z-30 CR=10")
     for (x, z, c), share in zip(slides(line, 3), (0.0, 0.5, 1.0), strict=True):
         # 10 mm round a part of 80 mm are 10 · 360 / (80 pi) degrees.
@@ -129,7 +129,7 @@ def test_the_side_unrolled() -> None:
     assert (y, middle[1]) == pytest.approx((20 - 10 * cos(pi / 4), -20 - 10 * sin(pi / 4)))
 
 
-def test_holes_in_a_circle_and_in_a_row() -> None:
+def test_hole_patterns_are_drilled_in_circle_and_row() -> None:
     text = FACE + "MCALL CYCLE81(5,0,2,-3)\n{}\nMCALL\nTRAFOOF"
     blocks = ways(text.format("HOLES2(0,0,15,30,0,3)"))
     bottoms = [b.plane.end for b in blocks if b.plane and b.plane.end[2] == pytest.approx(-3.0)]
@@ -178,13 +178,13 @@ def test_the_live_tool_is_spindle_2() -> None:
         ("SPOS[3]=0", "one-spindle", "spindle 1"),
     ],
 )
-def test_refusals(text: str, code: str, part: str) -> None:
+def test_invalid_transformations_are_rejected(text: str, code: str, part: str) -> None:
     found, said = error(text)
     assert found == code
     assert part in said
 
 
-def test_a_machine_without_c_or_live_tool() -> None:
+def test_transformation_is_rejected_without_c_or_live_tool() -> None:
     still = replace(around(), limits=replace(around().limits, is_c_enabled=False))
     assert refused("TRANSMIT", still).code == "14401"
     assert refused(
@@ -194,7 +194,7 @@ def test_a_machine_without_c_or_live_tool() -> None:
     assert "X0" in run("G54\nTRANSMIT", shifted).errors[0].message
 
 
-def test_it_is_proved_as_milling() -> None:
+def test_transmit_program_is_proved_as_milling() -> None:
     text = (
         "T1 D1\nG0 DIAMOF G17 X40 Z2\nSPOS=0\nS2=2000 M2=3\nTRANSMIT\nG1 X25 Y-12 Z-2 F300\nX10\nG0 Z5\n"
         "TRAFOOF\nM2=5\nM30"

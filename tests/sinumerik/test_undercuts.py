@@ -32,7 +32,9 @@ def cuts(text: str, around: Setup) -> list[Block]:
     ("diameter", "depth", "width", "radius"),
     [(8, 0.2, 2.0, 0.4), (15, 0.2, 2.0, 0.6), (40, 0.3, 2.5, 0.6), (80, 0.3, 2.5, 0.6), (100, 0.4, 4.0, 1.0)],
 )
-def test_form_e_by_the_diameter(diameter: float, depth: float, width: float, radius: float) -> None:
+def test_form_e_undercut_size_follows_from_diameter(
+    diameter: float, depth: float, width: float, radius: float
+) -> None:
     """The slope meets the surface ``width`` before the shoulder; the bottom lies ``depth`` below it."""
     blocks = cuts(OUTSIDE + f'CYCLE94({diameter},-30,"E")', with_tool(3))
     r = diameter / 2
@@ -56,7 +58,7 @@ def test_form_e_by_the_diameter(diameter: float, depth: float, width: float, rad
     assert (shoulder.x, shoulder.z) == pytest.approx((r + 1, -30))
 
 
-def test_form_f_goes_into_the_face() -> None:
+def test_form_f_undercut_extends_into_the_face() -> None:
     """The fillet is deepest in the face by 0.2 and ends 8 degrees further on; from there 8 degrees out."""
     blocks = cuts(OUTSIDE + 'CYCLE94(40,-30,"F")', with_tool(3))
     fillet, face = blocks[3:]
@@ -69,7 +71,7 @@ def test_form_f_goes_into_the_face() -> None:
 
 @pytest.mark.parametrize("nose", [0.0, 0.2, 0.4, 0.6])
 @pytest.mark.parametrize("form", ["E", "F"])
-def test_the_profile_does_not_depend_on_the_nose(nose: float, form: str) -> None:
+def test_undercut_profile_does_not_depend_on_nose_radius(nose: float, form: str) -> None:
     around = with_tool(3, nose)
     blocks = cuts(OUTSIDE + f'CYCLE94(40,-30,"{form}")', around)
     foot = 20.0, -27.5
@@ -88,7 +90,7 @@ def _nearest_nose(blocks: list[Block], around: Setup, point: Point) -> float:
 
 
 @pytest.mark.parametrize(("form", "width"), [("A", 5.2), ("B", 3.8)])
-def test_behind_a_thread_outside(form: str, width: float) -> None:
+def test_outside_thread_undercut_has_standard_dimensions(form: str, width: float) -> None:
     """M10 has a lead of 1.5: 2.3 off its diameter, radius 0.8, 30 degrees."""
     slope, _, bottom, fillet, _ = cuts(OUTSIDE + f'CYCLE96(10,-20,"{form}")', with_tool(3))
     assert (slope.x0, slope.z0) == pytest.approx((6.0, -20 + width + 1 / SLOPE_30))
@@ -96,7 +98,7 @@ def test_behind_a_thread_outside(form: str, width: float) -> None:
     assert fillet.cx == pytest.approx(5.0 - 1.15 + 0.8)
 
 
-def test_behind_a_thread_inside() -> None:
+def test_inside_thread_undercut_has_standard_dimensions() -> None:
     """M20 x 2.5 inside: to 20.5, from its core of 20 - 1.0825 x 2.5, 13 wide, with an edge for inside."""
     slope, _, bottom, _, shoulder = cuts(INSIDE + 'CYCLE96(20,-30,"C")', with_tool(2))
     core = (20 - 1.0825 * 2.5) / 2
@@ -106,19 +108,19 @@ def test_behind_a_thread_inside() -> None:
 
 
 @pytest.mark.parametrize(("quadrant", "out", "side"), [(1, -1, -1), (2, -1, 1), (3, 1, 1), (4, 1, -1)])
-def test_the_tip_quadrant_says_where_it_lies(quadrant: int, out: int, side: int) -> None:
+def test_tip_quadrant_sets_position_of_undercut(quadrant: int, out: int, side: int) -> None:
     before = OUTSIDE if out > 0 else INSIDE
     blocks = cuts(before + 'CYCLE94(40,-30,"E")', with_tool(quadrant))
     assert blocks[2].x == pytest.approx(20 - out * 0.3)
     assert blocks[2].z == pytest.approx(-30 + side * 0.6)
 
 
-def test_vari_says_it_in_its_place() -> None:
+def test_vari_sets_position_of_undercut() -> None:
     blocks = cuts(INSIDE + 'CYCLE94(40,-30,"E",2)', with_tool(3))
     assert blocks[2].x == pytest.approx(20.3)
 
 
-def test_off_the_part_before_and_behind() -> None:
+def test_tool_approaches_and_retracts_clear_of_the_part() -> None:
     """First out to 2 mm beside the surface, then along; never along the shoulder in rapid."""
     text = "S900 M3 G95 F0.1\nT1 D1\nG0 X42 Z-40\n" + 'CYCLE94(40,-30,"E")'
     ways = [(b.x, b.z) for b in good(text, with_tool(3)) if b.line > 3 and b.kind is BlockKind.RAPID]
@@ -145,11 +147,11 @@ def test_off_the_part_before_and_behind() -> None:
         ('CYCLE96(10,-30,"A")', ToolOffset(quadrant=2), "61608"),
     ],
 )
-def test_what_is_refused(call: str, tool: ToolOffset, code: str) -> None:
+def test_invalid_undercut_calls_are_rejected(call: str, tool: ToolOffset, code: str) -> None:
     assert refused(OUTSIDE + call, replace(setup(), tools={1: tool})).code == code
 
 
-def test_a_tool_and_a_feed_are_needed() -> None:
+def test_undercut_requires_a_tool_and_a_feed() -> None:
     without = run("S900 M3 G95\nT1 D1\n" + 'CYCLE94(40,-30,"E")', with_tool(3))
     assert [each.code for each in without.errors] == ["61003"]
     without = run("S900 M3 G95 F0.1\nT1 D0\n" + 'CYCLE94(40,-30,"E")', with_tool(3))
@@ -157,7 +159,7 @@ def test_a_tool_and_a_feed_are_needed() -> None:
 
 
 @pytest.mark.parametrize(("place", "quadrant", "out", "side"), [(0, 4, 1, -1), (1, 3, 1, 1), (3, 2, -1, 1)])
-def test_cycle940_says_where_it_lies(place: int, quadrant: int, out: int, side: int) -> None:
+def test_cycle940_parameter_sets_position_of_undercut(place: int, quadrant: int, out: int, side: int) -> None:
     before = OUTSIDE if out > 0 else INSIDE
     blocks = cuts(before + f'CYCLE940(40,-30,"E",{place},2,0.2)', with_tool(quadrant))
     assert blocks[2].x == pytest.approx(20 - out * 0.3)
@@ -165,7 +167,7 @@ def test_cycle940_says_where_it_lies(place: int, quadrant: int, out: int, side: 
     assert {b.feed for b in blocks} == {0.2}
 
 
-def test_cycle940_behind_a_thread_in_passes() -> None:
+def test_cycle940_cuts_thread_undercut_in_passes() -> None:
     """A lead of 2 (_PITI 15): 1.5 deep, 7 wide. 0.1 left of 1.5 in passes of 0.5: 0.467 each, then all."""
     call = 'CYCLE940(30,-20,"A",1,2,0.1,3,,,,,,,0.5,0.1,,,15)'
     floors = [b.x for b in good(OUTSIDE + call, with_tool(3)) if b.kind is BlockKind.FEED and b.x == b.x0]
@@ -182,5 +184,5 @@ def test_cycle940_behind_a_thread_in_passes() -> None:
         ('CYCLE940(30,-30,"A",1,2,0.1,4)', "61002"),
     ],
 )
-def test_cycle940_refuses_what_is_told_nowhere(call: str, code: str) -> None:
+def test_cycle940_rejects_undocumented_parameters(call: str, code: str) -> None:
     assert refused(OUTSIDE + call, with_tool(3)).code == code

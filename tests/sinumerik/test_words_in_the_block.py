@@ -34,7 +34,7 @@ def ends(blocks: Sequence[Block]) -> list[tuple[float, float]]:
         "G1 X20 Z0 F200\nG91 CIP X20 Z-10 I1=14.1421356 K1=-2.9289322",
     ],
 )
-def test_cip_goes_through_its_point(text: str) -> None:
+def test_cip_passes_through_its_intermediate_point(text: str) -> None:
     """A quarter of radius 10 about X20 Z-10; half way it is 10 sin 45 and 10 cos 45 from there."""
     arc = good(text)[1]
     assert (arc.cx, arc.cz) == pytest.approx((10.0, -10.0), abs=1e-6)
@@ -42,14 +42,14 @@ def test_cip_goes_through_its_point(text: str) -> None:
     assert arc.clockwise == by_centre.clockwise
 
 
-def test_ct_goes_on_in_the_direction_of_the_line() -> None:
+def test_ct_continues_tangentially_from_a_line() -> None:
     """Along Z- and then 5 out and 5 on: a quarter about X30 Z-10, with its radius of 5."""
     arc = good("G1 X20 Z0 F200\nZ-10\nCT X30 Z-15")[2]
     assert (arc.cx, arc.cz) == pytest.approx((15.0, -10.0))
     assert arc.length == pytest.approx(5.0 * 3.141592653589793 / 2)
 
 
-def test_ct_behind_an_arc() -> None:
+def test_ct_continues_tangentially_from_an_arc() -> None:
     """A quarter from Z- to X+, then on to X+: the tangent at its end is square to the axis."""
     arc = good("G1 X20 Z0 F200\nZ-10\nCT X30 Z-15\nCT X40 Z-20")[3]
     assert (arc.cx, arc.cz) == pytest.approx((15.0, -20.0))
@@ -67,18 +67,18 @@ def test_ct_behind_an_arc() -> None:
         ("G17\nN30 CIP X40 Z-10 I1=30 K1=-4", "arc-plane"),
     ],
 )
-def test_arcs_refused(text: str, code: str) -> None:
+def test_invalid_cip_and_ct_arcs_are_rejected(text: str, code: str) -> None:
     assert refused(f"G1 X20 Z5 F200\nZ0\n{text}").code == code
 
 
-def test_ct_needs_a_path_before_it() -> None:
+def test_ct_requires_a_preceding_path() -> None:
     assert refused("N30 CT X40 Z-20 F100").code == "arc-centre-missing"
 
 
 # --- places
 
 
-def test_polar_places_about_the_pole() -> None:
+def test_polar_positions_are_relative_to_the_pole() -> None:
     moves = good("G111 X20 Z-30\nG0 RP=10 AP=90\nG1 AP=IC(-60) F100\nRP=4")
     a, b = radians(30.0), 4.0
     expected = [(20.0, -30.0), (10.0 + 10.0 * sin(a), -30.0 + 10.0 * cos(a))]
@@ -86,11 +86,11 @@ def test_polar_places_about_the_pole() -> None:
     assert ends(moves) == [pytest.approx(each, abs=1e-6) for each in expected]
 
 
-def test_poles_from_the_place_and_from_the_last_pole() -> None:
+def test_pole_is_relative_to_current_position_or_last_pole() -> None:
     assert ends(good("G0 X30 Z10\nG110 X10 Z-4\nG112 X2 Z1\nG0 RP=0 AP=0"))[1] == (21.0, 7.0)
 
 
-def test_an_arc_to_a_polar_place() -> None:
+def test_arc_ends_at_a_polar_position() -> None:
     arc = good("G111 X0 Z0\nG1 RP=10 AP=0 F100\nG3 AP=90 CR=10")[1]
     assert (arc.mx, arc.mz) == pytest.approx((10.0, 0.0), abs=1e-9)
 
@@ -110,11 +110,11 @@ def test_an_arc_to_a_polar_place() -> None:
         ("N30 G2 ANG=40 X30 CR=10 F100", "word-unused"),
     ],
 )
-def test_places_refused(text: str, code: str) -> None:
+def test_invalid_polar_positions_are_rejected(text: str, code: str) -> None:
     assert refused(text).code == code
 
 
-def test_a_line_by_its_angle() -> None:
+def test_line_is_defined_by_its_angle() -> None:
     """150 degrees from Z towards X, 10 out: 10 / tan 30° back."""
     assert ends(good("G0 X20 Z0\nG1 X40 ANG=150 F100"))[1] == pytest.approx(
         (20.0, -10.0 * sqrt(3.0)), abs=1e-6
@@ -122,24 +122,24 @@ def test_a_line_by_its_angle() -> None:
     assert ends(good("G0 X20 Z0\nG1 Z-10 ANG=135 F100"))[1] == pytest.approx((20.0, -10.0), abs=1e-6)
 
 
-def test_diam90_counts_distances_as_radii() -> None:
+def test_diam90_interprets_distances_as_radii() -> None:
     assert ends(good("DIAM90 G0 X20 Z0\nG91 X4\nG90 X=IC(-2)")) == [(10.0, 0.0), (14.0, 0.0), (12.0, 0.0)]
     assert ends(good("DIAMON G0 X20 Z0\nG91 X4")) == [(10.0, 0.0), (12.0, 0.0)]
 
 
-def test_g74_goes_home_in_the_named_axes() -> None:
+def test_g74_homes_the_named_axes() -> None:
     assert ends(good("G0 X20 Z5\nG74 Z1=0\nG0 X30\nG74 X1=0 Z1=0"))[1::2] == [(10.0, 0.0), (0.0, 0.0)]
 
 
 @pytest.mark.parametrize("text", ["G74", "G74 X1=5", "G74 X1=0 C0", "G74 X1=0 F100"])
-def test_g74_refused(text: str) -> None:
+def test_invalid_g74_blocks_are_rejected(text: str) -> None:
     assert refused(f"G0 X20 Z5\nN30 {text}").code in {"own-block", "word-unused"}
 
 
 # --- fixed points: X299 (radius) and Z799 of the machine, no offset counts
 
 
-def test_g75_goes_to_the_fixed_point_of_the_named_axes() -> None:
+def test_g75_moves_named_axes_to_fixed_point() -> None:
     moves = good("TRANS X3 Z-20\nG0 X20 Z5\nG75 Z1=0\nG1 X30 F200\nG75 X0 Z0")
     ends_of_machine = [(block.mx, block.mz) for block in moves]
     assert ends_of_machine == [(13.0, -15.0), (13.0, 799.0), (18.0, 799.0), (299.0, 799.0)]
@@ -151,7 +151,7 @@ def test_g75_goes_to_the_fixed_point_of_the_named_axes() -> None:
     ]
 
 
-def test_g75_leaves_g1_in_force_and_takes_g0_beside_it() -> None:
+def test_g75_leaves_g1_in_force_and_accepts_g0_in_its_block() -> None:
     assert [block.kind for block in good("G1 X20 Z5 F200\nG75 X0\nX20")] == [
         BlockKind.FEED,
         BlockKind.RAPID,
@@ -160,7 +160,7 @@ def test_g75_leaves_g1_in_force_and_takes_g0_beside_it() -> None:
     assert (good("G0 G75 X0 Z0")[-1].mx, good("R1=1\nG75 X1=0 FP=R1")[-1].mx) == (299.0, 299.0)
 
 
-def test_fp_says_which_fixed_point() -> None:
+def test_fp_selects_the_fixed_point() -> None:
     around = setup()
     points = {"X": (299.0, 40.0), "Z": (799.0, 70.0)}
     around = replace(around, limits=replace(around.limits, fixed_points=points))
@@ -171,7 +171,7 @@ def test_fp_says_which_fixed_point() -> None:
     )
 
 
-def test_without_the_key_g75_is_refused_by_name() -> None:
+def test_g75_without_fixed_points_is_rejected_with_the_missing_key() -> None:
     around = setup()
     around = replace(around, limits=replace(around.limits, fixed_points={}))
     error = refused("N30 G75 X1=0", around)
@@ -179,7 +179,7 @@ def test_without_the_key_g75_is_refused_by_name() -> None:
     assert "fixed_points under [axis.X]" in error.hint
 
 
-def test_a_value_beside_g75_is_told_to_say_nothing() -> None:
+def test_axis_value_in_g75_is_reported_and_ignored() -> None:
     ran = run("G0 X20 Z5\nG75 X150")
     assert [found.code for found in ran.found] == ["fixed-point-value"]
     assert ran.errors == []
@@ -206,7 +206,7 @@ def test_a_value_beside_g75_is_told_to_say_nothing() -> None:
         ("T1 D1\nG42 G1 X20 Z0 F200\nZ-5\nG74 X0", "comp-with"),
     ],
 )
-def test_g75_refused(text: str, code: str) -> None:
+def test_invalid_g75_blocks_are_rejected(text: str, code: str) -> None:
     around = replace(setup(), tools={1: ToolOffset(nose_radius=0.4, quadrant=3)})
     assert refused(f"G0 X20 Z5\n{text}", around).code == code
 
@@ -214,7 +214,7 @@ def test_g75_refused(text: str, code: str) -> None:
 # --- frames
 
 
-def test_mirror_scale_and_rot() -> None:
+def test_mirror_scale_and_rot_transform_positions() -> None:
     assert ends(good("TRANS Z-50\nAMIRROR Z0\nG0 X20 Z5")) == [(10.0, -55.0)]
     assert ends(good("SCALE X2 Z3\nG0 X20 Z5")) == [(20.0, 15.0)]
     a = radians(30.0)
@@ -224,7 +224,7 @@ def test_mirror_scale_and_rot() -> None:
     assert ends(good("SCALE Z3\nTRANS Z1\nG0 X20 Z5")) == [(10.0, 6.0)]
 
 
-def test_an_arc_in_a_mirrored_and_scaled_frame() -> None:
+def test_arc_follows_mirrored_and_scaled_frame() -> None:
     """Twice as large and the other way round; its centre goes along."""
     arc = good("SCALE X2 Z2\nAMIRROR Z0\nG1 X20 Z0 F100\nG3 X30 Z-5 CR=5")[1]
     plain = good("G1 X20 Z0 F100\nG3 X30 Z-5 CR=5")[1]
@@ -247,11 +247,11 @@ def test_an_arc_in_a_mirrored_and_scaled_frame() -> None:
         ("N30 TRANS X1 ROT RPL=3", "12060"),
     ],
 )
-def test_frames_refused(text: str, code: str) -> None:
+def test_invalid_frames_are_rejected(text: str, code: str) -> None:
     assert refused(text).code == code
 
 
-def test_the_working_area() -> None:
+def test_working_area_limits_moves() -> None:
     assert good("G25 X-10 Z-100\nG26 X200 Z50\nG0 X100 Z20")
     assert refused("G25 Z-100\nN30 G0 X20 Z-101").code == "working-area"
     assert refused("G26 X100\nN30 G0 X101").code == "working-area"
@@ -261,41 +261,41 @@ def test_the_working_area() -> None:
 # --- feeds, stops, corners
 
 
-def test_feeds_of_a_block_and_in_per_cent() -> None:
+def test_block_feed_and_override_scale_the_feed() -> None:
     feeds = [block.feed * 60.0 for block in good("G1 X20 F200\nZ-5 FB=50\nX30\nOVR=50 Z-10\nOVR=100 X40")]
     assert feeds == pytest.approx([200.0, 50.0, 200.0, 100.0, 200.0])
 
 
-def test_g700_counts_f_in_inches() -> None:
+def test_g700_interprets_f_in_inches() -> None:
     block = good("G700 G1 X2 F10")[0]
     assert (block.mx, block.feed * 60.0) == pytest.approx((25.4, 254.0))
     assert good("G70 G1 X2 F10")[0].feed * 60.0 == pytest.approx(10.0)
 
 
-def test_rndm_rounds_every_corner_until_it_ends() -> None:
+def test_rndm_rounds_every_corner_until_it_is_canceled() -> None:
     kinds = [b.kind for b in good("G0 X20 Z5\nRNDM=2 G1 Z-10 F200\nX40\nZ-20\nRNDM=0 X60\nZ-30\nG0 X80")]
     assert kinds.count(BlockKind.ARC) == 3
 
 
-def test_rndm_makes_no_corner_where_a_rapid_follows() -> None:
+def test_rndm_rounds_no_corner_before_a_rapid() -> None:
     assert [b.kind for b in good("G1 RNDM=2 Z-10 F200\nG0 X90")] == [BlockKind.FEED, BlockKind.RAPID]
 
 
-def test_frc_is_the_feed_of_the_corner_alone() -> None:
+def test_frc_is_the_feed_of_one_corner_only() -> None:
     feeds = [round(b.feed * 60.0, 6) for b in good("G1 X20 Z0 F200\nX40 CHF=2 FRC=80\nZ-10\nX60 CHF=2\nZ-20")]
     assert feeds == [200.0, 200.0, 80.0, 200.0, 200.0, 200.0, 200.0]
     feeds = [round(b.feed * 60.0, 6) for b in good("FRCM=60 G1 X20 Z0 F200\nX40 RND=2\nZ-10")]
     assert feeds == [200.0, 200.0, 60.0, 200.0]
 
 
-def test_exact_stops_come_to_rest() -> None:
+def test_exact_stop_adds_a_dwell() -> None:
     stops = [
         isinstance(b.action, Dwell) for b in run("G1 X20 F200\nG9 Z-5\nX30\nG60 Z-9\nX40\nG64 Z-12").blocks
     ]
     assert stops == [False, False, True, False, False, True, False, True, False]
 
 
-def test_one_path_says_no_effect_and_only_once() -> None:
+def test_word_without_effect_is_reported_only_once() -> None:
     found = run("SOFT\nG641 ADIS=0.3 G0 X10\nSOFT G0 X20\nM41\nM41").found
     assert [(each.code, each.severity, each.line) for each in found] == [
         ("no-effect", Severity.NOTE, 1),
@@ -311,7 +311,7 @@ def rpm(text: str) -> float:
     return run(text + "\nG0 X30").blocks[-1].rpm
 
 
-def test_limits_of_the_speed() -> None:
+def test_spindle_speed_limits_apply() -> None:
     assert rpm("G26 S1000\nS2000 M3") == pytest.approx(1000.0)
     assert rpm("G25 S300\nS200 M4") == pytest.approx(-300.0)
     assert rpm("G0 X5\nG26 S900\nG96 S150 LIMS=2000 M3\nG0 X5") == pytest.approx(900.0)
@@ -319,12 +319,12 @@ def test_limits_of_the_speed() -> None:
 
 
 @pytest.mark.parametrize("text", ["M1=3 S1=800", "S=800 M3", "SETMS(1)\nS800 M3", "SETMS\nS800 M3"])
-def test_the_one_spindle_by_its_number(text: str) -> None:
+def test_single_spindle_can_be_addressed_by_its_number(text: str) -> None:
     assert rpm(text) == pytest.approx(800.0)
 
 
 @pytest.mark.parametrize("text", ["M2=3", "S2=100", "SETMS(2)", "SPOS[2]=90", "LIMS[3]=100"])
-def test_there_is_no_other_spindle(text: str) -> None:
+def test_other_spindle_numbers_are_rejected(text: str) -> None:
     error = refused(f"N30 {text}")
     assert error.code == "one-spindle"
     assert "one spindle" in error.message
@@ -348,7 +348,7 @@ def test_the_spindle_stops_at_an_angle(text: str, turn: float) -> None:
     assert not blocks[-1].modal.spindle
 
 
-def test_m70_makes_it_an_axis_and_m3_a_spindle_again() -> None:
+def test_m70_switches_to_axis_mode_and_m3_back_to_spindle_mode() -> None:
     blocks = run("M70\nG0 C90\nS500 M3\nG0 X30", of_gt75()).blocks
     assert isinstance(blocks[0].action, SpindleLock)
     assert blocks[-1].rpm == pytest.approx(500.0)
@@ -363,7 +363,7 @@ def with_outputs() -> Setup:
     return replace(setup(), limits=replace(limits, disabled_m_codes=frozenset({27})))
 
 
-def test_m_functions_of_the_machine_file() -> None:
+def test_m_functions_from_machine_file_switch_outputs() -> None:
     blocks = run("M25 G0 X30\nG0 X40 M26", with_outputs()).blocks
     assert [each.action or each.kind for each in blocks] == [
         OutputSwitch("steady", True), BlockKind.RAPID, BlockKind.RAPID, OutputSwitch("steady", False),
@@ -380,7 +380,7 @@ def test_other_m_functions_are_refused_with_the_remedy() -> None:
 # --- threads
 
 
-def test_a_thread_and_what_leads_out_of_it() -> None:
+def test_block_after_g33_uses_the_same_lead() -> None:
     thread, out = [
         block
         for block in good("S400 M3\nG0 X18 Z8\nG33 Z-20 K2\nX24 Z-22\nG0 X30")
@@ -389,7 +389,7 @@ def test_a_thread_and_what_leads_out_of_it() -> None:
     assert (thread.feed, thread.per_rev, out.feed) == (2.0, True, 2.0)
 
 
-def test_the_lead_along_x_of_a_steep_thread() -> None:
+def test_lead_along_x_of_steep_thread_is_converted() -> None:
     """2 mm a revolution along X over 10, of 5 along Z: 1 mm along Z."""
     thread = good("S400 M3\nG0 X18 Z8\nG33 X38 Z3 I2\nG0 X60")[1]
     assert thread.feed == pytest.approx(1.0)
@@ -414,5 +414,5 @@ def test_the_lead_along_x_of_a_steep_thread() -> None:
         ("G33 Z-5 K1\nN30 Z-9 SF=90", "word-unused"),
     ],
 )
-def test_threads_refused(text: str, code: str) -> None:
+def test_invalid_threads_are_rejected(text: str, code: str) -> None:
     assert refused(f"S400 M3\nG0 X18 Z8\n{text}").code == code

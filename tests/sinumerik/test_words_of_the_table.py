@@ -34,7 +34,7 @@ def around(machine: Machine = MODULO) -> Setup:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_an_example_runs(name: str) -> None:
+def test_example_of_each_word_runs(name: str) -> None:
     text = EXAMPLES[name]
     passed = run(text, around(LIVE if name in NEED_C else MODULO))
     assert [each for each in passed.found if each.severity is not Severity.NOTE] == []
@@ -57,7 +57,7 @@ SWITCHES_NOTHING = (
 
 
 @pytest.mark.parametrize("name", SWITCHES_NOTHING)
-def test_what_switches_nothing_leaves_the_path_as_it_is(name: str) -> None:
+def test_ineffective_words_do_not_change_the_path(name: str) -> None:
     """Where the word stands alone in a block, and where it is left out: the same ways at the same feeds."""
     without = [(b.x, b.z, b.kind, b.feed) for b in run(PATH.format(""), around()).moves]
     passed = run(PATH.format(f"{name}\n"), around())
@@ -69,25 +69,25 @@ ROWS = {**{f"G{row}": row for row in range(54, 60)}, "G505": 58, "G506": 59}
 
 
 @pytest.mark.parametrize(("name", "row"), ROWS.items())
-def test_a_settable_offset_is_its_row(name: str, row: int) -> None:
+def test_settable_offset_uses_its_table_row(name: str, row: int) -> None:
     """X as a radius: 40 across, 7 mm of the row; Z -5 and 30 of it."""
     shifted = replace(around(), zero={row: ZeroOffset(7.0, 30.0, 0.0)})
     assert [b.machine_end[:2] for b in run(f"{name} G0 X40 Z-5", shifted).moves] == [(27.0, 25.0)]
     assert [b.machine_end[:2] for b in run(f"{name}\nG153 G0 X40 Z-5", shifted).moves] == [(20.0, -5.0)]
 
 
-def test_a_frame_scaled_further() -> None:
+def test_ascale_multiplies_the_active_scale() -> None:
     """Twice, then by half again: three times the Z of the program."""
     assert [b.z for b in run("SCALE Z2\nASCALE Z1.5\nG0 X20 Z5", around()).moves] == [pytest.approx(15.0)]
 
 
-def test_to_the_first_block_and_on() -> None:
+def test_gotos_jumps_to_the_first_block() -> None:
     text = "IF $P_TOOLNO==1 GOTOF DONE\nG0 Z1\nT1\nGOTOS\nG0 Z9\nDONE: G0 Z=2"
     ways = [(b.line, b.kind) for b in run(text, around()).moves]
     assert ways == [(2, BlockKind.RAPID), (6, BlockKind.RAPID)]
 
 
-def test_boring_with_a_dwell_feeds_out() -> None:
+def test_cycle89_dwells_and_feeds_out() -> None:
     passed = run("S1000 M3 G94 F120 G17\nG0 X0 Z5\nCYCLE89(4,0,1,-9,,1)", around())
     assert [(b.z, b.kind) for b in passed.moves[2:]] == [
         (-9, BlockKind.FEED),
@@ -97,7 +97,7 @@ def test_boring_with_a_dwell_feeds_out() -> None:
 
 
 @pytest.mark.parametrize("name", UNSUPPORTED_WORDS)
-def test_what_is_not_executed_is_refused_by_its_name(name: str) -> None:
+def test_unsupported_words_are_rejected_by_name(name: str) -> None:
     error = refused(f"N30 {name}", around())
     assert error.code == "not-in-subset"
     assert f"{name}: {UNSUPPORTED_WORDS[name]}" in error.message

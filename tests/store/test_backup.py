@@ -37,7 +37,7 @@ def test_backup_of_a_store_in_use_restores_elsewhere(store: Store, folder: Path,
     assert sorted(path.name for path in tmp_path.iterdir()) == ["b.db", "home", "other"]
 
 
-def test_restore_keeps_the_replaced_store(folder: Path, tmp_path: Path) -> None:
+def test_restore_saves_the_replaced_store(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     backup.back_up_store(folder, tmp_path / "b.db")
@@ -53,7 +53,7 @@ def test_restore_keeps_the_replaced_store(folder: Path, tmp_path: Path) -> None:
     connection.close()
 
 
-def test_restore_replaces_a_damaged_store_and_keeps_its_bytes(folder: Path, tmp_path: Path) -> None:
+def test_restore_replaces_damaged_store_and_saves_its_bytes(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     backup.back_up_store(folder, tmp_path / "b.db")
@@ -73,7 +73,7 @@ def test_restore_while_the_store_is_in_use_is_refused(store: Store, folder: Path
 
 
 @pytest.mark.parametrize("content", [b"", b"G90\r\n" * 100, b"SQLite format 3\0" + b"\0" * 200])
-def test_restore_of_what_is_no_backup_changes_nothing(
+def test_restore_of_file_that_is_not_a_backup_changes_nothing(
     store: Store, folder: Path, tmp_path: Path, content: bytes
 ) -> None:
     fill(store)
@@ -85,7 +85,7 @@ def test_restore_of_what_is_no_backup_changes_nothing(
     assert (folder / STORE_FILE_NAME).read_bytes() == before
 
 
-def test_restore_of_a_spoilt_backup_is_refused(folder: Path, tmp_path: Path) -> None:
+def test_restore_of_damaged_backup_is_rejected(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     target = tmp_path / "b.db"
@@ -95,7 +95,9 @@ def test_restore_of_a_spoilt_backup_is_refused(folder: Path, tmp_path: Path) -> 
         backup.restore_store(folder, target)
 
 
-def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, tmp_path: Path) -> None:
+def test_backup_never_overwrites_file_that_is_not_a_backup(
+    store: Store, folder: Path, tmp_path: Path
+) -> None:
     fill(store)
     precious = tmp_path / "part.nc"
     precious.write_bytes(b"G90")
@@ -106,7 +108,7 @@ def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, t
         backup.back_up_store(folder, folder / STORE_FILE_NAME)
 
 
-def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path) -> None:
+def test_backup_without_store_or_target_folder_is_rejected(folder: Path, tmp_path: Path) -> None:
     with raises_code(StoreError, "no-store"):
         backup.back_up_store(folder, tmp_path / "b.db")
     with Store.open(folder) as store:
@@ -115,7 +117,7 @@ def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path
         backup.back_up_store(folder, tmp_path / "none" / "b.db")
 
 
-def test_neighbours_of_a_backup_or_export_are_left_alone(store: Store, folder: Path, tmp_path: Path) -> None:
+def test_files_next_to_backup_or_export_are_not_changed(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     (tmp_path / "b.db.new").write_text("mine")
     (tmp_path / "out.new").mkdir()
@@ -125,7 +127,7 @@ def test_neighbours_of_a_backup_or_export_are_left_alone(store: Store, folder: P
     assert sorted(p.name for p in tmp_path.iterdir()) == ["b.db", "b.db.new", "home", "out", "out.new"]
 
 
-def test_export_of_a_spoilt_program_leaves_nothing(store: Store, tmp_path: Path) -> None:
+def test_export_of_damaged_program_leaves_no_files(store: Store, tmp_path: Path) -> None:
     fill(store)
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
     with raises_code(StoreError, "damaged-version"):
@@ -133,7 +135,7 @@ def test_export_of_a_spoilt_program_leaves_nothing(store: Store, tmp_path: Path)
     assert [path.name for path in tmp_path.iterdir()] == ["home"]
 
 
-def test_backup_over_an_older_backup(store: Store, folder: Path, tmp_path: Path) -> None:
+def test_backup_replaces_an_older_backup(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     target = tmp_path / "b.db"
     backup.back_up_store(folder, target)
@@ -160,7 +162,7 @@ def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
     assert rows[1][1:] == ["start", 'PIN.nc, "first" part', "0", "", ""]
 
 
-def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
+def test_exported_programs_can_be_imported(store: Store, tmp_path: Path) -> None:
     fill(store)
     store_export.export_store(store, tmp_path / "out")
     with Store.open(tmp_path / "other") as other:
@@ -177,7 +179,7 @@ def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
         assert other.offsets.read_history()[0].who == "import"
 
 
-def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_path: Path) -> None:
+def test_export_into_folder_that_is_not_empty_is_rejected(store: Store, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out/precious").write_text("x")
     with raises_code(StoreError, "folder-not-empty"):
@@ -187,7 +189,7 @@ def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_
     assert (tmp_path / "out/precious").read_text() == "x"
 
 
-def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
+def test_verify_finds_damaged_text_and_orphaned_rows(folder: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     path = folder / STORE_FILE_NAME

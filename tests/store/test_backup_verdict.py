@@ -34,11 +34,11 @@ def kept(store: Store, folder: Path, tmp_path: Path) -> Path:
     return tmp_path / "b.db"
 
 
-def test_the_same_is_whole_and_differs_in_nothing(folder: Path, kept: Path) -> None:
+def test_identical_backup_has_no_problem_or_difference(folder: Path, kept: Path) -> None:
     assert judged(folder, kept) == BackupVerdict()
 
 
-def test_what_is_other_missing_or_new_is_counted(store: Store, folder: Path, kept: Path) -> None:
+def test_changed_missing_and_new_entries_are_counted(store: Store, folder: Path, kept: Path) -> None:
     store.offsets.tool_offsets.change_row(1, "x", {"x": 1.5})  # other
     store.offsets.tool_offsets.remove_row(2, "x")  # missing now
     store.offsets.tool_offsets.change_row(3, "x", {"x": 3.0, "z": 0.0})  # new since
@@ -50,13 +50,13 @@ def test_what_is_other_missing_or_new_is_counted(store: Store, folder: Path, kep
     assert judged(folder, kept).difference_counts == differs
 
 
-def test_what_was_put_back_by_hand_is_no_difference(store: Store, folder: Path, kept: Path) -> None:
+def test_value_restored_by_hand_is_not_a_difference(store: Store, folder: Path, kept: Path) -> None:
     store.offsets.tool_offsets.change_row(1, "x", {"x": 1.5})
     store.offsets.tool_offsets.change_row(1, "back", {"x": 1.0}).result()
     assert judged(folder, kept) == BackupVerdict()
 
 
-def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> None:
+def test_damaged_backup_is_reported_and_not_compared(folder: Path, kept: Path) -> None:
     kept.write_bytes(kept.read_bytes().replace(b"M30\n", b"M31\n"))
     found = judged(folder, kept)
     assert found.first_problem == backup.find_problems(kept)[0]
@@ -64,7 +64,9 @@ def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> Non
 
 
 @pytest.mark.parametrize("data", [b"", b"no database", bytes(5000)])
-def test_what_is_no_backup_is_told(data: bytes, store: Store, folder: Path, tmp_path: Path) -> None:
+def test_file_that_is_not_a_backup_is_reported(
+    data: bytes, store: Store, folder: Path, tmp_path: Path
+) -> None:
     store.settings.save_setting("a", 1).result()
     (tmp_path / "b.db").write_bytes(data)
     assert str(tmp_path / "b.db") in judged(folder, tmp_path / "b.db").first_problem
@@ -75,13 +77,13 @@ def test_what_is_no_backup_is_told(data: bytes, store: Store, folder: Path, tmp_
         backup.find_problems(tmp_path / "gone.db")
 
 
-def test_one_of_an_older_version_has_its_programs_compared(folder: Path, kept: Path) -> None:
+def test_programs_of_older_backup_are_compared(folder: Path, kept: Path) -> None:
     with closing(sqlite3.connect(kept)) as connection:
         connection.execute("PRAGMA user_version = 10")
     assert judged(folder, kept) == BackupVerdict(is_older=True)
 
 
-def test_looking_writes_nothing(folder: Path, kept: Path) -> None:
+def test_verdict_writes_nothing(folder: Path, kept: Path) -> None:
     before = kept.read_bytes()
     judged(folder, kept)
     assert kept.read_bytes() == before

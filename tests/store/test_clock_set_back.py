@@ -22,7 +22,7 @@ def clock(monkeypatch: pytest.MonkeyPatch, *hours: int) -> None:
     monkeypatch.setattr(offset_tables, "get_utc_now_text", lambda: next(times))
 
 
-def test_the_newest_change_is_first_and_is_taken_back_first(
+def test_newest_change_is_listed_and_undone_first_after_clock_change(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The clock is set back between a tool and a zero offset: the tool was taken for the newer one."""
@@ -52,7 +52,7 @@ def older(folder: Path) -> None:
         connection.commit()
 
 
-def test_an_older_store_is_numbered_by_its_times(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_changes_of_older_store_are_numbered_by_time(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, 8, 9, 10, 11, 12, 7, 7, 7, 7)
     with Store.open(folder) as store:
         store.offsets.tool_offsets.change_row(3, "touched", {"x": 1.0}).result()

@@ -23,13 +23,13 @@ WHY = {"why": "test", "who": "test"}
 T3_D2 = make_row_number(3, 2)
 
 
-def test_the_numbers_of_rows() -> None:
+def test_row_number_encodes_tool_and_edge() -> None:
     assert (make_row_number(3, 1), T3_D2) == (3, 200_003)
     assert (get_tool_number(T3_D2), get_edge_number(T3_D2), format_edge_name(T3_D2)) == (3, 2, "T3 D2")
     assert (get_tool_number(3), get_edge_number(3), format_edge_name(3)) == (3, 1, "T3")
 
 
-def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
+def test_edge_is_saved_undone_and_exported(tmp_path: Path) -> None:
     with Store.open(tmp_path / "data") as store:
         store.offsets.tool_offsets.change_row(3, values={"x": 10.0, "z": 20.0}, **WHY).result()
         row = store.offsets.tool_offsets.change_row(
@@ -53,12 +53,14 @@ def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
         (100_003, {"x": 1.0}, "unknown-number", 100_003),
     ],
 )
-def test_refused(tmp_path: Path, number: int, values: dict[str, float], code: str, value: str | int) -> None:
+def test_invalid_edge_values_are_rejected(
+    tmp_path: Path, number: int, values: dict[str, float], code: str, value: str | int
+) -> None:
     with Store.open(tmp_path) as store, raises_code(StoreError, code, value):
         store.offsets.tool_offsets.change_row(number, values=values, **WHY).result()
 
 
-def test_an_edge_is_no_master(tmp_path: Path) -> None:
+def test_second_edge_cannot_be_master(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.offsets.tool_offsets.change_row(3, values={"x": 1.0, "z": 1.0}, **WHY).result()
         with raises_code(StoreError, "not-first-edge"):
@@ -67,7 +69,7 @@ def test_an_edge_is_no_master(tmp_path: Path) -> None:
             ).result()
 
 
-def test_what_was_kept_before_is_kept() -> None:
+def test_migration_retains_every_field() -> None:
     """A store of the version before keeps every field, its master and its shapes."""
     scripts = database.load_migrations()
     before = next(at for at, text in enumerate(scripts) if "with_edges" in text)

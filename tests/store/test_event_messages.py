@@ -16,7 +16,7 @@ CAUSE = Message("{axis} is {distance} off its setpoint", axis="Z", distance=2.1)
 LINE = Message("{number} {alarm}: {cause}", number=102, alarm="FOLLOWING ERROR", cause=CAUSE)
 
 
-def test_an_event_keeps_the_values_of_its_text(tmp_path: Path) -> None:
+def test_event_retains_the_values_of_its_text(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.events.log_event("alarm", LINE, 4).result()
         store.events.log_event("start", "pin.nc").result()
@@ -61,7 +61,7 @@ def test_a_message_that_does_not_fit_its_text_is_not_used(tmp_path: Path, packed
 @pytest.mark.parametrize(
     "text", [LINE, LINE.upper(), CAUSE.lower(), CAUSE.capitalize(), CAUSE.capitalize_first_letter(), "plain"]
 )
-def test_what_is_packed_is_unpacked(text: str) -> None:
+def test_packed_message_is_unpacked_unchanged(text: str) -> None:
     made = unpack_message(pack_message(text), str.__str__(text))
     assert made == text
     assert getattr(made, "case", "") == getattr(text, "case", "")

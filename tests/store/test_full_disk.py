@@ -47,7 +47,7 @@ def fill_up(store: Store, disk: Disk) -> None:
 # --- nothing is lost ----------------------------------------------------------------------------------------
 
 
-def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Disk) -> None:
+def test_parts_and_events_are_written_when_disk_has_room_again(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
         for _ in range(3):
             store.runs.add_parts("pin.nc")
@@ -78,7 +78,9 @@ def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Di
         assert store.settings.read_setting("theme") == "light"
 
 
-def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pending_entries_are_written_without_further_calls(
+    disk: Disk, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("core.store.store_writer.RETRY_INTERVAL_S", 0.02)
     with Store.open(disk.path / "home") as store:
         fill_up(store, disk)
@@ -90,7 +92,7 @@ def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: p
         assert store.runs.read_part_count("pin.nc") == 1
 
 
-def test_an_offset_is_refused_and_the_reason_is_the_disk(disk: Disk) -> None:
+def test_offset_change_on_full_disk_is_rejected_with_reason(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
         store.offsets.tool_offsets.change_row(3, "x", {"x": 1.0}).result(60)
         fill_up(store, disk)
@@ -102,7 +104,7 @@ def test_an_offset_is_refused_and_the_reason_is_the_disk(disk: Disk) -> None:
         assert store.offsets.tool_offsets.read_rows()[3].x == 2.0
 
 
-def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None:
+def test_interrupted_job_is_saved_as_soon_as_disk_has_room(disk: Disk) -> None:
     journal = Journal(disk.path / "home")
     store = journal.require_store()
     fill_up(store, disk)
@@ -114,7 +116,7 @@ def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None
     again.close()
 
 
-def test_closing_says_what_is_lost(disk: Disk) -> None:
+def test_close_reports_lost_entries(disk: Disk) -> None:
     journal = Journal(disk.path / "home")
     journal.hear(LogEvent(0.0, "load", "pin.nc"))
     fill_up(journal.require_store(), disk)
@@ -125,7 +127,7 @@ def test_closing_says_what_is_lost(disk: Disk) -> None:
     assert lost.endswith("events")
 
 
-def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
+def test_control_started_with_full_disk_saves_its_parts_later(
     disk: Disk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 0.02)
@@ -150,7 +152,7 @@ def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
 # --- what it is called --------------------------------------------------------------------------------------
 
 
-def test_a_full_disk_at_the_command_line(
+def test_command_line_reports_full_disk(
     disk: Disk, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(disk.path / "home"))
@@ -166,14 +168,14 @@ def test_a_full_disk_at_the_command_line(
     assert [each.code for each in refusals] == ["disk-full"] * expected
 
 
-def test_a_new_store_on_a_full_disk(disk: Disk) -> None:
+def test_new_store_is_not_created_on_full_disk(disk: Disk) -> None:
     disk.fill()
     with raises_code(StoreError, "disk-full"):
         Store.open(disk.path / "home")
     assert not (disk.path / "home" / "turndesk.db").exists()
 
 
-def test_a_store_that_another_program_writes_is_locked_and_not_damaged(tmp_path: Path) -> None:
+def test_store_locked_by_another_program_is_not_damaged(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.write(lambda c: c.execute("PRAGMA busy_timeout = 20").close()).result(60)
         with closing(sqlite3.connect(tmp_path / "turndesk.db", isolation_level=None)) as other:
@@ -191,7 +193,7 @@ def test_a_store_that_another_program_writes_is_locked_and_not_damaged(tmp_path:
         assert store.runs.read_part_count("pin.nc") == 1
 
 
-def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
+def test_store_without_write_permission_is_rejected(tmp_path: Path) -> None:
     with Store.open(tmp_path):
         pass
     path = tmp_path / "turndesk.db"
@@ -204,7 +206,7 @@ def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
     assert str(path) in str(error)
 
 
-def test_what_the_system_says_is_what_is_told(tmp_path: Path) -> None:
+def test_system_error_is_mapped_to_store_error_cause(tmp_path: Path) -> None:
     causes = {
         28: StoreErrorCause.FULL,
         122: StoreErrorCause.FULL,
@@ -219,7 +221,7 @@ def test_what_the_system_says_is_what_is_told(tmp_path: Path) -> None:
 # --- what is held does not grow, and one bad entry holds nothing up ----------------------------------------
 
 
-def test_counts_and_settings_do_not_grow_with_the_days() -> None:
+def test_pending_counts_and_settings_have_constant_size() -> None:
     held = UnwrittenEntries()
     for number in range(100_000):
         held.add_parts("pin.nc", 1)
@@ -227,7 +229,7 @@ def test_counts_and_settings_do_not_grow_with_the_days() -> None:
     assert (held.count_entries("").part_count, held.count_entries("").other_count) == (100_000, 1)
 
 
-def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_events_dropped_beyond_limit_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store_writer, "MAX_PENDING_EVENTS", 10)
     held = UnwrittenEntries()
     for number in range(25):
@@ -239,7 +241,7 @@ def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.Mo
     assert texts[-1].startswith("15 ")
 
 
-def test_a_name_that_can_never_be_kept_holds_nothing_up(tmp_path: Path) -> None:
+def test_invalid_program_name_does_not_block_other_entries(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.programs.save_loaded_version("bad/name", b"M30", "x")
         store.runs.add_parts("pin.nc")
@@ -249,7 +251,7 @@ def test_a_name_that_can_never_be_kept_holds_nothing_up(tmp_path: Path) -> None:
         assert any("bad/name" in event.text for event in store.events.read_events())
 
 
-def test_a_count_put_to_nought_while_nothing_was_written(disk: Disk) -> None:
+def test_part_count_is_reset_while_disk_is_full(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
         store.runs.add_parts("pin.nc", 5).result(60)
         fill_up(store, disk)
@@ -276,7 +278,7 @@ def closed_store(folder: Path) -> Path:
     return folder
 
 
-def test_a_full_disk_is_still_read(disk: Disk) -> None:
+def test_store_on_full_disk_can_still_be_read(disk: Disk) -> None:
     home = closed_store(disk.path / "home")
     disk.fill()
     with Store.open(home, read_only=True) as store:
@@ -285,7 +287,7 @@ def test_a_full_disk_is_still_read(disk: Disk) -> None:
         Store.open(home)
 
 
-def test_a_log_that_cannot_be_read_is_not_passed_over(disk: Disk) -> None:
+def test_unreadable_log_is_not_skipped(disk: Disk) -> None:
     home = closed_store(disk.path / "home")
     (home / "turndesk.db-wal").write_bytes(bytes(64))
     disk.fill()

@@ -55,7 +55,7 @@ def disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Disk]:
     disk.release()
 
 
-def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Path) -> None:
+def test_entries_not_stored_for_two_seconds_are_reported(disk: Disk, tmp_path: Path) -> None:
     journal = Journal(tmp_path)
     journal.hear(LogEvent(0.0, "load", "pin.nc"))
     journal.require_store().events.log_event("start", "before").result(LONG)
@@ -76,7 +76,7 @@ def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Pa
     assert journal.close() == ""
 
 
-def test_a_disk_that_is_only_slow_is_not_reported(disk: Disk, tmp_path: Path) -> None:
+def test_slow_disk_is_not_reported(disk: Disk, tmp_path: Path) -> None:
     """Time that passes with nothing to write is no wait."""
     with Store.open(tmp_path) as store:
         for _ in range(5):
@@ -85,7 +85,7 @@ def test_a_disk_that_is_only_slow_is_not_reported(disk: Disk, tmp_path: Path) ->
             assert (store.write_error, store.pending_entries) == ("", None)
 
 
-def test_closing_leaves_a_disk_that_hangs_and_says_what_is_lost(
+def test_close_abandons_hanging_disk_and_reports_lost_entries(
     disk: Disk, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(StoreWriter.close, "__defaults__", (0.0,))

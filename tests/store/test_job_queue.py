@@ -35,7 +35,7 @@ def count(store: Store, program: str, parts: int) -> None:
     store.runs.add_parts(program, parts).result()
 
 
-def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> None:
+def test_only_parts_of_the_active_job_are_counted_for_it(store: Store) -> None:
     count(store, "pin.nc", 40)
     job = added(store, "pin.nc", 5, "order 12")
     count(store, "pin.nc", 2)  # before it is on the desk
@@ -58,7 +58,7 @@ def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> Non
     assert (row.parts_made, row.remaining_part_count, row.is_done) == (6, 0, True)
 
 
-def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
+def test_change_of_active_job_retains_parts_made(store: Store) -> None:
     pins, caps = added(store, "pin.nc", 5), added(store, "cap.nc", 2)
     begun(store, pins)
     count(store, "pin.nc", 3)
@@ -73,7 +73,7 @@ def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
     assert store.find_damaged_rows() == ()
 
 
-def test_a_count_that_is_put_to_nought_takes_nothing_from_the_job(store: Store) -> None:
+def test_part_count_reset_does_not_change_job_progress(store: Store) -> None:
     count(store, "pin.nc", 10)
     begun(store, added(store, "pin.nc", 5))
     count(store, "pin.nc", 3)
@@ -84,7 +84,7 @@ def test_a_count_that_is_put_to_nought_takes_nothing_from_the_job(store: Store) 
     assert store.jobs.read_jobs()[0].is_done
 
 
-def test_two_jobs_of_one_program_do_not_count_together(store: Store) -> None:
+def test_two_jobs_of_one_program_are_counted_separately(store: Store) -> None:
     first, second = added(store, "pin.nc", 2), added(store, "pin.nc", 3)
     begun(store, first)
     count(store, "pin.nc", 2)
@@ -93,7 +93,7 @@ def test_two_jobs_of_one_program_do_not_count_together(store: Store) -> None:
     assert made(store) == [("pin.nc", 2, 2), ("pin.nc", 1, 3)]
 
 
-def test_moved_changed_removed_cleared(store: Store) -> None:
+def test_jobs_are_moved_changed_removed_and_cleared(store: Store) -> None:
     a, b, c = (added(store, name, 1) for name in ("a.nc", "b.nc", "c.nc"))
     store.write(lambda con: job_queue.move_job(con, c, 1)).result()
     store.write(lambda con: job_queue.move_job(con, a, 99)).result()
@@ -109,7 +109,7 @@ def test_moved_changed_removed_cleared(store: Store) -> None:
     assert store.write(lambda con: job_queue.clear(con, remove_all=True)).result() == 1
 
 
-def test_a_renamed_program_keeps_its_job(store: Store) -> None:
+def test_renamed_program_retains_its_job(store: Store) -> None:
     begun(store, added(store, "pin.nc", 5))
     count(store, "pin.nc", 2)
     store.programs.rename_program("pin.nc", "pin2.nc").result()
@@ -126,7 +126,7 @@ def test_a_renamed_program_keeps_its_job(store: Store) -> None:
         ("a.nc", 1, "two\nlines", "invalid-note", "80"),
     ],
 )
-def test_what_is_no_job_is_refused(
+def test_invalid_job_is_rejected(
     store: Store, program: str, wanted: int, note: str, code: str, value: str
 ) -> None:
     with raises_code(StoreError, code, value):
@@ -134,7 +134,7 @@ def test_what_is_no_job_is_refused(
     assert store.jobs.read_jobs() == ()
 
 
-def test_a_job_that_has_gone_is_told(store: Store) -> None:
+def test_missing_job_is_reported(store: Store) -> None:
     for operation in (
         lambda c: job_queue.activate_job(c, 7),
         lambda c: job_queue.move_job(c, 7, 1),
@@ -145,14 +145,14 @@ def test_a_job_that_has_gone_is_told(store: Store) -> None:
             store.write(operation).result()
 
 
-def test_a_full_queue_takes_no_more(store: Store) -> None:
+def test_full_queue_rejects_more_jobs(store: Store) -> None:
     for _ in range(job_queue.MAX_JOBS):
         store.write(lambda c: job_queue.add_job(c, "a.nc", 1))
     with raises_code(StoreError, "queue-full", 200):
         added(store, "a.nc", 1)
 
 
-def test_counts_that_wait_in_memory_count(store: Store) -> None:
+def test_pending_part_counts_are_included(store: Store) -> None:
     begun(store, added(store, "pin.nc", 9))
     count(store, "pin.nc", 2)
     with store.read() as connection:
@@ -162,7 +162,7 @@ def test_counts_that_wait_in_memory_count(store: Store) -> None:
         )  # put to nought, then three
 
 
-def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
+def test_damaged_job_is_left_out_reported_and_cleared(folder: Path) -> None:
     with Store.open(folder) as store:
         added(store, "a.nc", 3)
         added(store, "b.nc", 4)
@@ -178,7 +178,7 @@ def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
         assert store.find_damaged_rows() == ()
 
 
-def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
+def test_older_store_gets_a_job_queue(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / STORE_FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
         database.migrate(connection, database.load_migrations()[:11])
@@ -204,7 +204,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
-def test_a_killed_control_has_its_queue_with_its_counts(folder: Path) -> None:
+def test_killed_control_retains_queue_and_counts(folder: Path) -> None:
     ended = subprocess.run([sys.executable, "-c", KILLED, str(folder)], check=False)
     assert ended.returncode == -9
     with Store.open(folder) as store:
@@ -212,7 +212,7 @@ def test_a_killed_control_has_its_queue_with_its_counts(folder: Path) -> None:
         assert (row.program, row.parts_made, row.parts_to_make, row.is_active) == ("pin.nc", 7, 50, True)
 
 
-def test_a_row_reckons_by_the_count_from_which_it_began() -> None:
+def test_job_progress_is_counted_from_its_base_count() -> None:
     row = JobRow(1, "pin.nc", 50, parts_made_before=10, base_part_count=100, part_count=117)
     assert (row.parts_made, row.remaining_part_count, row.target_part_count) == (27, 23, 140)
     assert row._replace(base_part_count=None).parts_made == 10

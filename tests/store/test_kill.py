@@ -50,7 +50,7 @@ def _write_and_kill(folder: Path) -> int:
     return int([line for line in told if line.endswith(b"\n")][-1])
 
 
-def test_killed_writers_lose_nothing_that_was_acknowledged(folder: Path) -> None:
+def test_killed_writer_loses_no_acknowledged_change(folder: Path) -> None:
     for _ in range(KILLS):
         last = _write_and_kill(folder)
         assert backup.find_problems(folder / STORE_FILE_NAME) == ()

@@ -59,7 +59,7 @@ def test_a_whole_log_is_read_to_its_end(killed: Path) -> None:
     assert left_beside(killed) == []
 
 
-def test_a_change_that_was_not_finished_is_no_damage(killed: Path, tmp_path: Path) -> None:
+def test_unfinished_change_is_not_damage(killed: Path, tmp_path: Path) -> None:
     """Nobody was told that it is kept: cut off at any byte before the entry that ends it is complete."""
     whole, last = (killed / LOG).read_bytes(), commits(killed)[-1]
     for end in (last + FRAME - 1, last + 24, last + 3, last, last - 1, last - FRAME + 7):
@@ -71,7 +71,7 @@ def test_a_change_that_was_not_finished_is_no_damage(killed: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("at", [0, 5, 12, 17, 21, 25, 31, 32 + 9, 32 + 13, 32 + 17, 32 + 24, 32 + 3000])
-def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> None:
+def test_flipped_bit_in_log_reverts_nothing_without_a_report(killed: Path, at: int) -> None:
     """SQLite alone goes back to the offset of before, and calls the store whole."""
     flip(killed, at)
     content = (killed / LOG).read_bytes()
@@ -89,14 +89,14 @@ def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> No
     assert (killed / kept).read_bytes() == content
 
 
-def test_the_last_change_alone_is_missed_too(killed: Path) -> None:
+def test_damage_to_last_change_is_detected(killed: Path) -> None:
     flip(killed, commits(killed)[-1] + 24 + 100)
     with Store.open(killed) as store:
         assert left_beside(killed)[0] in store.repair_messages[0]
         assert store.offsets.tool_offsets.read_rows()[3].wear_x == -0.03
 
 
-def test_it_is_told_once(killed: Path) -> None:
+def test_log_damage_is_reported_once(killed: Path) -> None:
     flip(killed, 32 + 3000)
     with Store.open(killed) as store:
         store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.05}).result()
@@ -106,7 +106,7 @@ def test_it_is_told_once(killed: Path) -> None:
     assert len(left_beside(killed)) == 1
 
 
-def test_whoever_reads_beside_a_desk_that_runs_is_not_kept_from_it(killed: Path) -> None:
+def test_reader_is_not_blocked_by_running_writer(killed: Path) -> None:
     """What its log holds is that desk's; a change that is just being written is no damage."""
     with Store.open(killed) as store:
         store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.05}).result()
@@ -139,7 +139,7 @@ def torn(found: Path, at: int, sectors: int, with_what: bytes) -> None:
 
 @pytest.mark.parametrize("with_what", [b"\0", b"o"])
 @pytest.mark.parametrize(("frame", "sectors"), [(0, 3), (0, 8), (1, 3), (1, 9), (-1, 3)])
-def test_sectors_of_the_last_change_that_never_came_are_no_damage(
+def test_missing_sectors_of_last_change_are_not_damage(
     killed: Path, frame: int, sectors: int, with_what: bytes
 ) -> None:
     """It was reported as a damaged log with a lost change, and nobody was told that the change is kept."""
@@ -153,7 +153,7 @@ def test_sectors_of_the_last_change_that_never_came_are_no_damage(
     assert left_beside(killed) == []
 
 
-def test_an_entry_of_the_last_change_that_never_came_is_no_damage(killed: Path) -> None:
+def test_missing_entry_of_last_change_is_not_damage(killed: Path) -> None:
     content = bytearray((killed / LOG).read_bytes())
     start = last_change(killed).start
     content[start : start + FRAME] = bytes(FRAME)
@@ -164,7 +164,7 @@ def test_an_entry_of_the_last_change_that_never_came_is_no_damage(killed: Path) 
 
 @pytest.mark.parametrize("into", [0, 5, 9, 13, 17, 21, 24, 27, 600, 2001, 24 + 4095])
 @pytest.mark.parametrize("frame", [0, 1, -1])
-def test_a_byte_of_an_acknowledged_change_is_missed(killed: Path, frame: int, into: int) -> None:
+def test_missing_byte_of_acknowledged_change_is_detected(killed: Path, frame: int, into: int) -> None:
     """Whatever entry of it, whatever of the entry: its head, its salts, its sums, its page."""
     places = range(last_change(killed).start, last_change(killed).stop, FRAME)
     content = bytearray((killed / LOG).read_bytes())
@@ -174,20 +174,20 @@ def test_a_byte_of_an_acknowledged_change_is_missed(killed: Path, frame: int, in
         Store.open(killed, read_only=True)
 
 
-def test_sectors_of_an_earlier_change_are_damage(killed: Path) -> None:
+def test_missing_sectors_of_earlier_change_are_damage(killed: Path) -> None:
     """A change is acknowledged before the next one is written."""
     torn(killed, commits(killed)[1] + 600, 2, b"o")
     with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=3)):
         backup.find_problems(killed / STORE_FILE_NAME)
 
 
-def test_a_head_alone_has_lost_nothing(killed: Path) -> None:
+def test_log_with_header_only_has_lost_nothing(killed: Path) -> None:
     (killed / LOG).write_bytes(bytes(32))
     with Store.open(killed) as store:
         assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (0.0, ())
 
 
-def test_an_entry_of_an_earlier_round_is_not_missed(killed: Path) -> None:
+def test_log_entry_of_an_earlier_round_is_not_reported_missing(killed: Path) -> None:
     """SQLite begins at the front again, and what stood there behind it stays: with other salts."""
     content = bytearray((killed / LOG).read_bytes())
     old = bytearray(content[32 : 32 + FRAME])

@@ -45,7 +45,7 @@ def cycle(store: Store, key: str, part: int, **more: object) -> None:
     store.write(lambda c: part_cycles.save_cycle(c, row)).result(60)
 
 
-def test_a_feature_and_its_readings_in_the_order_of_taking(store: Store) -> None:
+def test_feature_and_readings_are_listed_in_order_of_measurement(store: Store) -> None:
     of = feature(store)
     for part, value in ((1, 12.71), (3, 12.72), (2, 12.69)):
         read(store, of, part, value)
@@ -56,7 +56,7 @@ def test_a_feature_and_its_readings_in_the_order_of_taking(store: Store) -> None
         assert measured_parts.read_features(connection, "other.nc") == ()
 
 
-def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store: Store) -> None:
+def test_removed_reading_is_not_counted_but_remains_in_file(store: Store) -> None:
     of = feature(store)
     wrong = read(store, of, 1, 99.0)
     read(store, of, 1, 12.7)
@@ -68,7 +68,7 @@ def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store:
         assert connection.execute("SELECT count(*) FROM part_readings").fetchone() == (2,)
 
 
-def test_a_retired_feature_frees_its_name_and_takes_no_reading(store: Store) -> None:
+def test_retired_feature_frees_its_name_and_accepts_no_reading(store: Store) -> None:
     of = feature(store)
     store.write(lambda c: measured_parts.retire_feature(c, of)).result(60)
     with raises_code(StoreError, "feature-gone"):
@@ -86,18 +86,18 @@ def test_a_retired_feature_frees_its_name_and_takes_no_reading(store: Store) -> 
         (SPIGOT._replace(name="B", kind="angle"), "constraint", "kind"),
     ],
 )
-def test_a_feature_that_is_refused(store: Store, row: FeatureRow, code: str, value: str) -> None:
+def test_invalid_feature_is_rejected(store: Store, row: FeatureRow, code: str, value: str) -> None:
     feature(store)
     with raises_code(StoreError, code, value):
         feature(store, row)
 
 
-def test_a_reading_that_is_no_number(store: Store) -> None:
+def test_reading_that_is_not_a_number_is_rejected(store: Store) -> None:
     with raises_code(StoreError, "not-a-number"):
         read(store, feature(store), 1, math.nan)
 
 
-def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> None:
+def test_reading_is_linked_to_offsets_used_for_its_part(store: Store) -> None:
     """Part 1 before the wear, part 2 begun before it and ended after, part 3 after; part 9 is unknown."""
     of = feature(store)
     store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
@@ -118,7 +118,7 @@ def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> N
     assert known[-1] == (9, -1)
 
 
-def test_corrections_stand_between_the_parts(store: Store) -> None:
+def test_corrections_are_listed_between_the_parts(store: Store) -> None:
     store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
     for part in (1, 2):
         cycle(store, str(part), part)
@@ -134,7 +134,7 @@ def test_corrections_stand_between_the_parts(store: Store) -> None:
     ]
 
 
-def test_cycles_and_stops(store: Store) -> None:
+def test_cycles_and_stops_are_stored(store: Store) -> None:
     cycle(store, "1", 0)
     cycle(store, "1", 1, ended="2026-01-01T00:02:00Z", seconds=58.5, outcome="COMPLETE")
     stop = StopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
@@ -146,7 +146,7 @@ def test_cycles_and_stops(store: Store) -> None:
         assert part_cycles.read_stops(connection, "other.nc", 10) == ()
 
 
-def test_the_cycles_of_a_day_are_those_of_all_programs(store: Store) -> None:
+def test_cycles_of_a_day_include_all_programs(store: Store) -> None:
     now = datetime.now(UTC)
     at = {hours: format_utc(now - timedelta(hours=hours)) for hours in (1, 2, 47, 49)}
     for hours, program in ((1, "other.nc"), (2, "pin.nc"), (47, "other.nc"), (49, "pin.nc")):
@@ -158,7 +158,7 @@ def test_the_cycles_of_a_day_are_those_of_all_programs(store: Store) -> None:
         assert {row.key for row in part_cycles.read_cycles(connection, "pin.nc", 10)} == {"2", "49"}
 
 
-def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> None:
+def test_insert_change_is_stored_with_parts_made(store: Store) -> None:
     store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(3, 50, 1800.0, 0.8, True))).result(60)
     store.write(lambda c: tool_lives.save_use(c, 3, 50, 1200.5)).result(60)
     with store.read() as connection:
@@ -177,7 +177,7 @@ def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> No
 
 
 @pytest.mark.parametrize("number", [0, 33])
-def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
+def test_tool_life_of_unknown_tool_is_rejected(store: Store, number: int) -> None:
     for operation in (
         lambda c: tool_lives.save_limits(c, ToolLifeRow(number, 5)),
         lambda c: tool_lives.record_insert_change(c, number, ""),
@@ -186,7 +186,7 @@ def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
             store.write(operation).result(60)
 
 
-def test_all_of_it_goes_with_another_name(store: Store) -> None:
+def test_renamed_program_retains_measurements_and_cycles(store: Store) -> None:
     read(store, feature(store), 1, 12.7)
     cycle(store, "1", 1)
     store.programs.rename_program("pin.nc", "axle.nc").result(60)
@@ -196,7 +196,7 @@ def test_all_of_it_goes_with_another_name(store: Store) -> None:
         assert len(part_cycles.read_cycles(connection, "axle.nc", 9)) == 1
 
 
-def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
+def test_features_with_same_name_in_two_programs_are_separate(store: Store) -> None:
     feature(store)
     feature(store, SPIGOT._replace(program="axle.nc"))
     store.programs.rename_program("pin.nc", "axle.nc").result(60)
@@ -204,7 +204,7 @@ def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
         assert [row.program for row in measured_parts.read_features(connection)] == ["axle.nc", "pin.nc"]
 
 
-def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Path) -> None:
+def test_export_and_backup_contain_measurements(store: Store, folder: Path, tmp_path: Path) -> None:
     read(store, feature(store), 7, 12.7)
     export_store(store, tmp_path / "out")
     with (tmp_path / "out" / "readings.csv").open(newline="", encoding="utf-8") as file:
@@ -215,7 +215,7 @@ def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Pa
     assert backup.find_problems(tmp_path / "copy.db") == ()
 
 
-def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
+def test_reading_without_its_feature_is_reported(store: Store, folder: Path) -> None:
     read(store, feature(store), 1, 12.7)
     store.close()
     with store_connection.connect_store(folder / STORE_FILE_NAME, is_read_only=False) as connection:
@@ -224,9 +224,7 @@ def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> N
     assert any("part_readings" in problem for problem in backup.find_problems(folder / STORE_FILE_NAME))
 
 
-def test_a_migration_that_is_put_in_between_is_refused(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_gap_in_migration_numbers_is_rejected(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A store that has counted past it would never get it."""
     for name in ("0001_a.sql", "0003_b.sql"):
         (tmp_path / name).write_text("SELECT 1;")
@@ -259,7 +257,7 @@ while True:
 """
 
 
-def test_a_kill_loses_no_reading_that_was_acknowledged(folder: Path) -> None:
+def test_kill_loses_no_acknowledged_reading(folder: Path) -> None:
     with subprocess.Popen([sys.executable, "-c", WRITER, str(folder)], stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         told = [process.stdout.readline() for _ in range(25)]

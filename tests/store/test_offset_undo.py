@@ -27,7 +27,7 @@ def undo(store: Store, number: int) -> None:
     store.offsets.tool_offsets.undo_step(number, step).result()
 
 
-def test_a_touch_of_the_master_goes_back_as_a_whole(store: Store) -> None:
+def test_master_touch_is_undone_as_a_whole(store: Store) -> None:
     store.offsets.tool_offsets.set_master_tool(1, "master").result()
     store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(x=1.5), "touch").result()
     assert store.offsets.tool_offsets.read_rows()[2].x == 2.5
@@ -38,7 +38,7 @@ def test_a_touch_of_the_master_goes_back_as_a_whole(store: Store) -> None:
     )
 
 
-def test_a_step_of_which_another_tool_has_changed_since_is_refused(store: Store) -> None:
+def test_undo_is_rejected_if_another_tool_of_the_step_has_changed(store: Store) -> None:
     store.offsets.tool_offsets.set_master_tool(1, "master").result()
     store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(x=1.5), "touch").result()
     store.offsets.tool_offsets.change_row(2, "wear", {"wear_x": 0.01}).result()
@@ -48,7 +48,7 @@ def test_a_step_of_which_another_tool_has_changed_since_is_refused(store: Store)
     assert store.offsets.tool_offsets.read_rows() == before
 
 
-def test_a_second_master_is_refused(store: Store) -> None:
+def test_undo_that_would_make_a_second_master_is_rejected(store: Store) -> None:
     store.offsets.tool_offsets.set_master_tool(1, "master").result()
     store.offsets.tool_offsets.set_master_tool(0, "none").result()
     store.offsets.tool_offsets.set_master_tool(2, "master").result()
@@ -56,7 +56,7 @@ def test_a_second_master_is_refused(store: Store) -> None:
         undo(store, 1)
 
 
-def test_a_step_that_is_no_longer_the_last_is_refused(store: Store) -> None:
+def test_undo_of_step_that_is_not_the_last_is_rejected(store: Store) -> None:
     asked = store.offsets.tool_offsets.find_undoable_changes(1)[0].step
     store.offsets.tool_offsets.change_row(1, "elsewhere", {"x": 5.0}).result()
     with raises_code(StoreError, "changed-since"):
@@ -64,7 +64,7 @@ def test_a_step_that_is_no_longer_the_last_is_refused(store: Store) -> None:
     assert store.offsets.tool_offsets.read_rows()[1].x == 5.0
 
 
-def test_a_tool_with_a_further_edge_is_not_removed_by_undo(store: Store) -> None:
+def test_undo_does_not_remove_tool_with_another_edge(store: Store) -> None:
     store.offsets.tool_offsets.change_row(make_row_number(2, 2), "edge", {"x": 1.0, "z": 1.0}).result()
     with raises_code(StoreError, "has-further-edges"):
         undo(store, 2)

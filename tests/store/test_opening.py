@@ -36,12 +36,12 @@ def closed(folder: Path) -> Path:
     return folder / STORE_FILE_NAME
 
 
-def test_what_is_stored_is_there_next_time(closed: Path) -> None:
+def test_saved_values_exist_after_reopening(closed: Path) -> None:
     with Store.open(closed.parent) as store:
         assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
 
 
-def test_file_says_whose_it_is_and_commits_reach_the_disk(closed: Path) -> None:
+def test_file_has_application_id_and_commits_are_synced(closed: Path) -> None:
     with Store.open(closed.parent) as store:
         pragmas = store.write(
             lambda c: [
@@ -66,7 +66,7 @@ def test_second_writer_is_refused_and_a_reader_is_not(store: Store, folder: Path
     assert store.offsets.tool_offsets.read_rows()[2].x == 5.0
 
 
-def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
+def test_writer_in_another_process_is_rejected(store: Store, folder: Path) -> None:
     code = (
         "import sys\nfrom pathlib import Path\nfrom core.store.store import Store, StoreError\n"
         "try:\n    Store.open(Path(sys.argv[1]))\nexcept StoreError as error:\n    sys.exit(error.code)\n"
@@ -78,14 +78,14 @@ def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
     assert done.stderr == "in-use\n"
 
 
-def test_reader_of_nothing_sees_an_empty_store_and_makes_no_file(folder: Path) -> None:
+def test_reader_of_missing_store_sees_it_empty_and_creates_no_file(folder: Path) -> None:
     with Store.open(folder, read_only=True) as reader:
         assert reader.offsets.tool_offsets.read_rows() == {}
         assert reader.programs.list_programs() == ()
     assert not folder.exists()
 
 
-def test_refused_opening_gives_the_lock_back(closed: Path) -> None:
+def test_rejected_opening_releases_the_lock(closed: Path) -> None:
     good = closed.read_bytes()
     closed.write_bytes(b"rubbish" * 100)
     with raises_code(StoreError, "not-a-database"):
@@ -137,7 +137,9 @@ def _newer(path: Path) -> None:
         (_newer, "newer-version"),
     ],
 )
-def test_bad_file_is_told_and_left_as_it_is(closed: Path, spoil: Callable[[Path], None], code: str) -> None:
+def test_damaged_file_is_reported_and_left_unchanged(
+    closed: Path, spoil: Callable[[Path], None], code: str
+) -> None:
     spoil(closed)
     before = digest(closed)
     with raises_code(StoreError, code, closed) as caught:
@@ -147,13 +149,13 @@ def test_bad_file_is_told_and_left_as_it_is(closed: Path, spoil: Callable[[Path]
 
 
 @pytest.mark.parametrize(("spoil", "code"), [(_not_a_database, "not-a-database"), (_newer, "newer-version")])
-def test_reader_refuses_a_bad_file_too(closed: Path, spoil: Callable[[Path], None], code: str) -> None:
+def test_reader_also_rejects_damaged_file(closed: Path, spoil: Callable[[Path], None], code: str) -> None:
     spoil(closed)
     with raises_code(StoreError, code):
         Store.open(closed.parent, read_only=True)
 
 
-def test_log_without_its_database_is_not_poured_into_a_new_one(closed: Path) -> None:
+def test_log_without_database_is_not_applied_to_a_new_one(closed: Path) -> None:
     log, _ = store_connection.get_log_and_index_paths(closed)
     closed.unlink()
     log.write_bytes(b"something")
@@ -162,7 +164,7 @@ def test_log_without_its_database_is_not_poured_into_a_new_one(closed: Path) -> 
     assert not closed.exists()
 
 
-def test_creation_that_was_cut_off_is_begun_again(folder: Path) -> None:
+def test_interrupted_creation_is_restarted(folder: Path) -> None:
     folder.mkdir()
     (folder / "turndesk.db.new").write_bytes(b"half of a store")
     with Store.open(folder) as store:
@@ -170,7 +172,7 @@ def test_creation_that_was_cut_off_is_begun_again(folder: Path) -> None:
     assert not (folder / "turndesk.db.new").exists()
 
 
-def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
+def test_full_disk_is_reported_and_store_is_unchanged(store: Store) -> None:
     store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0}).result()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1").close()).result()  # as large as it is now
     with raises_code(StoreError, "disk-full"):
@@ -181,13 +183,13 @@ def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
     assert store.programs.save_version("big", b"G90\n" * 100000, "x").result() == 1
 
 
-def test_closed_store_refuses_questions(store: Store) -> None:
+def test_closed_store_rejects_reads(store: Store) -> None:
     store.close()
     with raises_code(StoreError, "closed"):
         store.offsets.tool_offsets.read_rows()
 
 
-def test_a_new_folder_is_on_the_disk_under_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_new_folder_is_synced_with_its_parents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A power cut took the folder, and the store in it, that had been acknowledged."""
     brought = list[Path]()
     monkeypatch.setattr(file_replacement, "sync_folder", brought.append)
@@ -195,13 +197,13 @@ def test_a_new_folder_is_on_the_disk_under_its_name(tmp_path: Path, monkeypatch:
     assert {tmp_path, tmp_path / "shop", tmp_path / "shop" / "home"} <= set(brought)
 
 
-def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
+def test_folder_that_cannot_be_created_is_reported(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with raises_code(StoreError, "cannot-make-folder"):
         Store.open(tmp_path / "file" / "home")
 
 
-def test_migration_is_whole_or_not_at_all() -> None:
+def test_migration_is_complete_or_rolled_back() -> None:
     first, *_ = scripts = (*database.load_migrations(), "CREATE TABLE extra (a); SELECT nonsense;")
     connection = store_connection.configure_connection(sqlite3.connect(":memory:", isolation_level=None))
     with raises_code(StoreError, "migration-failed", f"version {len(scripts)}"):
@@ -214,7 +216,7 @@ def test_migration_is_whole_or_not_at_all() -> None:
     connection.close()
 
 
-def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_older_store_is_migrated_and_a_copy_is_saved(closed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     newer = (*database.load_migrations(), "CREATE TABLE extra (a);")
     monkeypatch.setattr(database, "load_migrations", lambda: newer)
     with raises_code(StoreError, "older-version"):
@@ -238,7 +240,7 @@ def as_nobody() -> Iterator[None]:
         os.seteuid(0)
 
 
-def test_a_folder_that_this_user_may_not_look_into_is_told(closed: Path) -> None:
+def test_folder_without_read_permission_is_reported(closed: Path) -> None:
     """Not a traceback, and not that there is no store."""
     folder = closed.parent
     folder.chmod(0o700)
@@ -277,9 +279,7 @@ def locks_held(path: Path) -> int:
 
 @pytest.mark.skipif(os.name != "posix", reason="locks that a process loses are those of POSIX")
 @pytest.mark.parametrize("look", ["backup", "verify", "read", "in use"])
-def test_an_open_store_keeps_sqlites_locks_whatever_else_the_desk_does(
-    folder: Path, tmp_path: Path, look: str
-) -> None:
+def test_open_store_retains_its_sqlite_locks(folder: Path, tmp_path: Path, look: str) -> None:
     """Without them the next other program that opens the store takes its log, and all that is saved later."""
     path = folder / STORE_FILE_NAME
     with Store.open(folder) as store:
@@ -297,7 +297,7 @@ def test_an_open_store_keeps_sqlites_locks_whatever_else_the_desk_does(
 
 
 @pytest.mark.skipif(os.name != "posix", reason="locks that a process loses are those of POSIX")
-def test_another_program_that_reads_an_open_store_leaves_its_log(folder: Path, tmp_path: Path) -> None:
+def test_reader_in_another_program_does_not_remove_the_log(folder: Path, tmp_path: Path) -> None:
     """What is saved behind that would be gone with a desk that is killed."""
     look = "import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute('SELECT * FROM runs'); c.close()"
     with Store.open(folder) as store:
@@ -308,9 +308,7 @@ def test_another_program_that_reads_an_open_store_leaves_its_log(folder: Path, t
         assert (folder / f"{STORE_FILE_NAME}-wal").stat().st_ino == log
 
 
-def test_who_asks_for_the_owner_keeps_no_writer_from_its_lock(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_owner_query_does_not_block_a_writer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """At the instant at which another process asks, the lock can be taken."""
     WriterLock(tmp_path).close()
     took: list[bool] = []
@@ -328,7 +326,7 @@ def test_who_asks_for_the_owner_keeps_no_writer_from_its_lock(
     assert took == [True]
 
 
-def test_a_store_with_a_writer_is_in_use_and_one_without_is_not(tmp_path: Path) -> None:
+def test_store_is_in_use_only_while_it_has_a_writer(tmp_path: Path) -> None:
     assert not is_open_for_writing(tmp_path)
     lock = WriterLock(tmp_path)
     assert is_open_for_writing(tmp_path)
@@ -336,7 +334,7 @@ def test_a_store_with_a_writer_is_in_use_and_one_without_is_not(tmp_path: Path) 
     assert not is_open_for_writing(tmp_path)
 
 
-def test_a_writer_tries_again_for_a_lock_that_is_taken_for_an_instant(tmp_path: Path) -> None:
+def test_writer_retries_a_lock_that_is_briefly_in_use(tmp_path: Path) -> None:
     first, pauses = WriterLock(tmp_path), list[float]()
 
     def pause(seconds: float) -> None:

@@ -65,7 +65,7 @@ def no_longer_than(size: int) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("writer", WRITERS)
-def test_a_cut_at_every_step_leaves_the_old_one_or_the_new_one(tmp_path: Path, writer: str) -> None:
+def test_power_cut_at_any_step_leaves_old_or_new_content(tmp_path: Path, writer: str) -> None:
     path, write = tmp_path / "part.nc.draft", WRITERS[writer]
     write(path, NEW)
     after = path.read_bytes()
@@ -82,7 +82,7 @@ def test_a_cut_at_every_step_leaves_the_old_one_or_the_new_one(tmp_path: Path, w
 
 
 @pytest.mark.parametrize("writer", WRITERS)
-def test_a_disk_that_ends_at_any_byte_leaves_the_old_one(tmp_path: Path, writer: str) -> None:
+def test_full_disk_at_any_byte_leaves_old_content(tmp_path: Path, writer: str) -> None:
     path, write = tmp_path / "part.nc.draft", WRITERS[writer]
     write(path, OLD)
     before = path.read_bytes()
@@ -96,21 +96,21 @@ def test_a_disk_that_ends_at_any_byte_leaves_the_old_one(tmp_path: Path, writer:
         assert [each.name for each in tmp_path.iterdir()] == [path.name]
 
 
-def test_what_an_earlier_cut_has_left_is_written_over(tmp_path: Path) -> None:
+def test_remains_of_earlier_power_cut_are_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "status.json"
     path.with_name(".status.json.new").write_bytes(b"{half")
     write_atomically(path, NEW)
     assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == {"status.json": NEW}
 
 
-def test_a_folder_that_is_made_for_a_file_is_on_the_disk_too(tmp_path: Path) -> None:
+def test_folder_created_for_a_file_is_synced_too(tmp_path: Path) -> None:
     with mains() as at:
         write_atomically(tmp_path / "home" / "drafts" / "a.draft", NEW)
     assert at.lost == []
     assert at.steps == ["fsync", "fsync", "fsync", "rename", "fsync"]  # two folders, the bytes, the name
 
 
-def test_a_new_program_is_there_whole_or_not(tmp_path: Path) -> None:
+def test_new_program_is_complete_or_absent_after_power_cut(tmp_path: Path) -> None:
     path = tmp_path / "new.nc"
 
     def again() -> None:
@@ -122,7 +122,7 @@ def test_a_new_program_is_there_whole_or_not(tmp_path: Path) -> None:
     assert told[-1] == NEW
 
 
-def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
+def test_scope_recording_is_complete_after_power_cut(tmp_path: Path) -> None:
     def record(at: float) -> ScopeRecord:
         return ScopeRecord((Channel("X", "mm"),), np.arange(3.0), {"X": np.full(3, at)}, at, 1000.0)
 
@@ -140,7 +140,7 @@ def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
     assert open_record(tmp_path / "a.scope").start_time_utc_s == 2.0
 
 
-def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> None:
+def test_export_is_a_complete_folder_or_absent(tmp_path: Path, store: Store) -> None:
     store.programs.save_version("pin.nc", NEW, "saved").result()
     folder, number = tmp_path / "export", iter(range(99))
 
@@ -158,7 +158,7 @@ def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> No
     assert (folder / "runs.csv").read_text().startswith("program,parts,started,")
 
 
-def test_a_writer_that_forgets_the_disk_is_found_out(tmp_path: Path) -> None:
+def test_writer_without_sync_is_detected(tmp_path: Path) -> None:
     beside = tmp_path / "beside"
 
     def careless() -> None:

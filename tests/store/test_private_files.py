@@ -33,7 +33,7 @@ def modes(folder: Path) -> dict[str, int]:
     return {path.name: mode(path) for path in folder.iterdir()}
 
 
-def test_a_new_folder_is_its_owners(folder: Path, tmp_path: Path) -> None:
+def test_new_folder_is_private_to_its_owner(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         store.settings.save_setting("a", 1).result()
         assert {f"{STORE_FILE_NAME}-wal", f"{STORE_FILE_NAME}-shm", "turndesk.lock"} < set(modes(folder))
@@ -42,7 +42,7 @@ def test_a_new_folder_is_its_owners(folder: Path, tmp_path: Path) -> None:
     assert (mode(folder), mode(tmp_path / "b.db")) == (0o700, 0o600)
 
 
-def test_a_folder_that_others_could_read_is_tightened_when_it_is_opened(folder: Path) -> None:
+def test_access_to_readable_folder_is_restricted_on_opening(folder: Path) -> None:
     with Store.open(folder):
         pass
     for name in ("logs", "backups"):
@@ -56,7 +56,7 @@ def test_a_folder_that_others_could_read_is_tightened_when_it_is_opened(folder: 
         assert {mode(path) for path in folder.rglob("*") if path.is_file()} == {0o600}
 
 
-def test_what_a_restore_keeps_is_the_owners_too(folder: Path, tmp_path: Path) -> None:
+def test_files_saved_by_restore_are_private_too(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder):
         pass
     backup.back_up_store(folder, tmp_path / "b.db")
@@ -67,7 +67,7 @@ def test_what_a_restore_keeps_is_the_owners_too(folder: Path, tmp_path: Path) ->
     assert (mode(kept), mode(folder / STORE_FILE_NAME), mode(folder)) == (0o600, 0o600, 0o700)
 
 
-def test_a_folder_of_all_users_and_what_is_not_there_stay(tmp_path: Path) -> None:
+def test_shared_and_missing_folders_are_unchanged(tmp_path: Path) -> None:
     shared = tmp_path / "shared"
     shared.mkdir()
     shared.chmod(0o1777)
@@ -77,7 +77,7 @@ def test_a_folder_of_all_users_and_what_is_not_there_stay(tmp_path: Path) -> Non
     assert mode(shared) == 0o1777
 
 
-def test_what_a_link_leads_to_stays_as_it_is(tmp_path: Path) -> None:
+def test_target_of_symbolic_link_is_unchanged(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").touch(0o644)
     folder = tmp_path / "home"
     folder.mkdir()

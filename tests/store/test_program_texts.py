@@ -45,7 +45,7 @@ def own(tmp_path: Path) -> Path:
     return folder
 
 
-def test_another_text_under_the_same_name_has_no_proof_count_or_time(own: Path, tmp_path: Path) -> None:
+def test_different_text_with_same_name_has_no_proof_count_or_time(own: Path, tmp_path: Path) -> None:
     journal, path = Journal(tmp_path / "store"), own / "pin.nc"
     path.write_text(GOOD)
     made(journal, path, 3, 12.5)
@@ -63,7 +63,7 @@ def test_another_text_under_the_same_name_has_no_proof_count_or_time(own: Path, 
     journal.close()
 
 
-def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> None:
+def test_copied_and_renamed_programs_retain_proof_count_and_time(own: Path, tmp_path: Path) -> None:
     journal, path = Journal(tmp_path / "store"), own / "pin.nc"
     path.write_text(GOOD)
     made(journal, path, 2, 9.0)
@@ -78,7 +78,7 @@ def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> 
     journal.close()
 
 
-def test_a_proof_of_another_text_is_not_that_of_the_loaded_one(own: Path, tmp_path: Path) -> None:
+def test_proof_of_another_text_is_not_used_for_loaded_text(own: Path, tmp_path: Path) -> None:
     journal, path = Journal(tmp_path / "store"), own / "pin.nc"
     path.write_text(GOOD)
     made(journal, path, 1, 9.0)
@@ -103,7 +103,7 @@ def test_a_job_retains_its_parts_when_the_text_is_edited(tmp_path: Path) -> None
         assert (row.parts_made, row.target_part_count) == (5, 6)
 
 
-def test_records_stored_by_name_go_to_the_text_that_was_proved(
+def test_records_stored_by_name_are_assigned_to_the_proved_text(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A store of an older version, in which the name was the key."""

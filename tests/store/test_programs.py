@@ -21,26 +21,26 @@ def test_every_save_is_a_version(store: Store) -> None:
     assert [(row.name, row.version) for row in store.programs.list_programs()] == [("PIN.nc", 2)]
 
 
-def test_the_same_text_makes_no_new_version(store: Store) -> None:
+def test_identical_text_creates_no_new_version(store: Store) -> None:
     store.programs.save_version("a", b"G90", "x")
     assert store.programs.save_version("a", b"G90", "again").result() == 1
     assert len(store.programs.list_versions("a")) == 1
 
 
-def test_going_back_to_an_old_text_is_a_version(store: Store) -> None:
+def test_return_to_an_old_text_creates_a_version(store: Store) -> None:
     for text in (b"1", b"2", b"1"):
         store.programs.save_version("a", text, "x").result()
     assert [row.number for row in store.programs.list_versions("a")] == [3, 2, 1]
 
 
-def test_bytes_survive_whatever_they_are(store: Store) -> None:
+def test_arbitrary_bytes_are_saved_unchanged(store: Store) -> None:
     text = bytes(range(256))
     store.programs.save_version("odd", text, "x").result()
     assert store.programs.load_version("odd") == text
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a"])
-def test_name_that_is_no_file_name_is_refused(store: Store, name: str) -> None:
+def test_invalid_file_name_is_rejected(store: Store, name: str) -> None:
     with raises_code(StoreError, "invalid-name"):
         store.programs.save_version(name, b"", "x").result()
     assert store.programs.list_programs() == ()
@@ -55,7 +55,7 @@ def test_missing_program_and_version_are_refused(store: Store) -> None:
     assert store.programs.list_versions("b") == ()
 
 
-def test_spoilt_text_is_not_handed_out(store: Store) -> None:
+def test_damaged_text_is_not_returned(store: Store) -> None:
     store.programs.save_version("a", b"X1.000", "x").result()
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
     with raises_code(StoreError, "damaged-version"):
@@ -79,7 +79,7 @@ def test_parts_are_counted_by_program(store: Store) -> None:
     assert (store.runs.read_part_count("a"), store.runs.read_part_count("b")) == (0, 1)
 
 
-def test_events_newest_first_and_searched(store: Store) -> None:
+def test_events_are_listed_newest_first_and_searched(store: Store) -> None:
     rows = [EventRow("2026-01-01T00:00:00.000Z", "alarm", "X following error", 12, "one-alarm102.scope")]
     rows.append(EventRow("2026-01-01T00:00:01.000Z", "start", "PIN.nc"))
     store.events.log_events(rows)
@@ -90,21 +90,21 @@ def test_events_newest_first_and_searched(store: Store) -> None:
     assert len(store.events.read_events(limit=1)) == 1
 
 
-def test_settings_are_json(store: Store) -> None:
+def test_settings_are_stored_as_json(store: Store) -> None:
     store.settings.save_setting("theme", {"dark": True, "size": [1, 2]}).result()
     assert store.settings.read_setting("theme") == {"dark": True, "size": [1, 2]}
     store.settings.save_setting("theme", None).result()
     assert store.settings.read_setting("theme") is None
 
 
-def test_setting_that_is_no_json_is_refused(store: Store) -> None:
+def test_setting_that_is_not_json_is_rejected(store: Store) -> None:
     with raises_code(StoreError, "unstorable-setting", "theme"):
         store.settings.save_setting("theme", object()).result()
     with raises_code(StoreError, "unstorable-setting", "pot"):
         store.settings.save_setting("pot", float("nan")).result()
 
 
-def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store) -> None:
+def test_failed_operation_is_rolled_back_and_writer_continues(store: Store) -> None:
     def breaks(connection: object) -> None:
         raise KeyError("a bug")
 
@@ -117,7 +117,7 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
     assert store.settings.read_setting("k") is None
 
 
-def test_half_of_an_import_is_none_of_it(store: Store) -> None:
+def test_failed_import_imports_nothing(store: Store) -> None:
     with raises_code(StoreError, "invalid-name"):
         store.write(
             lambda c: import_programs_and_offsets(
@@ -133,7 +133,7 @@ def test_closed_store_refuses_writes(store: Store) -> None:
         store.events.log_event("start", "late")
 
 
-def test_a_count_is_corrected_by_hand_and_never_below_nought(store: Store) -> None:
+def test_part_count_is_corrected_by_hand_and_never_negative(store: Store) -> None:
     store.runs.add_parts("a", 2).result()
     assert store.runs.read_part_count("a") == 2
     store.runs.add_parts("a")

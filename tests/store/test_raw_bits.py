@@ -63,7 +63,7 @@ def spoil_page(folder: Path, root: str, before: bytes, after: bytes) -> None:
 # --- indexes -----------------------------------------------------------------------------------------------
 
 
-def test_an_index_that_is_damaged_hides_nothing_and_is_made_anew(kept: Path) -> None:
+def test_damaged_index_is_rebuilt_and_hides_nothing(kept: Path) -> None:
     spoil_page(kept, "sqlite_autoindex_settings_1", b"units", b"unitr")
     spoil_page(kept, "sqlite_autoindex_part_counts_1", b"pin.nc", b"pin.nb")
     assert "missing from index" in backup.find_problems(kept / STORE_FILE_NAME)[0]
@@ -81,7 +81,7 @@ def test_an_index_that_is_damaged_hides_nothing_and_is_made_anew(kept: Path) -> 
     assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
 
 
-def test_an_index_over_two_rows_of_one_key_is_a_damaged_file(kept: Path) -> None:
+def test_duplicate_keys_under_an_index_are_file_damage(kept: Path) -> None:
     spoil_page(kept, "settings", b"units", b"unitz")
     spoil_page(kept, "sqlite_autoindex_settings_1", b"units", b"unitq")
     spoil(kept, "INSERT INTO settings VALUES ('unitz', '1')")
@@ -105,7 +105,7 @@ def test_an_index_over_two_rows_of_one_key_is_a_damaged_file(kept: Path) -> None
         "number = 4",
     ],
 )
-def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, damage: str) -> None:
+def test_damaged_history_entry_undoes_nothing(kept: Path, damage: str) -> None:
     spoil(kept, f"UPDATE offset_changes SET {damage} WHERE id = 2")
     assert backup.find_problems(kept / STORE_FILE_NAME) == ()
     [told] = backup.find_all_problems(kept / STORE_FILE_NAME)
@@ -118,14 +118,14 @@ def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, dam
         }
 
 
-def test_an_entry_that_has_gone_is_missed(kept: Path) -> None:
+def test_deleted_history_entry_is_detected(kept: Path) -> None:
     spoil(kept, "DELETE FROM offset_changes WHERE id = 2")
     assert backup.find_all_problems(kept / STORE_FILE_NAME)[0].startswith(make_row_label("offset_changes", 2))
     with Store.open(kept) as store, raises_code(StoreError, "damaged-history", "entry 2"):
         store.offsets.tool_offsets.undo_last_step().result()
 
 
-def test_behind_a_damaged_entry_there_is_a_history_again(kept: Path, tmp_path: Path) -> None:
+def test_history_is_usable_after_a_damaged_entry(kept: Path, tmp_path: Path) -> None:
     spoil(kept, "UPDATE offset_changes SET old_x = -25.4 WHERE id = 2")
     with Store.open(kept) as store:
         store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.03}).result()
@@ -142,7 +142,7 @@ def test_behind_a_damaged_entry_there_is_a_history_again(kept: Path, tmp_path: P
 # --- counts of runs, features, readings --------------------------------------------------------------------
 
 
-def test_a_count_that_is_not_believed_is_shown_nowhere(kept: Path) -> None:
+def test_damaged_part_count_is_not_shown(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET count = 168")
     with Store.open(kept) as store:
         assert [(row.program, row.parts, row.cycles) for row in store.runs.read_records()] == [
@@ -153,7 +153,7 @@ def test_a_count_that_is_not_believed_is_shown_nowhere(kept: Path) -> None:
     assert told.startswith(make_row_label("part_counts", "pin.nc"))
 
 
-def test_a_record_of_runs_that_was_flipped_begins_anew(kept: Path) -> None:
+def test_damaged_run_record_is_restarted(kept: Path) -> None:
     spoil(kept, "UPDATE runs SET best = 1.25")
     with Store.open(kept, read_only=True) as store:
         assert store.runs.read_records() == (RunRow("pin.nc", 40),)
@@ -169,7 +169,7 @@ def test_a_record_of_runs_that_was_flipped_begins_anew(kept: Path) -> None:
     ("damage", "readings"),
     [("nominal = 12.5", 2), ("grows = -1", 2), ("number = 19", 2), ("grows = 7", 0), ("nominal = 'x'", 0)],
 )
-def test_a_feature_that_was_flipped_proposes_no_wear(kept: Path, damage: str, readings: int) -> None:
+def test_damaged_feature_proposes_no_wear(kept: Path, damage: str, readings: int) -> None:
     spoil(kept, f"UPDATE part_features SET {damage}")
     assert backup.find_problems(kept / STORE_FILE_NAME)
     with Store.open(kept) as store:
@@ -184,7 +184,7 @@ def test_a_feature_that_was_flipped_proposes_no_wear(kept: Path, damage: str, re
     assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
 
 
-def test_a_reading_that_was_flipped_counts_no_more(kept: Path) -> None:
+def test_damaged_reading_is_not_counted(kept: Path) -> None:
     spoil(kept, "UPDATE part_readings SET value = 12.104 WHERE id = 2")
     with Store.open(kept) as store, store.read() as connection:
         assert [row.value for row in measured_parts.read_readings(connection, "pin.nc", 9)] == [12.001]
@@ -193,7 +193,7 @@ def test_a_reading_that_was_flipped_counts_no_more(kept: Path) -> None:
     assert told.startswith(make_row_label("part_readings", 2))
 
 
-def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
+def test_text_with_damaged_type_is_not_used(kept: Path) -> None:
     spoil(kept, "UPDATE tool_offsets SET remark = CAST(remark AS BLOB)")
     spoil(kept, "UPDATE settings SET value = CAST(value AS BLOB)")
     with Store.open(kept, read_only=True) as store:
@@ -204,7 +204,7 @@ def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
         assert told.startswith(make_row_label("settings", "units"))
 
 
-def test_a_sum_whose_key_is_no_text_any_more_is_told(kept: Path) -> None:
+def test_checksum_with_damaged_key_type_is_reported(kept: Path) -> None:
     """The setting read as never set, and nobody said so."""
     spoil(kept, "UPDATE row_sums SET key = CAST(key AS BLOB) WHERE tbl = 'settings'")
     assert len(backup.find_problems(kept / STORE_FILE_NAME)) == 2
@@ -217,7 +217,7 @@ def test_a_sum_whose_key_is_no_text_any_more_is_told(kept: Path) -> None:
     assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
 
 
-def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> None:
+def test_rows_swapped_with_their_checksums_are_not_used(kept: Path) -> None:
     """The number of a tool is in its sum."""
     with Store.open(kept) as store:
         store.offsets.tool_offsets.change_row(5, "touched", {"x": -25.4, "z": -5.0}).result()
@@ -275,7 +275,7 @@ def told_of(kept: Path) -> Path:
         ("shared_versions", "published = 1"),
     ],
 )
-def test_what_verify_calls_whole_is_whole(told_of: Path, table: str, damage: str) -> None:
+def test_verify_reports_damage_in_any_table(told_of: Path, table: str, damage: str) -> None:
     """Texts of events and rows of versions were looked at by nobody."""
     spoil(told_of, f"UPDATE {table} SET {damage} WHERE rowid = (SELECT max(rowid) FROM {table})")
     with closing(sqlite3.connect(told_of / STORE_FILE_NAME)) as connection:
@@ -288,12 +288,12 @@ def test_what_verify_calls_whole_is_whole(told_of: Path, table: str, damage: str
 
 
 @pytest.mark.parametrize("table", ["events", "programs", "part_cycles", "shared_here"])
-def test_a_row_that_has_gone_is_missed(told_of: Path, table: str) -> None:
+def test_deleted_row_is_detected(told_of: Path, table: str) -> None:
     spoil(told_of, f"DELETE FROM {table} WHERE rowid = (SELECT max(rowid) FROM {table})")
     assert backup.find_all_problems(told_of / STORE_FILE_NAME)
 
 
-def test_every_table_has_sums(folder: Path) -> None:
+def test_every_table_has_checksums(folder: Path) -> None:
     """A new table comes to the list of them."""
     with Store.open(folder) as store, store.read() as connection:
         tables = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
@@ -305,7 +305,7 @@ def test_every_table_has_sums(folder: Path) -> None:
 # --- tables as they are made, and stores of before ---------------------------------------------------------
 
 
-def test_a_usual_value_of_a_column_that_was_flipped_is_told(kept: Path) -> None:
+def test_damaged_default_value_of_column_is_reported(kept: Path) -> None:
     content = (kept / STORE_FILE_NAME).read_bytes()
     assert content.count(b"DEFAULT 0.9 ") == 1
     (kept / STORE_FILE_NAME).write_bytes(content.replace(b"DEFAULT 0.9 ", b"DEFAULT 0.1 "))
@@ -313,7 +313,7 @@ def test_a_usual_value_of_a_column_that_was_flipped_is_told(kept: Path) -> None:
     assert told == SCHEMA_CHANGED_MESSAGE
 
 
-def test_a_store_of_before_gets_sums_for_its_histories(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_older_store_gets_checksums_for_its_histories(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What was damaged before stays so, and what had no sum yet is believed as it is."""
     with closing(sqlite3.connect(kept / STORE_FILE_NAME)) as connection:
         later = [

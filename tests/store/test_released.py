@@ -70,12 +70,12 @@ def test_a_changed_value_without_a_history_is_not_used(file: Path, folder: Path)
         assert len(store.find_damaged_rows()) == 1
 
 
-def test_every_released_version_has_its_store() -> None:
+def test_every_released_version_has_a_sample_store() -> None:
     released = {each.version for each in releases((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))}
     assert (released - {UNRELEASED}) | {VERSION} <= {path.stem for path in FILES}
 
 
-def test_the_file_of_this_version_is_what_this_version_writes(tmp_path: Path, folder: Path) -> None:
+def test_sample_store_of_this_version_is_what_it_writes(tmp_path: Path, folder: Path) -> None:
     """Until its release, a version may change; the file must follow."""
     assert main([str(tmp_path)]) == 0
     made = (tmp_path / f"{VERSION}.sql").read_text(encoding="utf-8")

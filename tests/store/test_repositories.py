@@ -65,7 +65,7 @@ def test_each_table_changes_only_its_own_rows(store: Store, kind: OffsetKind) ->
     assert store.offsets.get_table(kind).read_rows() == {}
 
 
-def test_jobs_move_to_their_place_and_an_unknown_one_is_refused(store: Store) -> None:
+def test_jobs_move_to_position_and_unknown_job_is_rejected(store: Store) -> None:
     first, second = (store.jobs.add_job(name, 5).result() for name in ("a.nc", "b.nc"))
     store.jobs.move_job(second, 1).result()
     assert [row.id for row in store.jobs.read_jobs()] == [second, first]
@@ -88,7 +88,7 @@ def test_the_last_user_of_service_level_is_not_removed(store: Store) -> None:
     assert store.people.remove_all_users().result() == 2
 
 
-def test_a_rename_transfers_the_text_that_is_loaded(store: Store) -> None:
+def test_rename_transfers_the_loaded_text(store: Store) -> None:
     store.programs.save_loaded_version("a.nc", b"M30", "loaded to run").result()
     store.programs.rename_program("a.nc", "b.nc").result()
     store.runs.add_parts("b.nc", 2).result()
@@ -96,7 +96,7 @@ def test_a_rename_transfers_the_text_that_is_loaded(store: Store) -> None:
     assert len(store.runs.read_records_by_text()) == 1
 
 
-def test_without_a_store_records_are_dropped_and_changes_refused() -> None:
+def test_records_are_dropped_and_changes_rejected_without_store() -> None:
     nothing = Persistence()
     nothing.runs.add_parts("a.nc", 3)
     assert (nothing.runs.read_part_count("a.nc"), nothing.runs.read_records_by_text()) == (0, {})

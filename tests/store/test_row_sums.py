@@ -59,13 +59,13 @@ def flip(folder: Path, table: str, column: str, where: str) -> None:
         connection.execute(f"UPDATE {table} SET {column} = ? WHERE {where}", (flipped(before),))
 
 
-def test_what_is_whole_is_told_whole(kept: Path) -> None:
+def test_undamaged_store_has_no_problems(kept: Path) -> None:
     assert backup.find_problems(kept / FILE) == ()
     with Store.open(kept) as store:
         assert (store.repair_messages, store.find_damaged_rows()) == ((), ())
 
 
-def test_a_flipped_bit_is_no_other_offset(kept: Path) -> None:
+def test_flipped_bit_is_not_used_as_an_offset(kept: Path) -> None:
     flip(kept, "tool_offsets", "z", "number = 3")
     with Store.open(kept, read_only=True) as store:
         assert set(store.offsets.tool_offsets.read_rows()) == {1}
@@ -74,7 +74,7 @@ def test_a_flipped_bit_is_no_other_offset(kept: Path) -> None:
     assert backup.find_problems(kept / FILE)[0].startswith("T3 ")
 
 
-def test_the_history_puts_it_right_when_the_desk_opens(kept: Path) -> None:
+def test_history_repairs_offset_when_store_opens(kept: Path) -> None:
     flip(kept, "tool_offsets", "z", "number = 3")
     with Store.open(kept) as store:
         assert store.offsets.tool_offsets.read_rows()[3] == ToolRow(-12.7, -2.5, remark="FINISHER")
@@ -85,14 +85,14 @@ def test_the_history_puts_it_right_when_the_desk_opens(kept: Path) -> None:
         assert store.repair_messages == ()
 
 
-def test_a_row_that_has_gone_comes_back(kept: Path) -> None:
+def test_deleted_row_is_restored(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("DELETE FROM tool_offsets WHERE number = 1")
     with Store.open(kept) as store:
         assert store.offsets.tool_offsets.read_rows()[1] == ToolRow(1.0, 2.0)
 
 
-def test_a_damaged_sum_loses_nothing(kept: Path) -> None:
+def test_damaged_checksum_loses_nothing(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("UPDATE row_sums SET sha256 = 'ab' || substr(sha256, 3)")
     with Store.open(kept) as store:
@@ -100,7 +100,7 @@ def test_a_damaged_sum_loses_nothing(kept: Path) -> None:
         assert store.offsets.secondary_offsets.read_rows()[2].x == 0.01
 
 
-def test_a_row_and_its_history_damaged_alike_are_not_believed(kept: Path) -> None:
+def test_row_and_history_with_same_damage_are_not_used(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("UPDATE tool_offsets SET x = 5.0 WHERE number = 3")
         connection.execute("UPDATE offset_changes SET new_x = 6.0 WHERE number = 3")
@@ -119,7 +119,7 @@ def test_nothing_is_proved_with_a_damaged_offset(kept: Path, monkeypatch: pytest
         read_stored_offsets()
 
 
-def test_a_mill_is_not_moved_to_another_zero(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_damaged_mill_preset_is_rejected(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(kept))
     with Store.open(kept) as store:
         store.settings.save_setting("preset", 3).result()
@@ -131,7 +131,7 @@ def test_a_mill_is_not_moved_to_another_zero(kept: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("damage", ["'abc'", "x'ff00'", "NULL || ''"])
-def test_a_value_of_another_type_is_refused_by_itself(kept: Path, damage: str) -> None:
+def test_value_of_wrong_type_rejects_only_its_own_row(kept: Path, damage: str) -> None:
     with outside(kept) as connection:
         connection.execute("PRAGMA ignore_check_constraints = ON")
         connection.execute(f"UPDATE tool_offsets SET x = coalesce({damage}, '') WHERE number = 3")
@@ -139,7 +139,7 @@ def test_a_value_of_another_type_is_refused_by_itself(kept: Path, damage: str) -
         assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 2.0)}
 
 
-def test_a_text_that_is_none_any_more_hides_no_other_row(kept: Path) -> None:
+def test_text_of_wrong_type_hides_no_other_row(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("UPDATE tool_offsets SET remark = CAST(x'46ff4e' AS TEXT) WHERE number = 3")
         connection.execute("UPDATE settings SET value = CAST(x'22ff22' AS TEXT) WHERE key = 'units'")
@@ -150,7 +150,7 @@ def test_a_text_that_is_none_any_more_hides_no_other_row(kept: Path) -> None:
         assert store.offsets.tool_offsets.read_rows()[3].remark == "FINISHER"
 
 
-def test_settings_counts_and_lives_are_not_believed_either(kept: Path) -> None:
+def test_damaged_settings_counts_and_tool_lives_are_not_used(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("UPDATE settings SET value = '\"inch\"' WHERE key = 'units'")
         connection.execute("UPDATE part_counts SET count = 66")
@@ -182,7 +182,7 @@ def test_many_changes_in_one_transaction_see_each_other(kept: Path) -> None:
         assert store.find_damaged_rows() == ()
 
 
-def test_a_transaction_taken_back_takes_its_sums_back(kept: Path) -> None:
+def test_rollback_also_reverts_checksums(kept: Path) -> None:
     def fails(connection: sqlite3.Connection) -> None:
         connection.execute("UPDATE tool_offsets SET x = 9 WHERE number = 1")
         raise ZeroDivisionError
@@ -194,7 +194,7 @@ def test_a_transaction_taken_back_takes_its_sums_back(kept: Path) -> None:
         assert store.offsets.tool_offsets.read_rows()[1].x == 1.0
 
 
-def test_a_program_that_is_renamed_keeps_whole_rows(kept: Path) -> None:
+def test_renamed_program_retains_valid_rows(kept: Path) -> None:
     with Store.open(kept) as store:
         store.programs.save_version("pin.nc", b"M30\n", "kept").result()
         store.settings.save_setting(make_stock_setting_key("pin.nc"), "bar:1").result()
@@ -204,7 +204,7 @@ def test_a_program_that_is_renamed_keeps_whole_rows(kept: Path) -> None:
         assert store.find_damaged_rows() == ()
 
 
-def test_an_older_store_gets_its_sums(tmp_path: Path) -> None:
+def test_older_store_gets_checksums(tmp_path: Path) -> None:
     old = database.load_migrations()[:10]
     with closing(sqlite3.connect(tmp_path / FILE, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
@@ -219,7 +219,7 @@ def test_an_older_store_gets_its_sums(tmp_path: Path) -> None:
         assert len(store.find_damaged_rows()) == 1
 
 
-def test_what_was_damaged_before_a_newer_version_stays_so(kept: Path) -> None:
+def test_damage_before_migration_remains_detected(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("UPDATE tool_lives SET parts = 8")
     newer = (*database.load_migrations(), "ALTER TABLE tool_lives ADD COLUMN more REAL NOT NULL DEFAULT 0;")
@@ -230,14 +230,12 @@ def test_what_was_damaged_before_a_newer_version_stays_so(kept: Path) -> None:
         assert row_checksums.find_all_broken_rows(connection) == frozenset()
 
 
-def test_a_life_is_read_as_it_was_kept(kept: Path) -> None:
+def test_tool_life_is_read_as_saved(kept: Path) -> None:
     with Store.open(kept) as store, store.read() as connection:
         assert read_tool_lives(connection)[3] == ToolLifeRow(3, parts=40, seconds=120.5)
 
 
-def test_what_is_saved_between_a_row_and_its_sum_damages_nothing(
-    kept: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_concurrent_save_does_not_look_like_damage(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A wear entered while the desk reads its offsets: they are those of before, or those behind it."""
     with Store.open(kept) as store:
         sums = row_checksums._sums

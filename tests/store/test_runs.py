@@ -22,14 +22,14 @@ def store(tmp_path: Path) -> Iterator[Store]:
         yield store
 
 
-def test_no_time_at_all_is_no_best_cycle(store: Store) -> None:
+def test_cycle_time_of_zero_is_not_the_best(store: Store) -> None:
     """As older versions kept it of parts that a restart had finished."""
     for seconds in (0.0, 31.5, 32.0):
         store.runs.record_cycle("pin.nc", seconds).result()
     assert store.runs.read_records()[0].best == 31.5
 
 
-def test_best_and_latest_cycle(store: Store) -> None:
+def test_best_and_latest_cycle_are_recorded(store: Store) -> None:
     for seconds in (31.5, 29.25, 30.0):
         store.runs.record_cycle("pin.nc", seconds)
     store.runs.record_start("pin.nc")
@@ -39,7 +39,7 @@ def test_best_and_latest_cycle(store: Store) -> None:
     assert row.started is not None
 
 
-def test_a_program_that_was_only_counted_or_only_proved_is_there_too(store: Store) -> None:
+def test_program_that_was_only_counted_or_proved_is_listed(store: Store) -> None:
     store.runs.add_parts("counted.nc")
     store.runs.record_proof("proved.nc", "PROVED", 12.5).result(60)
     rows = {row.program: row for row in store.runs.read_records()}
@@ -47,7 +47,7 @@ def test_a_program_that_was_only_counted_or_only_proved_is_there_too(store: Stor
     assert (rows["proved.nc"].proof, rows["proved.nc"].planned) == ("PROVED", 12.5)
 
 
-def test_everything_goes_with_another_name(store: Store) -> None:
+def test_renamed_program_retains_its_data(store: Store) -> None:
     store.programs.save_version("old.nc", b"M30", "test")
     store.runs.add_parts("old.nc")
     store.runs.record_cycle("old.nc", 10.0)
@@ -58,7 +58,7 @@ def test_everything_goes_with_another_name(store: Store) -> None:
     assert store.programs.list_versions("old.nc") == ()
 
 
-def test_versions_under_the_new_name_are_not_mixed_with_those_of_the_old(store: Store) -> None:
+def test_versions_of_old_and_new_name_are_not_mixed(store: Store) -> None:
     store.programs.save_version("old.nc", b"old", "test")
     store.programs.save_version("new.nc", b"deleted long ago", "test")
     store.programs.rename_program("old.nc", "new.nc").result(60)
@@ -67,14 +67,14 @@ def test_versions_under_the_new_name_are_not_mixed_with_those_of_the_old(store: 
 
 
 @pytest.mark.parametrize("name", ["", "a/b", "..", " x"])
-def test_a_name_that_is_none_is_refused_and_nothing_is_changed(store: Store, name: str) -> None:
+def test_rename_to_invalid_name_is_rejected_and_changes_nothing(store: Store, name: str) -> None:
     store.runs.add_parts("pin.nc").result(60)
     with raises_code(StoreError, "invalid-name"):
         store.programs.rename_program("pin.nc", name).result(60)
     assert store.runs.read_part_count("pin.nc") == 1
 
 
-def test_events_of_some_kinds(store: Store) -> None:
+def test_events_are_filtered_by_kind(store: Store) -> None:
     for kind, text in (("alarm", "Z"), ("start", "pin"), ("alarm", "spindle"), ("end", "pin")):
         store.events.log_event(kind, text).result(60)
     assert [event.text for event in store.events.read_events(kinds={"alarm"})] == ["spindle", "Z"]
@@ -83,7 +83,7 @@ def test_events_of_some_kinds(store: Store) -> None:
     assert store.events.read_events(kinds={"nothing"}) == ()
 
 
-def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> None:
+def test_export_contains_runs_as_csv(store: Store, tmp_path: Path) -> None:
     store.runs.record_start("pin.nc")
     store.runs.record_cycle("pin.nc", 30.5)
     store.runs.record_end("pin.nc", 'ALARM 102, "X"')
@@ -104,13 +104,13 @@ def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> N
     assert (ring["proof"], ring["planned_s"], ring["started"]) == ("2 ERRORS: line 4", "", "")
 
 
-def test_an_export_without_runs_has_the_head_alone(store: Store, tmp_path: Path) -> None:
+def test_export_without_runs_contains_header_only(store: Store, tmp_path: Path) -> None:
     export_store(store, tmp_path / "out")
     told = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
     assert told == ["program,parts,started,outcome,cycles,best_s,latest_s,proved,proof,planned_s"]
 
 
-def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) -> None:
+def test_stock_of_program_is_saved_renamed_and_deleted(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         assert store.settings.read_setting(make_stock_setting_key("PIN")) is None
         store.settings.save_setting(make_stock_setting_key("PIN"), "bar:.5").result()
@@ -127,7 +127,7 @@ def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) ->
             store.settings.save_setting(make_stock_setting_key("KNOB"), "bar:1")
 
 
-def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
+def test_part_settings_follow_renamed_program(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         said = StoredPart("bar:1", 20.0, {"cuts-air": "it waits there"})
         for key, value in said.make_settings("PIN").items():
@@ -137,7 +137,7 @@ def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
         assert load_stored_part(store.settings.read_setting, "KNOB") == said
 
 
-def test_what_nobody_could_have_kept_of_a_part_counts_as_not_there() -> None:
+def test_invalid_part_settings_are_ignored() -> None:
     kept: dict[str, object] = {
         "stock:PIN": 3,
         "part:PIN": {"stick_out": True, "silenced": "all"},

@@ -35,9 +35,7 @@ def spoil(folder: Path, statement: str, *values: object) -> None:
 
 
 @pytest.mark.parametrize("value", ["a\nb", b"\xff", "nought"])
-def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
-    kept: Path, value: object
-) -> None:
+def test_history_entry_that_is_not_a_number_is_reported_and_not_undone(kept: Path, value: object) -> None:
     spoil(kept, "UPDATE offset_changes SET old_x = ? WHERE id = 2", value)
     with Store.open(kept) as store:
         with raises_code(StoreError, "damaged-history", "entry 2"):
@@ -49,7 +47,7 @@ def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
         assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=3.0)}
 
 
-def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
+def test_program_text_that_is_not_bytes_is_damaged(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET text = ?", "G90\nM30\n")
     [problem] = backup.find_problems(kept / STORE_FILE_NAME)
     assert problem.startswith("'pin.nc' version 1 ")
@@ -57,7 +55,7 @@ def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
         store.programs.load_version("pin.nc")
 
 
-def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path) -> None:
+def test_schema_names_that_are_not_text_are_file_damage(kept: Path) -> None:
     path = kept / STORE_FILE_NAME
     content = path.read_bytes()
     at = content.index(b"CREATE INDEX") if b"CREATE INDEX" in content else -1
@@ -70,9 +68,7 @@ def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path)
 
 
 @pytest.mark.parametrize(("word", "of"), [(b"REAL", 2), (b"who", 0)])
-def test_a_type_or_a_name_of_a_column_that_is_no_text_says_what_to_do(
-    kept: Path, word: bytes, of: int
-) -> None:
+def test_damaged_column_type_or_name_is_reported_with_remedy(kept: Path, word: bytes, of: int) -> None:
     """SQLite has no code for it, so it was some other trouble, without a remedy."""
     content = bytearray((kept / STORE_FILE_NAME).read_bytes())
     content[content.index(word, content.index(b"CREATE TABLE offset_changes")) + of] |= 0x80
@@ -81,7 +77,7 @@ def test_a_type_or_a_name_of_a_column_that_is_no_text_says_what_to_do(
         Store.open(kept)
 
 
-def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
+def test_name_with_line_break_stays_on_one_line_of_message(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET program = ?", "a\nb")
     with Store.open(kept) as store:
         [first, *_] = store.find_damaged_rows()
@@ -89,9 +85,7 @@ def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["../pin.nc", "/tmp/pin.nc", b"\xff\x00", "pin\0.nc", ""])
-def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
-    kept: Path, tmp_path: Path, name: object
-) -> None:
+def test_program_name_with_a_path_is_not_exported(kept: Path, tmp_path: Path, name: object) -> None:
     spoil(kept, "UPDATE programs SET name = ?", name)
     with Store.open(kept) as store, raises_code(StoreError, "invalid-name"):
         export_store(store, tmp_path / "out")
@@ -99,7 +93,7 @@ def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
     assert list(tmp_path.rglob("pin*")) == []
 
 
-def test_a_version_whose_number_has_a_line_end_stays_in_its_sentence(kept: Path) -> None:
+def test_version_number_with_line_break_stays_on_one_line_of_message(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET number = ?, text = ?", "a\nb", b"M30\n")
     assert backup.find_problems(kept / STORE_FILE_NAME)[0].startswith("'pin.nc' version a b ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version a b"):
@@ -107,9 +101,7 @@ def test_a_version_whose_number_has_a_line_end_stays_in_its_sentence(kept: Path)
 
 
 @pytest.mark.parametrize("step", [float("inf"), 1e308, 2**63 - 1, "x", b"\xff"])
-def test_an_offset_is_entered_behind_a_step_of_the_history_that_is_no_number(
-    kept: Path, step: object
-) -> None:
+def test_offset_can_be_changed_after_damaged_history_step(kept: Path, step: object) -> None:
     spoil(kept, "UPDATE offset_changes SET step = ? WHERE id = 2", step)
     with Store.open(kept) as store:
         store.offsets.tool_offsets.change_row(1, "worn", {"x": 3.0}).result()
@@ -118,7 +110,7 @@ def test_an_offset_is_entered_behind_a_step_of_the_history_that_is_no_number(
         assert connection.execute("SELECT step FROM offset_changes WHERE id = 3").fetchone() == (2,)
 
 
-def test_a_column_whose_name_is_no_text_is_a_damaged_file(kept: Path, tmp_path: Path) -> None:
+def test_export_stops_at_column_name_that_is_not_text(kept: Path, tmp_path: Path) -> None:
     path = kept / STORE_FILE_NAME
     content = path.read_bytes()
     at = content.index(b"CREATE TABLE tool_lives")

@@ -47,7 +47,7 @@ def good(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(("put", "code"), PLACES)
-def test_it_is_refused_by_name_and_stays(
+def test_invalid_store_file_is_rejected_by_name_and_unchanged(
     put: Callable[[Path], None], code: str, folder: Path, good: Path
 ) -> None:
     """A link whose disk was not mounted was read as a store with nothing in it, and replaced by one."""
@@ -69,7 +69,7 @@ def test_it_is_refused_by_name_and_stays(
     assert look(path) == before
 
 
-def test_a_folder_that_is_a_link_without_a_target_has_no_empty_store(folder: Path) -> None:
+def test_folder_link_without_target_is_not_an_empty_store(folder: Path) -> None:
     folder.symlink_to("/nowhere/home")
     with raises_code(StoreError, "not-found"):
         Store.open(folder, read_only=True)
@@ -77,7 +77,7 @@ def test_a_folder_that_is_a_link_without_a_target_has_no_empty_store(folder: Pat
         Store.open(folder)
 
 
-def test_a_store_on_another_disk_stays_there(folder: Path, tmp_path: Path, good: Path) -> None:
+def test_linked_store_stays_on_its_disk(folder: Path, tmp_path: Path, good: Path) -> None:
     """A restore put a file in the place of the link, and looked for the log beside it."""
     disk = tmp_path / "disk"
     disk.mkdir()
@@ -96,7 +96,7 @@ def test_a_store_on_another_disk_stays_there(folder: Path, tmp_path: Path, good:
         assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
 
 
-def test_what_is_a_store_or_nothing_is_as_before(folder: Path) -> None:
+def test_has_store_is_true_only_for_existing_store(folder: Path) -> None:
     assert not has_store(folder)
     with Store.open(folder):
         assert has_store(folder)

@@ -77,7 +77,7 @@ def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, 
 
 @given(STEPS)
 @settings(max_examples=60, deadline=None)
-def test_any_order_of_touches_and_masters(steps: list[tuple[str, object]]) -> None:
+def test_random_touches_and_masters_are_undone_completely(steps: list[tuple[str, object]]) -> None:
     with closing(database.create_empty_store()) as connection:
         for number, row in START.items():
             offset_tables.change_row(connection, OffsetKind.TOOL, number, WHY, row._asdict())

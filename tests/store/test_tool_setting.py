@@ -43,7 +43,7 @@ def old_store(folder: Path) -> None:
     connection.close()
 
 
-def test_an_old_store_comes_up_with_everything_in_it(folder: Path) -> None:
+def test_old_store_opens_with_all_its_data(folder: Path) -> None:
     old_store(folder)
     with Store.open(folder) as store:
         assert store.offsets.tool_offsets.read_rows() == {
@@ -61,7 +61,7 @@ def test_an_old_store_comes_up_with_everything_in_it(folder: Path) -> None:
     assert database.check_file(kept, is_thorough=True) == 1
 
 
-def test_every_field_is_kept_with_its_history(store: Store) -> None:
+def test_every_field_is_saved_with_its_history(store: Store) -> None:
     store.offsets.tool_offsets.change_row(
         2, "set", {"x": 1.0, "z": 2.0, "nose_radius": 0.4, "quadrant": 3, "remark": "DNMG finish"}
     ).result()
@@ -87,9 +87,7 @@ def test_every_field_is_kept_with_its_history(store: Store) -> None:
         ({"x": "1"}, ("T1 X '1'",)),
     ],
 )
-def test_what_is_no_value_of_a_field_is_refused(
-    store: Store, values: dict[str, Any], told: tuple[str, ...]
-) -> None:
+def test_invalid_field_value_is_rejected(store: Store, values: dict[str, Any], told: tuple[str, ...]) -> None:
     with raises_code(StoreError, "out-of-range", *told):
         store.offsets.tool_offsets.change_row(1, "no", values).result()
     assert store.offsets.tool_offsets.read_rows() == {}
@@ -102,7 +100,7 @@ def three_tools(store: Store) -> None:
     store.offsets.tool_offsets.change_row(3, "c", {"x": 5.0, "z": -95.0}).result()
 
 
-def test_a_touch_sets_geometry_and_ends_the_wear_of_that_axis(store: Store) -> None:
+def test_touch_sets_geometry_and_clears_wear_of_that_axis(store: Store) -> None:
     three_tools(store)
     store.offsets.tool_offsets.change_row(2, "worn", {"wear_x": 0.1}).result()
     changes = store.offsets.tool_offsets.set_touched_offset(2, TouchPosition(x=-21.0), "touched").result()
@@ -111,7 +109,7 @@ def test_a_touch_sets_geometry_and_ends_the_wear_of_that_axis(store: Store) -> N
     assert store.offsets.tool_offsets.set_touched_offset(2, TouchPosition(x=-21.0), "again").result() == ()
 
 
-def test_a_tool_touched_for_the_first_time_is_set(store: Store) -> None:
+def test_first_touch_sets_tool_with_both_axes(store: Store) -> None:
     with raises_code(StoreError, "needs-both-axes"):
         store.offsets.tool_offsets.set_touched_offset(7, TouchPosition(x=3.0), "half").result()
     assert store.offsets.tool_offsets.read_rows() == {}
@@ -119,7 +117,7 @@ def test_a_tool_touched_for_the_first_time_is_set(store: Store) -> None:
     assert store.offsets.tool_offsets.read_rows() == {7: ToolRow(3.0, -50.0)}
 
 
-def test_touching_the_master_takes_every_tool_along(store: Store) -> None:
+def test_master_touch_moves_every_tool(store: Store) -> None:
     three_tools(store)
     store.offsets.tool_offsets.set_master_tool(1, "reference").result()
     store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(x=12.0, z=-101.0), "new bar").result()
@@ -134,7 +132,7 @@ def test_touching_the_master_takes_every_tool_along(store: Store) -> None:
     assert store.offsets.tool_offsets.read_rows()[1] == ToolRow(10.0, -100.0, wear_x=0.5, master=True)
 
 
-def test_the_master_alone_when_only_its_tip_has_changed(store: Store) -> None:
+def test_master_can_be_set_alone_when_only_its_tip_changed(store: Store) -> None:
     three_tools(store)
     store.offsets.tool_offsets.set_master_tool(1, "reference").result()
     store.offsets.tool_offsets.set_touched_offset(
@@ -144,7 +142,7 @@ def test_the_master_alone_when_only_its_tip_has_changed(store: Store) -> None:
     assert store.offsets.tool_offsets.read_rows()[3] == ToolRow(5.0, -95.0)
 
 
-def test_another_master_moves_no_tip_and_there_is_only_one(store: Store) -> None:
+def test_change_of_master_moves_no_tip_and_leaves_one_master(store: Store) -> None:
     three_tools(store)
     before = {number: row.offset for number, row in store.offsets.tool_offsets.read_rows().items()}
     for master in (1, 3):
@@ -160,7 +158,7 @@ def test_another_master_moves_no_tip_and_there_is_only_one(store: Store) -> None
     assert not any(row.master for row in store.offsets.tool_offsets.read_rows().values())
 
 
-def test_a_master_that_was_never_set_is_refused(store: Store) -> None:
+def test_master_without_offset_is_rejected(store: Store) -> None:
     with raises_code(StoreError, "never-set", "T9"):
         store.offsets.tool_offsets.set_master_tool(9, "no").result()
     with raises_code(StoreError, "never-set", "T9"):
@@ -168,7 +166,7 @@ def test_a_master_that_was_never_set_is_refused(store: Store) -> None:
     assert store.offsets.tool_offsets.read_rows() == {}
 
 
-def test_a_follower_out_of_range_leaves_all_as_it_was(store: Store) -> None:
+def test_follower_out_of_range_rejects_whole_touch(store: Store) -> None:
     three_tools(store)
     store.offsets.tool_offsets.change_row(4, "far", {"x": 1269.5, "z": 0.0})
     store.offsets.tool_offsets.set_master_tool(1, "reference").result()

@@ -21,7 +21,7 @@ def set_shape(store: Store, number: int, **values: float | str) -> None:
     store.offsets.tool_shapes.change_row(number, "entered", values).result()
 
 
-def test_shape_is_kept_beside_the_offset_of_its_tool(store: Store) -> None:
+def test_shape_is_saved_with_offset_of_its_tool(store: Store) -> None:
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
     assert store.offsets.tool_shapes.read_rows() == {5: DRILL}
     assert store.offsets.tool_offsets.read_rows() == {}, "the tool was never touched off"
@@ -44,7 +44,7 @@ def test_shapes_have_a_history_of_their_own(store: Store) -> None:
     assert store.offsets.tool_offsets.read_rows() == {5: ToolRow(1.0, 2.0)}
 
 
-def test_shape_is_taken_away_and_comes_back(store: Store) -> None:
+def test_removed_shape_is_restored_by_undo(store: Store) -> None:
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
     assert store.offsets.tool_shapes.remove_row(5, "sold").result() is True
     assert store.offsets.tool_shapes.read_rows() == {}
@@ -53,7 +53,7 @@ def test_shape_is_taken_away_and_comes_back(store: Store) -> None:
     assert store.offsets.tool_shapes.read_rows() == {5: DRILL}
 
 
-def test_what_is_entered_again_is_no_change(store: Store) -> None:
+def test_repeated_entry_is_not_a_change(store: Store) -> None:
     set_shape(store, 5, kind="drill")
     set_shape(store, 5, kind="drill")
     assert len(store.offsets.tool_shapes.read_history()) == 1
@@ -75,7 +75,7 @@ def test_what_is_entered_again_is_no_change(store: Store) -> None:
         ({"kind": "drill", "colour": 3}, "out-of-range", "T5 colour 3"),
     ],
 )
-def test_value_that_cannot_be_is_refused(
+def test_impossible_value_is_rejected(
     store: Store, values: dict[str, float | str], code: str, told: str
 ) -> None:
     with raises_code(StoreError, code, told):
@@ -83,20 +83,20 @@ def test_value_that_cannot_be_is_refused(
     assert store.offsets.tool_shapes.read_rows() == {}
 
 
-def test_tool_that_does_not_exist(store: Store) -> None:
+def test_unknown_tool_is_rejected(store: Store) -> None:
     with raises_code(StoreError, "unknown-number", "T33"):
         set_shape(store, 33, kind="drill")
     with raises_code(StoreError, "unknown-number", "T0"):
         store.offsets.tool_shapes.remove_row(0, "no").result()
 
 
-def test_nothing_to_take_back(store: Store) -> None:
+def test_undo_without_shape_change_is_rejected(store: Store) -> None:
     store.offsets.tool_offsets.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
     with raises_code(StoreError, "nothing-to-undo"):
         store.offsets.tool_shapes.undo_last_step().result()
 
 
-def test_store_from_before_has_no_shapes_and_takes_them(folder: Path) -> None:
+def test_older_store_has_no_shapes_and_accepts_new_ones(folder: Path) -> None:
     folder.mkdir()
     connection = sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")

@@ -41,7 +41,7 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_a_killed_save_of_a_program_leaves_nothing_for_the_next_one(tmp_path: Path) -> None:
+def test_killed_program_save_leaves_nothing_after_next_save(tmp_path: Path) -> None:
     killed("create_unfinished_folder", tmp_path / "pin.nc")
     killed("create_unfinished_folder", tmp_path / "bushing.nc")
     write_program_file(tmp_path / "other.nc", b"M30\n")
@@ -51,7 +51,7 @@ def test_a_killed_save_of_a_program_leaves_nothing_for_the_next_one(tmp_path: Pa
     assert names(tmp_path) == ["new.nc", "other.nc"]
 
 
-def test_a_killed_backup_leaves_nothing_for_the_next_one(folder: Path, tmp_path: Path) -> None:
+def test_killed_backup_leaves_nothing_after_next_backup(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder):
         pass
     stick = tmp_path / "stick"
@@ -61,7 +61,7 @@ def test_a_killed_backup_leaves_nothing_for_the_next_one(folder: Path, tmp_path:
     assert names(stick) == ["tuesday.db"]
 
 
-def test_a_killed_restore_leaves_nothing_when_the_desk_opens(folder: Path, tmp_path: Path) -> None:
+def test_killed_restore_leaves_nothing_after_store_opens(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder):
         pass
     killed("create_unfinished_file", folder / "turndesk.db")
@@ -71,7 +71,7 @@ def test_a_killed_restore_leaves_nothing_when_the_desk_opens(folder: Path, tmp_p
         assert not [name for name in names(folder) if "unfinished" in name]
 
 
-def test_a_killed_export_leaves_nothing_for_the_next_one(store: Store, tmp_path: Path) -> None:
+def test_killed_export_leaves_nothing_after_next_export(store: Store, tmp_path: Path) -> None:
     there = tmp_path / "exports"
     there.mkdir()
     killed("create_unfinished_folder", there / "june")
@@ -79,7 +79,7 @@ def test_a_killed_export_leaves_nothing_for_the_next_one(store: Store, tmp_path:
     assert names(there) == ["july"]
 
 
-def test_a_killed_copy_of_the_older_version_has_no_name(
+def test_killed_copy_of_older_version_has_no_final_name(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Half a file would be taken for the way back."""
@@ -102,7 +102,7 @@ def test_a_killed_copy_of_the_older_version_has_no_name(
     assert backup.find_problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
 
 
-def test_what_another_process_writes_stays(tmp_path: Path) -> None:
+def test_unfinished_files_of_another_process_are_not_removed(tmp_path: Path) -> None:
     with (
         create_unfinished_file(tmp_path / "a.db") as file,
         create_unfinished_folder(tmp_path / "b.nc") as folder,
@@ -119,7 +119,7 @@ def test_what_another_process_writes_stays(tmp_path: Path) -> None:
     assert names(tmp_path) == []
 
 
-def test_files_of_others_stay(tmp_path: Path) -> None:
+def test_other_files_are_not_removed(tmp_path: Path) -> None:
     for name in ("x.unfinished", ".hidden", ".b.new", "pin.nc"):
         (tmp_path / name).write_bytes(b"theirs")
     remove_abandoned_files(tmp_path)
@@ -127,7 +127,7 @@ def test_files_of_others_stay(tmp_path: Path) -> None:
     assert names(tmp_path) == [".b.new", ".hidden", "pin.nc", "x.unfinished"]
 
 
-def test_a_restore_that_finds_no_room_leaves_nothing(
+def test_restore_without_disk_space_leaves_nothing(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with Store.open(folder):

@@ -11,7 +11,7 @@ from core.store.store_rows import ZeroRow
 from tests.coded import raises_code
 
 
-def test_what_is_set_is_there_again(tmp_path: Path) -> None:
+def test_saved_zero_offsets_exist_after_reopening(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.offsets.zero_offsets.change_row(54, "touched", {"x": 1.5, "z": -20.0}).result()
         store.offsets.zero_offsets.change_row(54, "turned", {"c": -15.0}).result()
@@ -20,7 +20,7 @@ def test_what_is_set_is_there_again(tmp_path: Path) -> None:
         assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(1.5, -20.0, -15.0), 59: ZeroRow(z=3.0)}
 
 
-def test_history_newest_first_and_the_same_again_is_no_change(tmp_path: Path) -> None:
+def test_history_is_newest_first_and_identical_value_is_no_change(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.offsets.zero_offsets.change_row(55, "one", {"z": 1.0}).result()
         store.offsets.zero_offsets.change_row(55, "again", {"z": 1.0}).result()
@@ -30,7 +30,7 @@ def test_history_newest_first_and_the_same_again_is_no_change(tmp_path: Path) ->
         assert (one.old, one.new) == (None, ZeroRow(z=1.0))
 
 
-def test_undo_goes_back_step_by_step(tmp_path: Path) -> None:
+def test_undo_goes_back_step_by_step_until_nothing_is_left(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.offsets.zero_offsets.change_row(54, "a", {"x": 1.0}).result()
         store.offsets.zero_offsets.change_row(56, "b", {"c": 90.0}).result()
@@ -56,7 +56,9 @@ def test_undo_goes_back_step_by_step(tmp_path: Path) -> None:
         (54, {"y": 1.0}, "out-of-range"),
     ],
 )
-def test_refused(tmp_path: Path, code: int, values: dict[str, float], fault: str) -> None:
+def test_invalid_zero_offsets_are_rejected(
+    tmp_path: Path, code: int, values: dict[str, float], fault: str
+) -> None:
     with Store.open(tmp_path) as store:
         with raises_code(StoreError, fault, f"G{code}"):
             store.offsets.zero_offsets.change_row(code, "x", values).result()
@@ -64,7 +66,7 @@ def test_refused(tmp_path: Path, code: int, values: dict[str, float], fault: str
         assert store.offsets.zero_offsets.read_history() == ()
 
 
-def test_tools_and_settable_offsets_do_not_undo_each_other(tmp_path: Path) -> None:
+def test_tool_and_zero_offsets_are_undone_separately(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.offsets.tool_offsets.change_row(1, "t", {"x": 1.0}).result()
         store.offsets.zero_offsets.change_row(54, "z", {"x": 1.0}).result()

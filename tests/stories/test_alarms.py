@@ -74,7 +74,7 @@ def is_in_f7(operator: Operator, *codes: AlarmCode) -> None:
     )
 
 
-def test_a_jammed_slide_is_named_with_cause_and_remedy_on_every_page(story: Story) -> None:
+def test_jammed_axis_is_shown_with_cause_and_remedy_on_every_page(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     in_the_cut(operator)
     operator.breaks("jam", "Z")
@@ -91,7 +91,7 @@ def test_a_jammed_slide_is_named_with_cause_and_remedy_on_every_page(story: Stor
     operator.until(lambda: any(each.startswith(str(number)) for each in operator.events("alarm")), "the log")
 
 
-def test_an_estop_is_in_f7_with_its_reason_also_after_the_computer_was_off(story: Story) -> None:
+def test_estop_and_its_reason_are_in_f7_after_computer_restart(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     in_the_cut(operator)
     operator.key("e")
@@ -116,7 +116,7 @@ def is_told_on_every_page_as_estop(operator: Operator) -> None:
         operator.sees(CATALOG["estop"].causes[0])
 
 
-def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
+def test_every_stop_and_its_cause_are_listed_in_f7(story: Story) -> None:
     operator = story.begins(STOPS, tools=TOOLS)
     operator.drives_on()
     operator.key("o")
@@ -143,7 +143,7 @@ def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
     operator.sees("CHECK THE BORE")
 
 
-def test_of_two_alarms_the_first_is_named_first_and_the_other_is_there(story: Story) -> None:
+def test_first_of_two_alarms_is_shown_first_and_both_are_listed(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     in_the_cut(operator)
     operator.breaks("drive_fault", "X", "over current")
@@ -159,7 +159,7 @@ def test_of_two_alarms_the_first_is_named_first_and_the_other_is_there(story: St
     is_in_f7(operator, "axis", "spindle")
 
 
-def test_a_silent_station_is_a_hold_with_its_cause_and_goes_on(story: Story) -> None:
+def test_silent_station_causes_hold_with_reason_and_cycle_resumes(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     in_the_cut(operator)
     operator.breaks("station_silent")
@@ -174,7 +174,7 @@ def test_a_silent_station_is_a_hold_with_its_cause_and_goes_on(story: Story) -> 
     operator.reaches("RUNNING", "WAITING")
 
 
-def test_a_computer_that_was_away_is_told_in_an_operators_words(story: Story) -> None:
+def test_computer_stall_is_reported_in_plain_words(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     in_the_cut(operator)
     operator.stops_the_process()
@@ -194,7 +194,7 @@ def test_a_computer_that_was_away_is_told_in_an_operators_words(story: Story) ->
     assert operator.machine["parts"] == 1
 
 
-def test_h_and_esc_are_told_apart_in_f7(story: Story) -> None:
+def test_f7_distinguishes_feed_hold_by_h_and_by_esc(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     in_the_cut(operator)
     operator.key("h")

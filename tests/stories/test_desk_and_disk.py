@@ -11,7 +11,7 @@ PART = "G90G94T1\nM03S600\nG01X.5Z.5F10\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
 
 
-def test_a_program_that_somebody_else_changes_is_told_before_the_start(story: Story) -> None:
+def test_program_changed_on_disk_is_reported_before_start(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     (story.folder / "part.nc").write_text(PART.replace("X.5", "X1.5"))
@@ -24,7 +24,7 @@ def test_a_program_that_somebody_else_changes_is_told_before_the_start(story: St
     operator.sees(fragment("programs.not-on-disk"))
 
 
-def test_the_close_button_of_the_window_does_not_end_a_cut(story: Story) -> None:
+def test_window_close_button_does_not_end_a_running_program(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.starts()

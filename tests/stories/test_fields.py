@@ -20,7 +20,7 @@ def leaks(operator: Operator, before: dict[str, object]) -> list[str]:
 
 
 @pytest.mark.parametrize("drives", [False, True])
-def test_mdi_has_every_character(story: Story, drives: bool) -> None:
+def test_every_character_can_be_typed_in_mdi(story: Story, drives: bool) -> None:
     operator = story.begins(PART, tools=TOOLS)
     if drives:
         operator.drives_on()
@@ -37,7 +37,7 @@ def test_mdi_has_every_character(story: Story, drives: bool) -> None:
         operator.reaches("READY")
 
 
-def test_mdi_after_an_estop_has_every_character_too(story: Story) -> None:
+def test_every_character_can_be_typed_in_mdi_after_estop(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.reaches("DRIVES OFF")
     operator.keys("F1", "F4")
@@ -67,7 +67,7 @@ PLACES = {
 
 
 @pytest.mark.parametrize("place", list(PLACES))
-def test_no_field_lets_a_character_through(story: Story, place: str) -> None:
+def test_characters_typed_in_a_field_trigger_no_command(story: Story, place: str) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.until(lambda: text("screen.to-start") in operator.prompt, "ready to start")
@@ -91,7 +91,7 @@ def test_no_field_lets_a_character_through(story: Story, place: str) -> None:
     operator.reaches("E-STOP")
 
 
-def test_a_drawn_keyboard_writes_and_keeps_no_stop_key(story: Story) -> None:
+def test_on_screen_keyboard_types_and_stop_keys_still_act(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.keys("F1", "F4")

@@ -10,7 +10,7 @@ SHORT = PART.replace("X.5Z.5F10", "X.1Z.1F30")
 TOOLS = {1: (0.0, 0.0)}
 
 
-def test_a_part_is_made_by_keyboard(story: Story) -> None:
+def test_part_is_made_by_keyboard(story: Story) -> None:
     operator = story.begins(SHORT, tools=TOOLS)
     operator.drives_on()
     operator.starts()
@@ -22,7 +22,7 @@ def test_a_part_is_made_by_keyboard(story: Story) -> None:
     operator.until(lambda: len(operator.events("part")) == 1, "the part in the store")
 
 
-def test_the_mouse_holds_the_feed_and_hits_the_stop(story: Story) -> None:
+def test_mouse_presses_feed_hold_and_estop(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.starts()

@@ -28,7 +28,7 @@ def stops_in_the_bore(operator: Operator) -> None:
     operator.drives_on()
 
 
-def test_after_an_estop_in_the_bore_no_start_leads_through_the_wall(story: Story) -> None:
+def test_start_through_bore_wall_is_blocked_after_estop_in_bore(story: Story) -> None:
     operator = story.begins(BORE, tools=TOOLS)
     stops_in_the_bore(operator)
     stands = operator.rests()
@@ -39,7 +39,7 @@ def test_after_an_estop_in_the_bore_no_start_leads_through_the_wall(story: Story
     assert operator.machine["start_code"] == "first-move-crosses"
 
 
-def test_the_way_out_is_taken_and_then_line_1_starts(story: Story) -> None:
+def test_line_1_starts_after_retract_from_bore(story: Story) -> None:
     operator = story.begins(BORE, tools=TOOLS)
     stops_in_the_bore(operator)
     operator.key("F6")

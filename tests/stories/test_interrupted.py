@@ -60,7 +60,7 @@ def is_not_begun_by_the_palms(operator: Operator) -> None:
     operator.keeps(lambda: operator.is_at(stands) and operator.state == "READY", 1.0, "nothing begins")
 
 
-def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown(story: Story) -> None:
+def test_palm_buttons_start_nothing_after_estop_in_cut_and_job_is_shown(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.key("e")
@@ -81,7 +81,7 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     assert operator.events("interrupted") == [IN_THE_LOG]
 
 
-def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_anew(story: Story) -> None:
+def test_canceled_program_leaves_job_and_y_allows_restart(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.key("h")
@@ -104,7 +104,7 @@ def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_an
     assert [text for text in operator.events("cleared") if shows(text, "stories.begins-anew")]
 
 
-def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Story) -> None:
+def test_killed_control_restarts_with_its_interrupted_job(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.during(1.5)  # a note of the place is a second old at most
@@ -126,7 +126,7 @@ def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Sto
     assert again.status["interrupted"]["line"] == 7
 
 
-def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None:
+def test_part_is_finished_by_searchto_and_notice_row_closes(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.key("e")
@@ -150,7 +150,7 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
 
 
 @pytest.mark.parametrize("keys", [("y", "F11", "F12"), ("F11", "y", "F12")], ids=" ".join)
-def test_an_answer_and_the_palms_in_one_slap_begin_nothing(story: Story, keys: tuple[str, ...]) -> None:
+def test_answer_and_palm_buttons_pressed_together_start_nothing(story: Story, keys: tuple[str, ...]) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.key("e")
@@ -167,7 +167,7 @@ def test_an_answer_and_the_palms_in_one_slap_begin_nothing(story: Story, keys: t
     operator.keeps(lambda: operator.is_at(stood) and operator.state == "READY", 0.5, "nothing begins")
 
 
-def test_under_an_estop_the_prompt_of_a_field_names_keys_that_work_there(story: Story) -> None:
+def test_field_prompt_during_estop_names_only_keys_that_work(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.keys("F1", "F4")
@@ -186,7 +186,7 @@ def promises_a_key(operator: Operator) -> bool:
     return shows(operator.prompt, "stories.keys-that-stop") or shows(operator.prompt, "stories.h-holds-feed")
 
 
-def test_while_another_window_has_the_keyboard_the_prompt_promises_no_key(story: Story) -> None:
+def test_prompt_offers_no_key_while_another_window_has_keyboard(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.until(lambda: promises_a_key(operator), "how to hold")
@@ -196,7 +196,7 @@ def test_while_another_window_has_the_keyboard_the_prompt_promises_no_key(story:
     operator.until(lambda: promises_a_key(operator) or operator.state != "RUNNING", "back")
 
 
-def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -> None:
+def test_another_program_replaces_interrupted_job_only_on_confirmation(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     (story.home / "programs").mkdir(exist_ok=True)
     (story.home / "programs" / "other.nc").write_text("G90G94F300\nT3\nX2Z2\nM30\n")
@@ -224,7 +224,7 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     assert operator.events("cleared") == [wording("log.replaced-by", what=IN_THE_LOG, name="other.nc")]
 
 
-def test_a_computer_that_goes_down_in_the_cut_leaves_the_job(story: Story) -> None:
+def test_computer_shutdown_in_cut_leaves_interrupted_job(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     os.kill(operator.popen.pid, signal.SIGTERM)
@@ -238,7 +238,7 @@ def test_a_computer_that_goes_down_in_the_cut_leaves_the_job(story: Story) -> No
     is_not_begun_by_the_palms(again)
 
 
-def test_a_held_palm_and_a_held_y_begin_nothing(story: Story) -> None:
+def test_palm_button_and_y_held_down_start_nothing(story: Story) -> None:
     """What lies on the keyboard answers no question, and starts nothing with it."""
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)

@@ -88,7 +88,7 @@ def test_a_stop_key_is_sent_while_the_pointer_is_on_the_window(bench: Bench) -> 
     assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)) == sent
 
 
-def test_nothing_is_sent_while_it_is_elsewhere_or_another_key_goes_down(bench: Bench) -> None:
+def test_nothing_is_sent_for_pointer_elsewhere_or_for_other_keys(bench: Bench) -> None:
     bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))
     press_until_sent(bench, "Pause")
     for key in ("Escape", "space", "h"):
@@ -104,7 +104,7 @@ def test_nothing_is_sent_while_it_is_elsewhere_or_another_key_goes_down(bench: B
     assert press_until_sent(bench, "Scroll_Lock").kind is StopKind.ESTOP
 
 
-def test_a_key_that_is_held_is_sent_once(bench: Bench) -> None:
+def test_stop_key_held_down_is_sent_once(bench: Bench) -> None:
     bench.server.repeats(100, 20)
     bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=True))
     press_until_sent(bench, "Escape")

@@ -126,7 +126,7 @@ def breaks_and_goes_on(
     operator.until(lambda: operator.state != "READY", "the start")
 
 
-def test_on_a_mill(story: Story) -> None:
+def test_parts_are_made_on_mill(story: Story) -> None:
     on_the_shelf(story, "again.h", KLARTEXT)
     operator = story.begins(machine="ac-table-mill.toml")
     operator.drives_on()
@@ -163,7 +163,7 @@ def test_on_a_mill(story: Story) -> None:
     assert operator.is_at((2.0, 0.0, -2.0))
 
 
-def test_on_a_sinumerik_lathe(story: Story) -> None:
+def test_parts_are_made_on_sinumerik_lathe(story: Story) -> None:
     on_the_shelf(story, "again.mpf", SINUMERIK)
     operator = story.begins(machine="sinumerik-modulo.toml")
     operator.drives_on()

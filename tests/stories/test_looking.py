@@ -9,7 +9,7 @@ PART = "G90G94F300\nT1\nX2Z2\nM30\n"
 TOOLS = {1: (-0.5, -2.0)}
 
 
-def test_who_looks_at_a_program_in_the_list_has_the_job_that_he_had(story: Story) -> None:
+def test_viewing_program_in_list_leaves_loaded_job_unchanged(story: Story) -> None:
     (story.home / "programs").mkdir(parents=True)
     (story.home / "programs" / "other.nc").write_text("G90G94F300\nT1\nX1Z1\nM30\n")
     operator = story.begins(PART, tools=TOOLS)
@@ -32,7 +32,7 @@ def test_who_looks_at_a_program_in_the_list_has_the_job_that_he_had(story: Story
     operator.until(lambda: operator.status["program"] == "part.nc", "status.json")
 
 
-def test_with_nothing_marked_a_new_file_is_asked_for_and_no_job_made(story: Story) -> None:
+def test_edit_without_marked_program_asks_for_name_and_creates_no_job(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.keys("F1", "F6")

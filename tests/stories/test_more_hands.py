@@ -21,7 +21,7 @@ def at_jog(story: Story) -> Operator:
     return operator
 
 
-def test_a_window_that_pops_up_keeps_no_stop_key(story: Story) -> None:
+def test_popup_window_does_not_block_stop_keys(story: Story) -> None:
     """No field has a menu; but one that did would have the keyboard for itself."""
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
@@ -47,7 +47,7 @@ def test_the_number_pad_without_num_lock_moves_nothing(story: Story) -> None:
     operator.up("KP_Left")
 
 
-def test_a_shift_that_sticks_makes_no_rapid(story: Story) -> None:
+def test_locked_shift_modifier_does_not_select_rapid(story: Story) -> None:
     """Caps Lock as Shift Lock, as some set it: the modifier is there, and no hand on the key."""
     story.server.run("setxkbmap", "-option", "caps:shiftlock")
     story.server.layout("us")
@@ -64,7 +64,7 @@ def test_a_shift_that_sticks_makes_no_rapid(story: Story) -> None:
     assert 0 < operator.rests()[1] - start < 0.6 * 100 / 60 * INCH * 0.8
 
 
-def test_the_right_button_jogs_nothing_and_stops_all_the_same(story: Story) -> None:
+def test_right_mouse_button_does_not_jog_but_stops(story: Story) -> None:
     operator = at_jog(story)
     operator.points("Z+", on="JogPad")
     operator.server.button("right", down=True)
@@ -79,7 +79,7 @@ def test_the_right_button_jogs_nothing_and_stops_all_the_same(story: Story) -> N
     operator.reaches("FEED HOLD")
 
 
-def test_a_hand_that_slaps_the_plate_frees_no_stop(story: Story) -> None:
+def test_accidental_touch_does_not_release_estop(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     stop, twist = operator.find("STOP", on="StationDock"), operator.find("TWIST", on="StationDock")
@@ -94,7 +94,7 @@ def test_a_hand_that_slaps_the_plate_frees_no_stop(story: Story) -> None:
     operator.reaches("DRIVES OFF")
 
 
-def test_the_wheel_of_the_mouse_raises_nothing_behind_a_stall(story: Story) -> None:
+def test_mouse_wheel_and_plus_key_in_stall_do_not_raise_override(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.points("−", on="StationDock")
@@ -113,7 +113,7 @@ def test_the_wheel_of_the_mouse_raises_nothing_behind_a_stall(story: Story) -> N
 
 
 @pytest.mark.parametrize("way", ["keys", "double tap"])
-def test_reset_pressed_twice_gives_nothing_up(story: Story, way: str) -> None:
+def test_reset_pressed_twice_does_not_cancel_program(story: Story, way: str) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.starts()

@@ -10,7 +10,7 @@ SHORT = "G90G94T1\nM03S600\nG01X.1Z.1F30\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
 
 
-def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has_room(story: Story) -> None:
+def test_parts_made_on_full_disk_are_stored_when_it_has_room(story: Story) -> None:
     with small_disk(story.home, size="3m") as disk:
         operator = story.begins(SHORT, tools=TOOLS)
         operator.drives_on()

@@ -10,7 +10,7 @@ SLIP = SHAFT.replace("M30", "X.3\nG00Z-.3\nX.55\nM30")
 TOOLS = {1: (-0.5, -2.0)}
 
 
-def test_a_g00_left_on_is_seen_before_anything_moves(story: Story) -> None:
+def test_g00_left_active_by_mistake_is_shown_before_any_motion(story: Story) -> None:
     operator = story.begins(SLIP, tools=TOOLS)
     operator.find("remaining", on="PathView")
     operator.key("v")
@@ -24,7 +24,7 @@ def test_a_g00_left_on_is_seen_before_anything_moves(story: Story) -> None:
     assert operator.state == "DRIVES OFF"
 
 
-def test_the_part_follows_the_run_and_stays_when_it_is_over(story: Story) -> None:
+def test_part_view_follows_run_and_remains_after_its_end(story: Story) -> None:
     operator = story.begins(SHAFT, tools=TOOLS)
     operator.drives_on()
     operator.find("remaining", on="PathView")

@@ -35,7 +35,7 @@ def on_the_control(call: Callable[[], float]) -> float:
     return found[0]
 
 
-def test_it_runs_with_the_real_one_while_both_keep_up(real: _Real) -> None:
+def test_clock_runs_with_real_time_while_both_processes_keep_up(real: _Real) -> None:
     clock = PatientClock()
     for _ in range(100):
         on_the_control(clock.now)
@@ -45,7 +45,7 @@ def test_it_runs_with_the_real_one_while_both_keep_up(real: _Real) -> None:
 
 
 @pytest.mark.parametrize("late", ["control", "screen"])
-def test_whoever_is_late_stops_it(real: _Real, late: str) -> None:
+def test_late_process_stops_the_clock(real: _Real, late: str) -> None:
     clock = PatientClock()
     on_the_control(clock.now)
     clock.beat_of_screen()
@@ -61,7 +61,7 @@ def test_whoever_is_late_stops_it(real: _Real, late: str) -> None:
     assert clock.now() == pytest.approx(100.0 + GRACE + 0.01)
 
 
-def test_in_real_time_lateness_counts_and_what_was_lost_stays_lost(real: _Real) -> None:
+def test_lateness_counts_in_real_time_and_lost_time_is_not_recovered(real: _Real) -> None:
     clock = PatientClock()
     on_the_control(clock.now)
     real.t += 10.0
@@ -70,7 +70,7 @@ def test_in_real_time_lateness_counts_and_what_was_lost_stays_lost(real: _Real) 
     assert clock.now() == pytest.approx(100.0 + GRACE + 3.0)
 
 
-def test_a_hurry_begins_and_ends_without_a_leap(real: _Real) -> None:
+def test_fast_mode_begins_and_ends_without_a_time_jump(real: _Real) -> None:
     clock = PatientClock()
     real.t += 1.0
     clock.run_at(5.0)

@@ -36,14 +36,14 @@ def is_refused(operator: Operator, line: int, why: str, remedy: str) -> None:
     assert operator.events("part") == []
 
 
-def test_the_end_of_the_bar_would_run_against_the_limit_and_the_bar_is_not_even_begun(story: Story) -> None:
+def test_limit_violation_with_bar_end_input_rejects_program(story: Story) -> None:
     operator = story.begins(BAR, tools=TOOLS)
     at = text("findings.input-at", number=10, state="on", line=5)
     why = text("findings.with-input", input=at, what=beyond("9.0000"))
     is_refused(operator, 9, why, "check the Z word")
 
 
-def test_without_what_block_delete_leaves_out_it_would_run_against_the_limit(story: Story) -> None:
+def test_limit_violation_under_block_delete_rejects_program(story: Story) -> None:
     operator = story.begins(f"{HEAD}/G91Z6\n/G90\nZ0\nM30\n", tools=TOOLS)
     is_refused(operator, 5, beyond("6.5000"), "check the Z word")
 
@@ -68,21 +68,21 @@ def test_without_what_block_delete_leaves_out_it_would_run_against_the_limit(sto
         ("X.4 RETRACT\n", 5, text("findings.text-outside", text="RETRACT"), "Write (RETRACT)."),
     ],
 )
-def test_a_mistake_that_breaks_metal_is_told_with_its_line_and_remedy(
+def test_error_that_could_cause_a_crash_is_reported_with_remedy(
     story: Story, lines: str, line: int, why: str, remedy: str
 ) -> None:
     end = "" if "M30" in lines else "M30\n"
     is_refused(story.begins(f"{HEAD}{lines}{end}", tools=TOOLS), line, why, remedy)
 
 
-def test_a_program_that_names_no_tool_may_start_and_says_what_to_look_at(story: Story) -> None:
+def test_program_without_tool_may_start_with_a_warning(story: Story) -> None:
     operator = story.begins("G90G94F300\nM03S600\nX.5Z.5\nF20Z.3\nM30\n", tools=TOOLS)
     operator.drives_on()
     operator.sees(text("screen.line-what", line=4, what=text("desk.cuts-without-tool").partition(":")[0]))
     assert text("screen.to-start") in operator.prompt
 
 
-def test_a_bar_program_whose_branches_are_good_runs_either_way(story: Story) -> None:
+def test_bar_program_with_valid_branches_runs_both_branches(story: Story) -> None:
     good = BAR.replace("Z9", "Z.8").replace("F300", "F100")
     operator = story.begins(good, tools=TOOLS)
     operator.drives_on()

@@ -53,7 +53,7 @@ WAYS: tuple[Callable[[Operator], None], ...] = (minimised, other_workspace, othe
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_jog_does_not_begin_again_by_itself(story: Story, way: Callable[[Operator], None]) -> None:
+def test_interrupted_jog_does_not_resume_automatically(story: Story, way: Callable[[Operator], None]) -> None:
     operator = at_jog(story)
     operator.down("Right")
     operator.reaches("JOG")
@@ -69,7 +69,7 @@ def test_a_jog_does_not_begin_again_by_itself(story: Story, way: Callable[[Opera
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_key_pressed_elsewhere_moves_nothing_here(story: Story, way: Callable[[Operator], None]) -> None:
+def test_key_pressed_in_another_window_does_not_jog(story: Story, way: Callable[[Operator], None]) -> None:
     operator = at_jog(story)
     stands = operator.slides
 
@@ -99,7 +99,7 @@ def test_a_key_pressed_elsewhere_moves_nothing_here(story: Story, way: Callable[
     operator.keeps(lambda: operator.is_at(stands), 1.5, "rest")
 
 
-def test_a_page_opened_with_the_arrow_held_does_not_jog(story: Story) -> None:
+def test_arrow_down_while_page_opens_does_not_jog(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     stands = operator.slides
@@ -110,7 +110,7 @@ def test_a_page_opened_with_the_arrow_held_does_not_jog(story: Story) -> None:
     operator.keeps(lambda: operator.is_at(stands), 1.0, "rest")
 
 
-def test_a_menu_in_front_ends_the_jog_and_it_stays_ended(story: Story) -> None:
+def test_menu_in_front_ends_jog_without_resuming(story: Story) -> None:
     operator = at_jog(story)
     operator.down("Right")
     operator.reaches("JOG")
@@ -136,7 +136,7 @@ def test_a_mouse_that_leaves_the_window_ends_the_jog(story: Story) -> None:
     operator.server.button("left", down=False)
 
 
-def test_a_mouse_that_still_holds_when_the_window_comes_back_moves_nothing(story: Story) -> None:
+def test_mouse_button_down_when_window_returns_does_not_jog(story: Story) -> None:
     operator = at_jog(story)
     operator.points("Z+", on="JogPad")
     operator.server.button("left", down=True)
@@ -149,7 +149,7 @@ def test_a_mouse_that_still_holds_when_the_window_comes_back_moves_nothing(story
     operator.server.button("left", down=False)
 
 
-def test_a_release_that_gets_lost_ends_the_jog(story: Story) -> None:
+def test_lost_key_release_ends_jog(story: Story) -> None:
     """A client that takes the keyboard without taking the focus swallows the release."""
     operator = at_jog(story)
     operator.down("Right")
@@ -160,7 +160,7 @@ def test_a_release_that_gets_lost_ends_the_jog(story: Story) -> None:
     operator.rests()
 
 
-def test_fingers_that_leave_the_window_end_the_jog(story: Story) -> None:
+def test_touches_that_leave_window_end_jog(story: Story) -> None:
     operator = at_jog(story)
     at = operator.find("Z+", on="JogPad")
     operator.finger(1, at)

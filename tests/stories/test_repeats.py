@@ -25,7 +25,7 @@ def ready(story: Story) -> Operator:
 
 
 @pytest.mark.parametrize(("held", "other"), [("F11", "F12"), ("F12", "F11")])
-def test_a_taped_palm_starts_nothing(story: Story, held: str, other: str) -> None:
+def test_palm_button_taped_down_starts_nothing(story: Story, held: str, other: str) -> None:
     operator = ready(story)
     operator.down(held)
     operator.during(HELD)
@@ -40,7 +40,7 @@ def test_a_taped_palm_starts_nothing(story: Story, held: str, other: str) -> Non
     operator.reaches("RUNNING", "WAITING")
 
 
-def test_a_palm_that_stays_down_after_a_start_starts_nothing_more(story: Story) -> None:
+def test_palm_button_left_down_after_start_starts_nothing_more(story: Story) -> None:
     operator = ready(story)
     operator.down("F11", "F12")
     operator.reaches("RUNNING", "WAITING")
@@ -51,7 +51,7 @@ def test_a_palm_that_stays_down_after_a_start_starts_nothing_more(story: Story) 
     operator.keeps(lambda: operator.state == "FEED HOLD", 1.0, "the hold")
 
 
-def test_a_palm_down_across_a_lost_keyboard_is_dead(story: Story) -> None:
+def test_palm_button_down_through_loss_of_keyboard_is_ignored(story: Story) -> None:
     operator = ready(story)
     operator.down("F11")
     operator.minimises()
@@ -60,7 +60,7 @@ def test_a_palm_down_across_a_lost_keyboard_is_dead(story: Story) -> None:
     operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
 
 
-def test_reset_held_never_gives_a_program_up(story: Story) -> None:
+def test_reset_key_held_down_does_not_cancel_program(story: Story) -> None:
     operator = ready(story)
     operator.starts()
     operator.until(lambda: operator.slides[0] > 0.5, "a cut")
@@ -78,7 +78,7 @@ def test_reset_held_never_gives_a_program_up(story: Story) -> None:
     operator.answers("r", fragment("screen.give-up-program"), lambda: operator.state == "READY")
 
 
-def test_an_answer_typed_with_the_question_is_none(story: Story) -> None:
+def test_answer_key_pressed_with_the_question_is_ignored(story: Story) -> None:
     operator = ready(story)
     operator.starts()
     operator.key("Pause")
@@ -87,7 +87,7 @@ def test_an_answer_typed_with_the_question_is_none(story: Story) -> None:
     operator.keeps(lambda: operator.state == "FEED HOLD", 0.5, "the program")
 
 
-def test_a_held_step_jog_is_one_step(story: Story) -> None:
+def test_step_jog_key_held_down_makes_one_step(story: Story) -> None:
     operator = ready(story)
     operator.keys("F1", "F5")
     operator.opens("JOG")
@@ -101,7 +101,7 @@ def test_a_held_step_jog_is_one_step(story: Story) -> None:
     assert operator.rests()[1] == pytest.approx(0.2 * INCH, abs=0.01)
 
 
-def test_a_held_jog_goes_on_as_long_as_it_is_held(story: Story) -> None:
+def test_jog_continues_while_its_key_repeats(story: Story) -> None:
     operator = ready(story)
     operator.keys("F1", "F5")
     operator.opens("JOG")
@@ -121,7 +121,7 @@ def jogs_through(operator: Operator) -> bool:
     return went_on
 
 
-def test_return_held_switches_no_output(story: Story) -> None:
+def test_return_key_held_down_switches_no_output(story: Story) -> None:
     operator = ready(story)
     operator.keys("F10", "3", "Return")
     operator.sees("TERMINAL")
@@ -134,7 +134,7 @@ def test_return_held_switches_no_output(story: Story) -> None:
     operator.answers("Return", asked, lambda: "coolant" in operator.machine["outputs"])
 
 
-def test_delete_held_deletes_nothing(story: Story) -> None:
+def test_delete_key_held_down_deletes_nothing(story: Story) -> None:
     programs = story.home / "programs"
     programs.mkdir(parents=True)
     (programs / "mine.nc").write_text(PART)
@@ -152,7 +152,7 @@ def test_delete_held_deletes_nothing(story: Story) -> None:
     )
 
 
-def test_f10_held_leaves_no_text_unsaved(story: Story) -> None:
+def test_f10_held_down_leaves_no_text_unsaved(story: Story) -> None:
     operator = ready(story)
     operator.key("F3")
     operator.opens("EDITOR")
@@ -168,7 +168,7 @@ def test_f10_held_leaves_no_text_unsaved(story: Story) -> None:
     assert (story.folder / "part.nc").read_text() == PART
 
 
-def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
+def test_clear_key_held_down_does_not_clear_offsets(story: Story) -> None:
     with Store.open(story.home) as store:
         store.offsets.secondary_offsets.change_row(5, "before the story", {"x": 1.0}).result()
     operator = ready(story)
@@ -187,13 +187,13 @@ def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
     operator.answers("c", fragment("screen.clear-secondary"), cleared)
 
 
-def test_a_switch_held_turns_once(story: Story) -> None:
+def test_switch_key_held_down_toggles_once(story: Story) -> None:
     operator = ready(story)
     operator.holds("s", HELD)
     assert operator.machine["single_block"] is True
 
 
-def test_text_repeats_in_a_field(story: Story) -> None:
+def test_key_held_down_repeats_text_in_a_field(story: Story) -> None:
     operator = ready(story)
     operator.key("F2")
     operator.sees(text("screen.file-to-be-processed"))
@@ -205,7 +205,7 @@ def test_text_repeats_in_a_field(story: Story) -> None:
     assert not operator.shows(text("screen.file-to-be-processed"))
 
 
-def test_home_held_homes_nothing(story: Story) -> None:
+def test_home_key_held_down_homes_nothing(story: Story) -> None:
     story.server.repeats(200, 15)
     lost = {
         "absolute = true                 # false": "home = { order = 2, speed = 60 }\nabsolute = false  # "

@@ -82,7 +82,7 @@ def never_in_the_wall(operator: Operator, since: int) -> None:
         assert not low or abs(z / INCH + 2.0 + 0.4) < 0.003, (x, z)
 
 
-def test_a_boring_line_is_chosen_with_the_tool_in_a_groove_and_x_goes_out_first(story: Story) -> None:
+def test_restart_at_boring_line_with_tool_in_groove_retracts_x_first(story: Story) -> None:
     operator = story.begins(GROOVES, tools=TOOLS)
     stopped_there(operator)
     since = len(operator.seen)
@@ -98,7 +98,7 @@ def test_a_boring_line_is_chosen_with_the_tool_in_a_groove_and_x_goes_out_first(
     never_in_the_wall(operator, since)
 
 
-def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) -> None:
+def test_retract_alone_is_put_in_feed_hold_and_resumed(story: Story) -> None:
     operator = story.begins(GROOVES, tools=TOOLS)
     stopped_there(operator)
     since, stood = len(operator.seen), operator.rests()
@@ -128,7 +128,7 @@ def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) ->
     operator.sees(text("search.tool-is-clear", tool=1))
 
 
-def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: Story) -> None:
+def test_loop_resumes_in_interrupted_pass_and_part_is_finished(story: Story) -> None:
     operator = story.begins(GROOVES, tools=TOOLS)
     stopped_there(operator)
     since = len(operator.seen)
@@ -146,7 +146,7 @@ def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: S
     operator.until(lambda: operator.status["interrupted"] is None, "status.json")
 
 
-def test_bar_work_is_entered_at_part_three_by_keys_and_by_the_mouse(story: Story) -> None:
+def test_bar_program_is_entered_at_third_part_by_keys_and_mouse(story: Story) -> None:
     operator = story.begins(THREE, tools=TOOLS)
     wakes(operator)
     operator.until(lambda: text("screen.to-start") in operator.prompt, "the proof")
@@ -172,7 +172,7 @@ def test_bar_work_is_entered_at_part_three_by_keys_and_by_the_mouse(story: Story
     assert not operator.events("part")
 
 
-def test_a_control_that_was_killed_in_a_groove_still_knows_the_way_out_of_it(story: Story) -> None:
+def test_killed_control_knows_retract_from_groove_after_restart(story: Story) -> None:
     operator = story.begins(GROOVES, tools=TOOLS)
     in_the_second_groove(operator)
     os.kill(operator.popen.pid, signal.SIGKILL)

@@ -37,7 +37,7 @@ def finished(operator: Operator) -> None:
     operator.until(lambda: len(operator.events("part")) == 1, "the part in the store's log")
 
 
-def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do(story: Story) -> None:
+def test_spindle_auto_in_feed_hold_waits_for_cycle_start(story: Story) -> None:
     operator = held_in_the_cut(story)
     operator.key("a")
     operator.until(lambda: not turns(operator), "at rest")
@@ -55,7 +55,7 @@ def ended_at(operator: Operator, line: int) -> bool:
     return (operator.state, operator.machine["line"]) == ("SINGLE BLOCK", line)
 
 
-def test_single_block_gets_past_every_block(story: Story) -> None:
+def test_single_block_steps_through_every_block(story: Story) -> None:
     operator = story.begins("G90G94T1\nG00X.3Z.3\nX.3\nX.3\nG01X.4F20\nX0Z0\nM30\n", tools=TOOLS)
     operator.drives_on()
     operator.key("s")
@@ -68,7 +68,7 @@ def test_single_block_gets_past_every_block(story: Story) -> None:
     operator.reaches("READY")
 
 
-def test_a_computer_that_was_away_in_a_cut_holds_and_the_palms_go_on(story: Story) -> None:
+def test_computer_stall_in_cut_causes_hold_and_cycle_start_resumes(story: Story) -> None:
     operator = story.begins(CUT.replace("F60", "F20"), tools=TOOLS)
     operator.drives_on()
     operator.starts()
@@ -86,7 +86,7 @@ def test_a_computer_that_was_away_in_a_cut_holds_and_the_palms_go_on(story: Stor
     operator.reaches("FEED HOLD")
 
 
-def test_an_opened_guard_holds_and_closing_it_waits_for_the_palms(story: Story) -> None:
+def test_opened_guard_holds_and_cycle_start_is_needed_after_closing(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     operator.ask("break", name="set_input", values=["guard", False])
     operator.drives_on()

@@ -50,7 +50,7 @@ STALLS = pytest.mark.parametrize("stall", [frozen, stopped])
 
 
 @STALLS
-def test_two_palms_two_seconds_apart_start_nothing(story: Story, stall: Stall) -> None:
+def test_palm_buttons_pressed_two_seconds_apart_start_nothing(story: Story, stall: Stall) -> None:
     operator = ready(story)
     with stall(operator):  # type: ignore[attr-defined]
         operator.down("F11")
@@ -64,7 +64,7 @@ def test_two_palms_two_seconds_apart_start_nothing(story: Story, stall: Stall) -
 
 
 @STALLS
-def test_two_palms_together_behind_a_stall_start_nothing(story: Story, stall: Stall) -> None:
+def test_palm_buttons_pressed_in_stall_start_nothing(story: Story, stall: Stall) -> None:
     operator = ready(story)
     with stall(operator):  # type: ignore[attr-defined]
         operator.cycle_start()
@@ -73,7 +73,7 @@ def test_two_palms_together_behind_a_stall_start_nothing(story: Story, stall: St
 
 
 @STALLS
-def test_palms_held_through_the_end_of_a_stall_start_nothing(story: Story, stall: Stall) -> None:
+def test_palm_buttons_down_through_end_of_stall_start_nothing(story: Story, stall: Stall) -> None:
     operator = ready(story)
     with stall(operator):  # type: ignore[attr-defined]
         operator.down("F11", "F12")
@@ -81,7 +81,7 @@ def test_palms_held_through_the_end_of_a_stall_start_nothing(story: Story, stall
 
 
 @STALLS
-def test_an_arrow_pressed_in_a_stall_moves_nothing(story: Story, stall: Stall) -> None:
+def test_arrow_pressed_in_stall_does_not_jog(story: Story, stall: Stall) -> None:
     operator = ready(story)
     operator.keys("F1", "F5")
     operator.opens("JOG")
@@ -96,7 +96,7 @@ def test_an_arrow_pressed_in_a_stall_moves_nothing(story: Story, stall: Stall) -
     operator.reaches("JOG")
 
 
-def test_a_step_pressed_in_a_stall_is_none(story: Story) -> None:
+def test_step_key_pressed_in_stall_makes_no_step(story: Story) -> None:
     operator = ready(story)
     operator.keys("F1", "F5")
     operator.opens("JOG")
@@ -108,7 +108,7 @@ def test_a_step_pressed_in_a_stall_is_none(story: Story) -> None:
     operator.until(lambda: operator.slides[1] > 0.09 * INCH, "a step")
 
 
-def test_drives_are_not_switched_on_behind_a_stall(story: Story) -> None:
+def test_drives_key_pressed_in_stall_does_not_enable_drives(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.reaches("DRIVES OFF")
     with frozen(operator):
@@ -118,7 +118,7 @@ def test_drives_are_not_switched_on_behind_a_stall(story: Story) -> None:
     operator.reaches("READY")
 
 
-def test_the_mouse_behind_a_stall_starts_nothing(story: Story) -> None:
+def test_mouse_click_in_stall_starts_nothing(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.reaches("DRIVES OFF")
     at = operator.find("DRIVES")
@@ -129,7 +129,7 @@ def test_the_mouse_behind_a_stall_starts_nothing(story: Story) -> None:
     operator.keeps(lambda: operator.state == "DRIVES OFF", 1.0, "the drives")
 
 
-def test_a_line_of_mdi_is_not_started_behind_a_stall(story: Story) -> None:
+def test_mdi_line_is_not_started_by_keys_pressed_in_stall(story: Story) -> None:
     operator = ready(story)
     operator.keys("F1", "F4")
     operator.opens("MDI")
@@ -141,7 +141,7 @@ def test_a_line_of_mdi_is_not_started_behind_a_stall(story: Story) -> None:
 
 
 @pytest.mark.parametrize("key", ["Pause", "Scroll_Lock", "h", "Escape"])
-def test_what_stops_acts_however_late(story: Story, key: str) -> None:
+def test_stop_key_acts_however_late(story: Story, key: str) -> None:
     operator = ready(story)
     operator.starts()
     operator.until(lambda: operator.slides[0] > 0.5, "a cut")
@@ -151,7 +151,7 @@ def test_what_stops_acts_however_late(story: Story, key: str) -> None:
     operator.reaches("E-STOP" if key == "Scroll_Lock" else "FEED HOLD")
 
 
-def test_the_mouse_stops_however_late(story: Story) -> None:
+def test_mouse_stop_acts_however_late(story: Story) -> None:
     operator = ready(story)
     operator.starts()
     operator.until(lambda: operator.slides[0] > 0.5, "a cut")
@@ -163,7 +163,7 @@ def test_the_mouse_stops_however_late(story: Story) -> None:
     operator.reaches("FEED HOLD")
 
 
-def test_text_behind_a_stall_is_text_and_what_follows_is_done(story: Story) -> None:
+def test_text_typed_in_stall_is_entered_and_following_key_acts(story: Story) -> None:
     operator = ready(story)
     with frozen(operator):
         operator.key("F2")
@@ -179,7 +179,7 @@ def test_text_behind_a_stall_is_text_and_what_follows_is_done(story: Story) -> N
     assert operator.screen["field"] == ""
 
 
-def test_an_answer_behind_a_stall_is_none_and_what_follows_it_is_dropped(story: Story) -> None:
+def test_late_answer_is_ignored_and_following_key_is_dropped(story: Story) -> None:
     operator = ready(story)
     operator.key("Scroll_Lock")
     operator.reaches("E-STOP")

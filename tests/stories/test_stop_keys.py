@@ -24,7 +24,7 @@ def cutting(story: Story) -> Operator:
 
 
 @pytest.mark.parametrize(("key", "state"), STOPS)
-def test_a_stop_acts_during_the_stall_and_once(story: Story, key: str, state: str) -> None:
+def test_stop_key_acts_once_and_during_the_stall(story: Story, key: str, state: str) -> None:
     operator = cutting(story)
     stops = len(operator.events("stop", "alarm", "estop"))
     number = operator.freezes(3.0)
@@ -42,7 +42,7 @@ def test_a_stop_acts_during_the_stall_and_once(story: Story, key: str, state: st
 
 
 @pytest.mark.parametrize("what", ["window", "grab"])
-def test_keys_of_another_program_stop_nothing(story: Story, what: str) -> None:
+def test_keys_typed_in_another_program_stop_nothing(story: Story, what: str) -> None:
     operator = cutting(story)
     with another_client(operator.server, what):
         operator.during(0.5)
@@ -53,7 +53,7 @@ def test_keys_of_another_program_stop_nothing(story: Story, what: str) -> None:
         operator.once = False
 
 
-def test_the_mushroom_that_was_hit_in_a_stall_is_shown_and_freed(story: Story) -> None:
+def test_estop_pressed_in_stall_is_shown_and_can_be_released(story: Story) -> None:
     operator = ready(story, in_real_time=True)
     with frozen(operator):
         operator.key("Scroll_Lock")

@@ -21,7 +21,7 @@ def goes_on(operator: Operator) -> None:
     operator.reaches("RUNNING", "WAITING")
 
 
-def test_pause_holds_with_any_modifier_and_lock(story: Story) -> None:
+def test_pause_key_holds_with_any_modifier_and_lock(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.starts()
@@ -35,7 +35,7 @@ def test_pause_holds_with_any_modifier_and_lock(story: Story) -> None:
         operator.key(lock)
 
 
-def test_the_letters_that_stop_do_so_with_any_modifier(story: Story) -> None:
+def test_stop_letters_act_with_any_modifier(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.starts()
@@ -55,7 +55,7 @@ def released(operator: Operator) -> None:
     operator.reaches("READY")
 
 
-def test_a_shifted_stop_key_never_frees_the_stop(story: Story) -> None:
+def test_shifted_stop_key_never_releases_estop(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.key("Scroll_Lock")
@@ -110,7 +110,7 @@ def test_the_stop_keys_act_on_every_page_and_in_every_field(story: Story) -> Non
         released(operator)
 
 
-def test_a_stop_key_that_is_held_and_repeats(story: Story) -> None:
+def test_repeating_stop_key_stops_and_does_not_release(story: Story) -> None:
     story.server.repeats(200, 15)
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
@@ -130,7 +130,7 @@ def test_a_stop_key_that_is_held_and_repeats(story: Story) -> None:
 
 
 @pytest.mark.parametrize("held", ["Right", "F11", "s"])
-def test_the_stop_keys_act_while_another_key_is_held(story: Story, held: str) -> None:
+def test_stop_keys_act_while_another_key_is_down(story: Story, held: str) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.starts()
@@ -142,7 +142,7 @@ def test_the_stop_keys_act_while_another_key_is_held(story: Story, held: str) ->
     operator.reaches("E-STOP")
 
 
-def test_the_stop_keys_act_while_the_mouse_drags(story: Story) -> None:
+def test_stop_keys_act_during_mouse_drag(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.starts()
@@ -155,7 +155,7 @@ def test_the_stop_keys_act_while_the_mouse_drags(story: Story) -> None:
     operator.reaches("E-STOP")
 
 
-def test_the_file_prompt_is_no_hiding_place(story: Story) -> None:
+def test_stop_keys_act_in_file_prompt(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.key("F2")
@@ -167,7 +167,7 @@ def test_the_file_prompt_is_no_hiding_place(story: Story) -> None:
     operator.reaches("E-STOP")
 
 
-def test_text_that_is_dragged_does_not_keep_the_stop_key(story: Story) -> None:
+def test_stop_key_acts_during_text_drag(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.key("F3")
@@ -185,7 +185,7 @@ def test_text_that_is_dragged_does_not_keep_the_stop_key(story: Story) -> None:
 
 
 @pytest.mark.parametrize("layout", ["fr", "de", "ru", "us dvorak", "gr"])
-def test_the_stop_keys_act_on_every_layout(story: Story, layout: str) -> None:
+def test_stop_keys_act_with_every_keyboard_layout(story: Story, layout: str) -> None:
     story.server.layout(layout)
     operator = story.begins(LONG, tools=TOOLS)
     operator.reaches("DRIVES OFF")
@@ -200,7 +200,7 @@ def test_the_stop_keys_act_on_every_layout(story: Story, layout: str) -> None:
     operator.reaches("E-STOP")
 
 
-def test_a_dead_key_before_it_takes_nothing_from_the_stop_key(story: Story) -> None:
+def test_stop_key_acts_after_a_dead_key(story: Story) -> None:
     story.server.layout("fr")
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()

@@ -32,7 +32,7 @@ def in_a_pass(story: Story) -> Operator:
     return operator
 
 
-def test_the_pot_is_turned_to_half_in_a_pass_and_the_thread_is_made(story: Story) -> None:
+def test_thread_is_finished_after_pot_is_turned_to_half_in_a_pass(story: Story) -> None:
     operator = in_a_pass(story)
     operator.keys(*["comma"] * 5)
     operator.until(lambda: operator.machine["turning"] < 200, "a slower spindle")
@@ -46,7 +46,7 @@ def test_the_pot_is_turned_to_half_in_a_pass_and_the_thread_is_made(story: Story
 
 
 @pytest.mark.parametrize("how", ["switch", "stall"])
-def test_the_spindle_stops_in_a_pass_and_the_tool_is_drawn_out(story: Story, how: str) -> None:
+def test_spindle_stop_in_a_pass_retracts_tool_from_thread(story: Story, how: str) -> None:
     operator = in_a_pass(story)
     if how == "switch":
         operator.key("a")
@@ -76,7 +76,7 @@ def pressed(operator: Operator) -> None:
     operator.cycle_start()
 
 
-def test_a_program_that_begins_where_the_machine_stands_is_proved_out(story: Story) -> None:
+def test_program_from_current_position_runs_after_single_block(story: Story) -> None:
     """Two starts in single block, single block off, Cycle Start."""
     operator = story.begins(POINTS, tools=TOOLS)
     operator.drives_on()

@@ -49,7 +49,7 @@ def at_the_end(operator: Operator) -> None:
     operator.sees(text("screen.to-start"))
 
 
-def test_by_keyboard(story: Story) -> None:
+def test_three_parts_are_made_by_keyboard(story: Story) -> None:
     on_the_shelf(story)
     operator = story.begins()
     operator.drives_on()
@@ -91,7 +91,7 @@ def mouse_and_key(operator: Operator) -> None:
     operator.server.button("left", down=False)
 
 
-def test_by_mouse(story: Story) -> None:
+def test_three_parts_are_made_by_mouse(story: Story) -> None:
     on_the_shelf(story)
     operator = story.begins()
     operator.reaches("DRIVES OFF")
@@ -118,7 +118,7 @@ def test_by_mouse(story: Story) -> None:
     at_the_end(operator)
 
 
-def test_by_touch(story: Story) -> None:
+def test_three_parts_are_made_by_touch(story: Story) -> None:
     on_the_shelf(story)
     operator = story.begins()
     operator.reaches("DRIVES OFF")

@@ -31,9 +31,7 @@ def cutting(operator: Operator) -> None:
 
 
 @pytest.mark.parametrize("text", [DWELL, STOP], ids=["in a dwell", "at M00"])
-def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unread(
-    story: Story, text: str
-) -> None:
+def test_stall_at_standstill_is_reported_and_blocks_unread_start(story: Story, text: str) -> None:
     operator = story.begins(text, tools=TOOLS, changes=FED, in_real_time=True)
     operator.drives_on()
     operator.starts()
@@ -59,7 +57,7 @@ def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unrea
     operator.until(lambda: operator.status["parts"] == 0, "status.json")
 
 
-def test_a_slide_jammed_beside_its_place_does_not_stand_in_ready(story: Story) -> None:
+def test_axis_jammed_off_its_position_raises_alarm_and_does_not_jump(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     operator.drives_on()
     operator.during(0.5)
@@ -77,7 +75,7 @@ def test_a_slide_jammed_beside_its_place_does_not_stand_in_ready(story: Story) -
     operator.keeps(lambda: operator.is_at((0.0, 1.9)), 1.0, "no leap with the drives on")
 
 
-def test_an_encoder_that_stops_as_a_hold_begins_stops_the_machine(story: Story) -> None:
+def test_encoder_failure_at_start_of_hold_stops_machine(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     cutting(operator)
     before = operator.slides[1]
@@ -90,7 +88,7 @@ def test_an_encoder_that_stops_as_a_hold_begins_stops_the_machine(story: Story) 
     operator.until(lambda: any(text.startswith(("116", "117", "102")) for text in operator.events("alarm")))
 
 
-def test_a_slide_pushed_by_hand_with_the_drives_off_is_told(story: Story) -> None:
+def test_axis_pushed_by_hand_with_drives_off_is_reported(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     operator.reaches("DRIVES OFF")
     operator.during(1.0)
@@ -101,9 +99,7 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told(story: Story) -> Non
 @pytest.mark.parametrize(
     ("port", "call"), [("io", "switch_to_safe_state"), ("axes", "stop"), ("spindle", "coast")]
 )
-def test_estop_with_a_driver_that_breaks_leaves_nothing_on_that_obeys(
-    story: Story, port: str, call: str
-) -> None:
+def test_estop_with_failing_driver_switches_off_other_outputs(story: Story, port: str, call: str) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     cutting(operator)
     operator.ask("spoil", port=port, call=call)
@@ -116,7 +112,7 @@ def test_estop_with_a_driver_that_breaks_leaves_nothing_on_that_obeys(
     operator.sees(wording("stories.press-e-stop"))
 
 
-def test_a_control_whose_thread_dies_in_a_cut_stops_and_the_screen_says_so(story: Story) -> None:
+def test_dead_control_thread_stops_machine_and_is_shown_on_screen(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     cutting(operator)
     operator.ask("kill")

@@ -22,10 +22,10 @@ def test_the_glossary_names_words_to_avoid() -> None:
 
 
 @pytest.mark.parametrize("word", avoided())
-def test_no_text_contains(word: str) -> None:
+def test_texts_contain_no_avoided_word(word: str) -> None:
     found = re.compile(rf"(?<!--)\b{re.escape(word)}\b", re.IGNORECASE)
     assert [text for text in read_list().values() if found.search(text) and text not in ACCEPTED] == []
 
 
-def test_what_is_accepted_is_there() -> None:
+def test_every_accepted_text_exists() -> None:
     assert [text for text in ACCEPTED if text not in read_list().values()] == []

@@ -20,12 +20,12 @@ from tests.texts import (
 )
 
 
-def test_the_product_has_every_text_of_the_tables() -> None:
+def test_product_contains_every_text_of_the_tables() -> None:
     known = product_texts()
     assert [name for name, each in all_texts().items() if HOLE.sub("{}", each) not in known] == []
 
 
-def test_an_unknown_id_and_a_missing_value_are_refused() -> None:
+def test_unknown_id_and_missing_value_raise_key_error() -> None:
     with pytest.raises(KeyError):
         text("screen.no-such-text")
     assert re.fullmatch(pattern("screen.no-start"), text("screen.no-start", why="AN ALARM"))
@@ -35,7 +35,7 @@ def test_an_unknown_id_and_a_missing_value_are_refused() -> None:
         text_in_spanish("screen.no-start")
 
 
-def test_a_part_of_what_is_shown_is_found_by_its_id() -> None:
+def test_part_of_displayed_text_is_found_by_its_id() -> None:
     shown = text("screen.refused", why=text("search.no-such-pass", line=8, count=5, wanted=9))
     assert begins(shown, "screen.refused")
     assert begins(shown, "screen.refused", why=pattern("search.no-such-pass", line=8))
@@ -48,7 +48,7 @@ def test_a_part_of_what_is_shown_is_found_by_its_id() -> None:
     assert opening("search.no-such-pass", line=8) == "Line 8 is executed only"
 
 
-def test_a_translation_takes_the_values_by_their_names() -> None:
+def test_translation_inserts_values_by_name() -> None:
     rest = text_in_spanish("search.pass", number=3, count=5)
     assert rest != text("search.pass", number=3, count=5)
     assert {"3", "5"} <= set(re.findall(r"\d", rest))

@@ -15,19 +15,19 @@ def received(name: str = "O77.nc") -> ReceivedProgram:
     return ReceivedProgram(b"M30\n", name, 1, "", False, 0, (), 0.0)
 
 
-def test_a_new_file_with_its_ending(tmp_path: Path) -> None:
+def test_received_program_is_saved_with_its_extension(tmp_path: Path) -> None:
     path = store_received_program(received(), tmp_path / "programs", "O77")
     assert path == tmp_path / "programs" / "O77.nc"
     assert path.read_bytes() == b"M30\n"
     assert [each.name for each in path.parent.iterdir()] == ["O77.nc"]
 
 
-def test_a_klartext_program_that_is_given_another_name_stays_one(tmp_path: Path) -> None:
+def test_renamed_klartext_program_retains_its_extension(tmp_path: Path) -> None:
     assert store_received_program(received("PLATE.h"), tmp_path, "ROOF").name == "ROOF.h"
 
 
 @pytest.mark.parametrize("name", ["O77", "O77.nc", "o77.NC"])
-def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
+def test_existing_file_is_not_overwritten(tmp_path: Path, name: str) -> None:
     (tmp_path / "O77.nc").write_bytes(b"OLD\n")
     with pytest.raises(FileOperationError, match=pattern("files.name-taken", file="O77.nc")):
         store_received_program(received(), tmp_path, name)
@@ -36,13 +36,13 @@ def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "  ", "../O77", "a/b", ".hidden"])
-def test_names_that_are_none(tmp_path: Path, name: str) -> None:
+def test_invalid_names_are_rejected(tmp_path: Path, name: str) -> None:
     with pytest.raises(FileOperationError):
         store_received_program(received(), tmp_path, name)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_disk_that_takes_nothing_is_a_sentence(tmp_path: Path) -> None:
+def test_write_error_is_reported_in_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(FileOperationError, match=pattern("files.not-written", path=tmp_path / "file")):
         store_received_program(received(), tmp_path / "file", "O77")

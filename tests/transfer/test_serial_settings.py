@@ -39,21 +39,21 @@ def around(name: str, model: SerialLineModel) -> list[str]:
         (text("programs.serial-leader"), 4),
     ],
 )
-def test_every_setting_goes_round(row: str, count: int) -> None:
+def test_every_setting_cycles_through_its_values(row: str, count: int) -> None:
     shown = around(row, DEFAULT)
     assert len(shown) == len(set(shown)) == count
 
 
-def test_a_speed_that_is_none_of_the_list_is_left_for_the_first() -> None:
+def test_baud_rate_not_in_list_changes_to_the_first() -> None:
     _, value, step = SETTING_ROWS[1]
     assert value(step(replace(DEFAULT, baud=12345), PORTS)) == "110"
 
 
-def test_without_a_port_there_is_nothing_to_step_to() -> None:
+def test_port_setting_is_unchanged_without_ports() -> None:
     assert SETTING_ROWS[0][2](DEFAULT, ()) == DEFAULT
 
 
-def test_what_is_kept_comes_back() -> None:
+def test_stored_settings_are_read_back() -> None:
     changed = replace(DEFAULT, baud=4800, parity="O", eol="\n", wait=True)
     assert read_settings(make_stored_settings(changed), DEFAULT) == changed
 
@@ -61,5 +61,5 @@ def test_what_is_kept_comes_back() -> None:
 @pytest.mark.parametrize(
     "kept", [None, 7, {"flow": "smoke"}, {"bits": 9}, {"parity": "X"}, {"baud": "fast"}, {"wait": 1}]
 )
-def test_what_cannot_be_is_forgotten(kept: object) -> None:
+def test_invalid_stored_settings_are_replaced_by_defaults(kept: object) -> None:
     assert read_settings(kept, DEFAULT) == DEFAULT

@@ -16,7 +16,7 @@ PRESSES: tuple[tuple[Command, ...], ...] = ((FeedHold(),), (CycleStart(),), (Res
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_the_drives_are_never_asked_for_more_than_the_slides_can(
+def test_random_operator_actions_never_exceed_axis_limits_in_the_drives(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     dice, seen = random.Random(seed), [0.0, 0.0]

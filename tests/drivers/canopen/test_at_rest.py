@@ -47,7 +47,7 @@ def sleeping(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> Sleeping:
     return Sleeping(bench, monkeypatch)
 
 
-def test_a_bus_at_rest_has_ten_syncs_a_second_and_nobody_misses_anything(sleeping: Sleeping) -> None:
+def test_idle_bus_has_ten_syncs_a_second_without_faults(sleeping: Sleeping) -> None:
     sleeping.go_on(3.0)
     gaps = [b - a for a, b in zip(sleeping.syncs, sleeping.syncs[1:], strict=False)]
     assert 28 <= len(sleeping.syncs) <= 31
@@ -59,7 +59,7 @@ def test_a_bus_at_rest_has_ten_syncs_a_second_and_nobody_misses_anything(sleepin
     assert machine.io.read_state().age < 0.2  # a station that is silent for longer would hold
 
 
-def test_a_sync_may_go_out_early_with_something_else(sleeping: Sleeping) -> None:
+def test_sync_of_a_sleeping_bus_may_be_sent_early(sleeping: Sleeping) -> None:
     sleeping.go_on(1.0)
     machine, clock = sleeping.bench.machine, sleeping.bench.clock
     before = len(sleeping.syncs)
@@ -73,7 +73,9 @@ def test_a_sync_may_go_out_early_with_something_else(sleeping: Sleeping) -> None
     assert gaps
 
 
-def test_the_drives_go_on_hearing_our_heartbeat(sleeping: Sleeping, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_drives_receive_the_heartbeat_while_the_bus_sleeps(
+    sleeping: Sleeping, monkeypatch: pytest.MonkeyPatch
+) -> None:
     bus, clock = sleeping.bench.machine.bus, sleeping.bench.clock
     beats: list[float] = []
     send = bus.send_message
@@ -90,14 +92,14 @@ def test_the_drives_go_on_hearing_our_heartbeat(sleeping: Sleeping, monkeypatch:
     assert min(gaps) > 0.9 * bus.config.heartbeat
 
 
-def test_an_input_is_seen_with_the_next_sync_at_the_latest(sleeping: Sleeping) -> None:
+def test_input_change_is_read_with_the_next_sync(sleeping: Sleeping) -> None:
     sleeping.go_on(1.0)
     sleeping.bench.peers.machine.press_estop()
     sleeping.go_on(0.12)
     assert sleeping.bench.machine.io.read_state().estop
 
 
-def test_who_answers_every_second_sync_is_seen_as_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_node_that_replies_to_every_second_sync_is_read_as_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     made = CanBench(can_machine(("sync_ms = 10 ", "sync_ms = 5 ")))
     try:
         assert made.machine.config.bus.slow_reply_divisor == 2
@@ -112,7 +114,7 @@ def test_who_answers_every_second_sync_is_seen_as_soon(monkeypatch: pytest.Monke
         made.close()
 
 
-def test_awake_it_has_every_sync_again_within_a_round(sleeping: Sleeping) -> None:
+def test_sync_rate_is_normal_again_one_cycle_after_waking(sleeping: Sleeping) -> None:
     sleeping.go_on(1.0)
     del sleeping.syncs[:]
     woken = sleeping.bench.clock.now()
@@ -121,7 +123,7 @@ def test_awake_it_has_every_sync_again_within_a_round(sleeping: Sleeping) -> Non
     assert len(sleeping.syncs) == pytest.approx(1.0 / sleeping.bench.machine.config.bus.sync, abs=2)
 
 
-def test_a_bus_that_moves_or_that_is_not_heard_needs_every_round(sleeping: Sleeping) -> None:
+def test_moving_or_faulted_bus_needs_every_cycle(sleeping: Sleeping) -> None:
     machine = sleeping.bench.machine
     sleeping.go_on(1.0)
     axes = machine.axes
@@ -136,7 +138,7 @@ def test_a_bus_that_moves_or_that_is_not_heard_needs_every_round(sleeping: Sleep
     assert machine.get_idle_time(True) == 0.0
 
 
-def test_a_slide_without_power_rolls_out_and_rests_where_it_is_pushed_to(bench: CanBench) -> None:
+def test_axis_without_power_coasts_and_stays_where_it_is_pushed(bench: CanBench) -> None:
     plant = bench.peers.plant
     bench.run(0.1)
     assert plant.axis_drives["X"].is_idle
@@ -151,7 +153,7 @@ def test_a_slide_without_power_rolls_out_and_rests_where_it_is_pushed_to(bench: 
 
 
 @pytest.mark.parametrize("act", ["moves", "jammed", "pushed"])
-def test_a_drive_that_something_acts_on_does_not_rest(bench: CanBench, act: str) -> None:
+def test_drive_with_an_external_force_is_not_idle(bench: CanBench, act: str) -> None:
     drive = bench.peers.plant.axis_drives["X"]
     bench.machine.axes.enable(True)
     bench.run(0.3)

@@ -25,7 +25,7 @@ def without_station() -> Machine:
     )
 
 
-def test_a_machine_without_buttons_gets_those_on_the_screen() -> None:
+def test_machine_without_buttons_gets_an_on_screen_station() -> None:
     clock = ManualClock()
     owned = create_canopen_drivers(without_station(), clock)
     assert isinstance(owned.ports.station, OnScreenStation)
@@ -34,7 +34,7 @@ def test_a_machine_without_buttons_gets_those_on_the_screen() -> None:
     owned.close()
 
 
-def test_the_real_estop_counts_on_a_screen_station_too() -> None:
+def test_hardware_estop_also_applies_to_an_on_screen_station() -> None:
     clock, pressed = ManualClock(), [False]
     station = OnScreenStation(clock, lambda: {"estop": pressed[0]})
     assert not station.read_state().estop
@@ -46,7 +46,7 @@ def test_the_real_estop_counts_on_a_screen_station_too() -> None:
     assert station.read_state().estop
 
 
-def test_both_palms_on_the_screen_are_one_start() -> None:
+def test_both_on_screen_palm_buttons_give_one_start() -> None:
     clock = ManualClock()
     station = OnScreenStation(clock, dict)
     station.press_left()
@@ -61,7 +61,7 @@ def test_both_palms_on_the_screen_are_one_start() -> None:
     assert station.read_state().start
 
 
-def test_a_machine_with_buttons_has_none_on_the_screen() -> None:
+def test_machine_with_buttons_has_no_on_screen_station() -> None:
     clock = ManualClock()
     owned = create_canopen_drivers(can_machine(), clock)
     assert not isinstance(owned.ports.station, OnScreenStation)

@@ -32,7 +32,7 @@ def run(bench: CanBench, seconds: float) -> None:
         bench.tick(TICK)
 
 
-def test_a_path_is_followed_to_a_count_and_arrives(bench: CanBench) -> None:
+def test_path_is_followed_and_ends_within_one_count(bench: CanBench) -> None:
     """The drive's own demand against the path, one SYNC of 4 ms and one of the wire behind."""
     axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
@@ -53,7 +53,7 @@ def test_a_path_is_followed_to_a_count_and_arrives(bench: CanBench) -> None:
     assert abs(sample.following_error[0]) < 0.0013
 
 
-def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_syncs_continue_while_a_long_path_is_queued(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth of a second of work, in hundreds of pieces: without a SYNC the drives would stop."""
     axes, bus = bench.machine.axes, bench.machine.bus
     axes.enable(True)
@@ -85,7 +85,7 @@ def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch
     assert axes.horizon() == pytest.approx(start + 4.0)
 
 
-def test_following_error_is_the_lag_of_the_slide_alone(bench: CanBench) -> None:
+def test_following_error_excludes_the_bus_delay(bench: CanBench) -> None:
     """2(1 - .9) v/wn with wn = 2 pi 40 is .048 mm at 60 mm/s; a SYNC more or less of it would be .24 mm."""
     axes = bench.machine.axes
     axes.enable(True)
@@ -109,7 +109,7 @@ def test_hold_brakes_on_the_path(bench: CanBench) -> None:
     assert axes.sample().enabled
 
 
-def test_a_late_sync_is_made_good_without_a_leap(bench: CanBench) -> None:
+def test_late_sync_is_caught_up_without_a_velocity_jump(bench: CanBench) -> None:
     axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
@@ -129,7 +129,7 @@ def test_a_late_sync_is_made_good_without_a_leap(bench: CanBench) -> None:
     assert sample.actual[0] == pytest.approx(60.0 * 0.62, abs=0.0013)
 
 
-def test_setpoints_away_for_longer_are_a_fault_that_stops_all(bench: CanBench) -> None:
+def test_longer_setpoint_gap_is_a_fault_that_stops_all_axes(bench: CanBench) -> None:
     axes, plant = bench.machine.axes, bench.peers.plant
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
@@ -143,7 +143,7 @@ def test_setpoints_away_for_longer_are_a_fault_that_stops_all(bench: CanBench) -
     assert plant.servos[0].v == 0.0
 
 
-def test_away_at_rest_is_nothing(bench: CanBench) -> None:
+def test_setpoint_gap_at_rest_is_not_a_fault(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     run(bench, 0.2)
@@ -155,7 +155,7 @@ def test_away_at_rest_is_nothing(bench: CanBench) -> None:
     assert axes.sample().enabled
 
 
-def test_a_silent_computer_stops_the_drives_by_their_own_time_out() -> None:
+def test_host_failure_stops_the_drives_by_their_own_timeout() -> None:
     bench = CanBench(cyclic())
     axes, plant = bench.machine.axes, bench.peers.plant
     axes.enable(True)
@@ -169,7 +169,7 @@ def test_a_silent_computer_stops_the_drives_by_their_own_time_out() -> None:
     bench.close()
 
 
-def test_without_a_time_out_they_stay_at_the_last_setpoint_until_the_heartbeat_is_missed() -> None:
+def test_drives_without_a_setpoint_timeout_stop_by_heartbeat_timeout() -> None:
     bench = CanBench(cyclic(drive="epos4"))
     axes, plant = bench.machine.axes, bench.peers.plant
     axes.enable(True)
@@ -184,7 +184,7 @@ def test_without_a_time_out_they_stay_at_the_last_setpoint_until_the_heartbeat_i
     bench.close()
 
 
-def test_homing_leaves_no_old_target_behind() -> None:
+def test_homing_clears_the_old_target_position() -> None:
     """Its count leaps at home; a setpoint of before would send it back over the whole way."""
     bench = CanBench(cyclic("csp", drive="epos4", absolute=False))
     axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["Z"]
@@ -206,7 +206,7 @@ def test_homing_leaves_no_old_target_behind() -> None:
     bench.close()
 
 
-def test_a_slide_that_was_moved_without_power_stays_where_it_is(bench: CanBench) -> None:
+def test_axis_moved_without_power_stays_in_place_when_enabled(bench: CanBench) -> None:
     axes, plant = bench.machine.axes, bench.peers.plant
     axes.enable(True)
     run(bench, 0.1)
@@ -220,7 +220,7 @@ def test_a_slide_that_was_moved_without_power_stays_where_it_is(bench: CanBench)
     assert axes.sample().fault == ""
 
 
-def test_a_drive_that_does_not_interpolate_is_told() -> None:
+def test_drive_that_does_not_interpolate_is_reported() -> None:
     bench = CanBench(cyclic("ip"))
     drive = bench.peers.plant.axis_drives["X"]
     drive._is_cyclic = lambda: False  # type: ignore[method-assign]
@@ -232,7 +232,7 @@ def test_a_drive_that_does_not_interpolate_is_told() -> None:
     bench.close()
 
 
-def test_a_setpoint_goes_out_before_its_sync_and_none_twice(bench: CanBench) -> None:
+def test_each_setpoint_is_sent_once_before_its_sync(bench: CanBench) -> None:
     """On the wire: SYNC, then each drive's command once, every 4 ms."""
     frames: list[int] = []
     pump = bench.peers.network.bus
@@ -256,7 +256,7 @@ def test_a_setpoint_goes_out_before_its_sync_and_none_twice(bench: CanBench) -> 
     assert all(each == [0x80, 0x201, 0x202] for each in rounds)
 
 
-def test_the_beat_is_kept_whatever_came_late() -> None:
+def test_sync_schedule_does_not_drift_after_a_late_sync() -> None:
     schedule = SyncSchedule(0.002, 10.0)
     assert schedule.record_sync(10.0) == 0.0
     assert schedule.record_sync(10.0024) == 0.0  # a fifth of a period late
@@ -267,13 +267,13 @@ def test_the_beat_is_kept_whatever_came_late() -> None:
     assert schedule.record_sync(10.0121) == 0.0  # as late as the last: an interval of a period
 
 
-def test_a_beat_that_is_always_late_by_the_same_keeps_nobody_waiting() -> None:
+def test_constant_sync_delay_is_absorbed_by_the_schedule() -> None:
     schedule = SyncSchedule(0.002, 0.0)
     assert schedule.record_sync(0.001) == pytest.approx(0.001)
     assert all(schedule.record_sync(0.001 + 0.002 * n) == pytest.approx(0.0, abs=1e-12) for n in range(1, 50))
 
 
-def test_drive_time_outs_are_written_where_they_are() -> None:
+def test_drive_timeouts_are_written_to_their_objects() -> None:
     bench = CanBench(cyclic())
     assert bench.peers.plant.axis_drives["Z"].values[od.SYNC_PERIOD, 0] == 4000
     bench.close()

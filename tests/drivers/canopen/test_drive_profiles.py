@@ -28,7 +28,9 @@ from tests.drivers.machines import ramp
         ("epos2", 0xFB, "EPOS4 70/15", "epos2"),  # the machine file decides
     ],
 )
-def test_family_by_name_or_by_eds(name: str, vendor: int | None, product: str | None, family: str) -> None:
+def test_drive_family_is_selected_by_name_or_eds(
+    name: str, vendor: int | None, product: str | None, family: str
+) -> None:
     assert find_profile(name, vendor, product).name == family
 
 
@@ -41,7 +43,7 @@ def test_family_by_name_or_by_eds(name: str, vendor: int | None, product: str | 
         ("copley", {0x2010, 0x60C1}, {0x20C1}),
     ],
 )
-def test_what_a_family_has(family: str, has: set[int], has_not: set[int]) -> None:
+def test_drive_family_has_its_objects(family: str, has: set[int], has_not: set[int]) -> None:
     objects = build_drive_dictionary(PROFILES[family])
     assert has <= set(objects)
     assert not has_not & set(objects)
@@ -53,7 +55,7 @@ def axis(family: str, counts_per_rev: int) -> AxisConfig:
     )
 
 
-def test_speeds_go_out_in_the_drives_units() -> None:
+def test_speeds_are_converted_to_drive_units() -> None:
     """25.4 mm/s are 20 000 counts/s, five turns of 4000 a second; 3048 mm/s² are 2.4 million counts/s²."""
     assert axis("cia402", 0).convert_speed(25.4) == pytest.approx(20000.0)
     assert axis("epos4", 4000).convert_speed(25.4) == pytest.approx(300.0)
@@ -63,7 +65,7 @@ def test_speeds_go_out_in_the_drives_units() -> None:
     assert axis("epos4", 4000).convert_acceleration(0.0) == 1
 
 
-def test_a_segment_of_copley_by_its_bytes() -> None:
+def test_copley_segment_is_packed_into_its_bytes() -> None:
     data = pack_copley_segment(11, 20, -1234.5, -5)
     # count 11 goes round at 8; 20 ms; -5 and -12345 tenths in 24 bits, low byte first
     assert data == bytes([3, 20, 0xFB, 0xFF, 0xFF, 0xC7, 0xCF, 0xFF])
@@ -74,7 +76,7 @@ def test_a_segment_of_copley_by_its_bytes() -> None:
         pack_copley_segment(0, 20, 838_861.0, 0)
 
 
-def test_copleys_queue_goes_the_same_path() -> None:
+def test_copley_drives_follow_the_same_path() -> None:
     bench = CanBench(can_machine(('drive = "epos2"', 'drive = "copley"'), (", counts_per_rev = 4000", "")))
     axes = bench.machine.axes
     axes.enable(True)
@@ -92,7 +94,7 @@ def test_copleys_queue_goes_the_same_path() -> None:
     bench.close()
 
 
-def test_load_of_the_bus_by_hand() -> None:
+def test_bus_load_matches_hand_calculation() -> None:
     # 47 + 8n + floor((34 + 8n - 1)/4): 55, 125 and 135 bits
     assert [get_max_frame_bits(n) for n in (0, 7, 8)] == [55, 125, 135]
     load = calculate_cyclic_load(2, 2, 1_000_000, 0.001, 10)
@@ -115,14 +117,14 @@ def refused(*changes: tuple[str, str]) -> FileFinding:
     return finding
 
 
-def test_a_bus_without_room_is_refused_with_the_interval_that_fits() -> None:
+def test_overloaded_bus_is_rejected_with_the_sync_interval_that_fits() -> None:
     slow = refused(("sync_ms = 10 ", "sync_ms = 1 "), ("bitrate = 1000000\n", "bitrate = 500000\n"))
     assert (slow.path, slow.value) == ("canopen.sync_ms", "1")
     for value in ("2 axis drives", "127%", "500000 bit/s", "sync_ms to at least 2"):
         assert value in slow.expected_value
 
 
-def test_setpoints_come_in_whole_milliseconds_and_ahead_of_their_time() -> None:
+def test_sync_must_be_whole_milliseconds_and_commit_time_long_enough() -> None:
     broken = refused(("sync_ms = 10 ", "sync_ms = 2.5 "))
     assert (broken.path, broken.value) == ("canopen.sync_ms", "2.5")
     assert "60C2" in broken.expected_value
@@ -135,7 +137,7 @@ def test_setpoints_come_in_whole_milliseconds_and_ahead_of_their_time() -> None:
     assert "20" in late.expected_value
 
 
-def test_a_family_is_that_of_the_node_before_that_of_all() -> None:
+def test_drive_family_of_a_node_overrides_the_common_family() -> None:
     bench = CanBench(
         cyclic("csp", ("Z = { id = 2 }", 'Z = { id = 2, drive = "epos4", counts_per_rev = 4000 }'))
     )

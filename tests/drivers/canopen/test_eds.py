@@ -23,7 +23,7 @@ def beside(folder: Path) -> Machine:
     return dataclasses.replace(machine, source=str(folder / "machine.toml"))
 
 
-def test_an_eds_lies_beside_the_machine_file(tmp_path: Path) -> None:
+def test_eds_file_next_to_the_machine_file_is_used(tmp_path: Path) -> None:
     canopen.export_od(build_drive_dictionary(PROFILES["epos2"]), str(tmp_path / "x.eds"), "eds")
     node = create_canopen_config(beside(tmp_path)).axes[0].node
     assert node is not None
@@ -36,7 +36,7 @@ def test_an_eds_lies_beside_the_machine_file(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore:The 'warn' method")  # of the library's logger
 @pytest.mark.parametrize("text", [None, "", "[6040]\nParameterName=\n", "\x00\x01"])
-def test_an_eds_that_cannot_be_read_is_named(tmp_path: Path, text: str | None) -> None:
+def test_unreadable_eds_file_is_reported_by_name(tmp_path: Path, text: str | None) -> None:
     if text is not None:
         (tmp_path / "x.eds").write_text(text)
     with raises_code(DriverError, "driver", tmp_path / "x.eds"):

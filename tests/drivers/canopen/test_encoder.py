@@ -68,7 +68,7 @@ def own() -> Iterator[EncoderBench]:
 
 
 @pytest.mark.parametrize("rpm", [3500.0, 60.0, -1800.0])
-def test_speed_and_angle_are_those_of_the_spindle(stand: EncoderBench, rpm: float) -> None:
+def test_encoder_speed_and_angle_match_the_spindle(stand: EncoderBench, rpm: float) -> None:
     stand.turn(rpm)
     stand.run(3.0)
     spindle = stand.machine.ports.spindle
@@ -80,7 +80,7 @@ def test_speed_and_angle_are_those_of_the_spindle(stand: EncoderBench, rpm: floa
     assert spindle.read_fault() == ""
 
 
-def test_a_spindle_that_stands_has_no_speed(stand: EncoderBench) -> None:
+def test_stopped_spindle_has_zero_measured_speed(stand: EncoderBench) -> None:
     stand.turn(500.0)
     stand.run(1.0)
     stand.turn(0.0)
@@ -88,7 +88,7 @@ def test_a_spindle_that_stands_has_no_speed(stand: EncoderBench) -> None:
     assert stand.encoder.measure_rpm() == 0.0
 
 
-def test_it_counts_on_when_its_range_is_over() -> None:
+def test_encoder_continues_when_its_counter_wraps() -> None:
     stand = EncoderBench(can_machine(*OWN))
     assert stand.peers.encoder is not None
     stand.peers.encoder.turns = 16
@@ -104,7 +104,7 @@ def test_it_counts_on_when_its_range_is_over() -> None:
     stand.close()
 
 
-def test_it_turns_nothing(own: EncoderBench) -> None:
+def test_encoder_node_alone_cannot_turn_the_spindle(own: EncoderBench) -> None:
     own.machine.ports.spindle.set_speed(0.0)
     with raises_code(DriverError, "spindle-off") as told:
         own.machine.ports.spindle.set_speed(100.0)
@@ -126,7 +126,7 @@ def refused(machine: Machine, *values: str, **says: int) -> None:
         stand.close()
 
 
-def test_another_count_than_the_files_is_refused() -> None:
+def test_count_other_than_in_the_machine_file_is_rejected() -> None:
     refused(can_machine(*OWN), "5000", "6501:0", "4096", steps=5000)
 
 
@@ -134,7 +134,7 @@ def test_a_single_turn_encoder_is_refused_for_a_fast_spindle() -> None:
     refused(can_machine(*OWN), "after 1 rev,", "2.3", "4.67", turns=1)
 
 
-def test_a_node_that_is_no_encoder_is_refused() -> None:
+def test_node_that_is_not_an_encoder_is_rejected() -> None:
     stand = EncoderBench(can_machine(*OWN))
     module = stand.machine.io.modules["io"]
     assert stand.machine.config.encoder is not None
@@ -148,7 +148,7 @@ def test_a_node_that_is_no_encoder_is_refused() -> None:
 # --- its loss ---------------------------------------------------------------------------------------------
 
 
-def test_silence_is_told_of_and_moves_no_axis(own: EncoderBench) -> None:
+def test_silent_encoder_is_reported_and_does_not_disable_the_axes(own: EncoderBench) -> None:
     own.machine.axes.enable(True)
     own.peers.nodes["turns"].is_silent = True
     own.run(0.5)
@@ -165,7 +165,7 @@ def test_silence_is_told_of_and_moves_no_axis(own: EncoderBench) -> None:
     assert own.machine.ports.spindle.read_fault() == ""
 
 
-def test_a_restart_is_told_of(own: EncoderBench) -> None:
+def test_encoder_restart_is_reported(own: EncoderBench) -> None:
     own.run(0.1)
     own.peers.nodes["turns"].boot_up()
     own.run(0.05)
@@ -179,7 +179,7 @@ def test_a_restart_is_told_of(own: EncoderBench) -> None:
     assert own.encoder.measure_rpm() == pytest.approx(600.0, abs=2.0)
 
 
-def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
+def test_jump_in_the_count_is_reported_as_an_encoder_fault(own: EncoderBench) -> None:
     assert own.peers.encoder is not None
     own.run(0.1)
     own.peers.encoder.stuck = 40960
@@ -189,13 +189,13 @@ def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
     assert "turns: " in fault
 
 
-def test_an_emergency_of_the_node_is_told_of(own: EncoderBench) -> None:
+def test_emergency_message_of_the_encoder_is_reported(own: EncoderBench) -> None:
     own.peers.nodes["turns"].send_emergency(0x5000)
     own.run(0.05)
     assert "EMCY 5000" in own.machine.ports.spindle.read_fault()
 
 
-def test_the_survey_of_a_bus_asks_the_encoder_too() -> None:
+def test_bus_survey_includes_the_encoder() -> None:
     clock, machine = ManualClock(), can_machine(*OWN)
     peers = create_simulated_devices(machine, clock)
     found = {

@@ -46,7 +46,7 @@ def under_way(rig: BusRig, seconds: float = 0.5) -> None:
     rig.run(seconds)
 
 
-def test_a_drive_that_restarts_has_lost_its_home() -> None:
+def test_drive_that_restarts_is_no_longer_homed() -> None:
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
     rig.ready()
     for axis in rig.bench.machine.axes.drives.axes:
@@ -60,7 +60,7 @@ def test_a_drive_that_restarts_has_lost_its_home() -> None:
     rig.bench.close()
 
 
-def test_palms_start_where_the_machine_file_wants_two_hands() -> None:
+def test_palm_buttons_start_if_machine_file_requires_two_hands() -> None:
     rig = BusRig(can_machine())
     rig.start(OVER)
     rig.run(0.1)
@@ -71,7 +71,7 @@ def test_palms_start_where_the_machine_file_wants_two_hands() -> None:
     rig.bench.close()
 
 
-def test_homing_in_the_order_of_the_machine_file_and_a_cycle_only_afterwards() -> None:
+def test_homing_follows_the_machine_file_order_and_precedes_a_cycle() -> None:
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
     for index, way in ((0, 8.0), (1, -15.0)):
         rig.bench.peers.plant.servos[index].switch = way
@@ -101,7 +101,7 @@ def test_homing_in_the_order_of_the_machine_file_and_a_cycle_only_afterwards() -
     rig.bench.close()
 
 
-def test_feed_hold_ends_a_homing_and_jogs_go_on_from_there() -> None:
+def test_feed_hold_ends_homing_and_jogging_is_possible_afterwards() -> None:
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
     rig.bench.peers.plant.servos[1].switch = 60.0
     rig.ready()

@@ -88,7 +88,7 @@ def make() -> Iterator[MakeBench]:
         each.close()
 
 
-def test_outputs_go_out_and_come_back_off(make: MakeBench) -> None:
+def test_outputs_are_sent_and_start_in_the_off_state(make: MakeBench) -> None:
     bench = make()
     bench.start()
     bench.io.write("coolant", is_on=True)
@@ -100,7 +100,7 @@ def test_outputs_go_out_and_come_back_off(make: MakeBench) -> None:
     assert bench.module.objects.read(0x6200, 1) == 0b10  # coolant is off, the collet keeps its state
 
 
-def test_inputs_come_with_the_next_sync(make: MakeBench) -> None:
+def test_inputs_are_read_with_the_next_sync(make: MakeBench) -> None:
     bench = make()
     bench.start()
     assert bench.io.inputs() == {"guard": False, "estop": True}  # no voltage on the wire: pressed
@@ -109,7 +109,7 @@ def test_inputs_come_with_the_next_sync(make: MakeBench) -> None:
     assert bench.io.inputs() == {"guard": True, "estop": False}
 
 
-def test_safe_states_and_the_watch_over_us_are_in_the_module(make: MakeBench) -> None:
+def test_safe_states_and_heartbeat_monitoring_are_written_to_the_module(make: MakeBench) -> None:
     bench = make()
     bench.start()
     read = bench.module.objects.read
@@ -119,7 +119,7 @@ def test_safe_states_and_the_watch_over_us_are_in_the_module(make: MakeBench) ->
     assert read(0x1017, 0) == 100
 
 
-def test_a_pot_is_read(make: MakeBench) -> None:
+def test_override_pot_is_read_from_an_analog_input(make: MakeBench) -> None:
     bench = make(words=2, pot=2)
     bench.module.objects.write(0x6401, 2, 32767)
     bench.start()
@@ -128,9 +128,7 @@ def test_a_pot_is_read(make: MakeBench) -> None:
 
 
 @pytest.mark.parametrize(("word", "fraction"), [(32767, 1.5), (0, 0.0), (-200, 0.0), (16384, 0.75)])
-def test_a_pot_stands_where_it_stands_before_its_first_pdo(
-    make: MakeBench, word: int, fraction: float
-) -> None:
+def test_pot_position_is_read_before_its_first_pdo(make: MakeBench, word: int, fraction: float) -> None:
     bench = make(words=2, pot=2)
     bench.module.objects.write(0x6401, 2, word)
     bench.io.connect()
@@ -138,20 +136,22 @@ def test_a_pot_stands_where_it_stands_before_its_first_pdo(
 
 
 @pytest.mark.parametrize(("inputs", "outputs", "words"), [(1, 0, 0), (0, 1, 0), (0, 1, 1), (8, 8, 4)])
-def test_modules_of_every_kind_stay_well(make: MakeBench, inputs: int, outputs: int, words: int) -> None:
+def test_modules_with_any_number_of_terminals_run_without_faults(
+    make: MakeBench, inputs: int, outputs: int, words: int
+) -> None:
     bench = make(inputs, outputs, words)
     bench.start()
     assert bench.run(1.0) == ""
     assert bench.io.read_state().age < 0.2
 
 
-def test_a_terminal_that_the_module_has_not(make: MakeBench) -> None:
+def test_terminal_that_the_module_does_not_have_is_rejected(make: MakeBench) -> None:
     bench = make(words=1, pot=2)
     with raises_code(DriverError, "driver", "io: ", "6401.2"):
         bench.start()
 
 
-def test_a_module_that_restarts_is_told(make: MakeBench) -> None:
+def test_restarted_module_is_reported(make: MakeBench) -> None:
     bench = make()
     bench.start()
     bench.module.node.nmt.reset()
@@ -161,7 +161,7 @@ def test_a_module_that_restarts_is_told(make: MakeBench) -> None:
 
 
 @pytest.mark.parametrize(("inputs", "why"), [(1, "SYNC"), (0, "heartbeat")])
-def test_a_module_that_falls_silent_is_told(make: MakeBench, inputs: int, why: str) -> None:
+def test_silent_module_is_reported(make: MakeBench, inputs: int, why: str) -> None:
     bench = make(inputs)
     bench.start()
     bench.module.objects.write(0x1017, 0, 0)  # no heartbeat
@@ -171,7 +171,7 @@ def test_a_module_that_falls_silent_is_told(make: MakeBench, inputs: int, why: s
         bench.io.write("coolant", is_on=True)
 
 
-def test_a_mapping_that_cannot_be_changed_will_do_when_it_is_the_right_one(make: MakeBench) -> None:
+def test_fixed_pdo_mapping_is_accepted_if_it_is_the_right_one(make: MakeBench) -> None:
     bench = make()
     bench.module.fix_mapping()
     bench.start()
@@ -180,7 +180,7 @@ def test_a_mapping_that_cannot_be_changed_will_do_when_it_is_the_right_one(make:
     assert bench.io.inputs()["guard"]
 
 
-def test_another_mapping_that_cannot_be_changed_is_refused(make: MakeBench) -> None:
+def test_fixed_pdo_mapping_that_differs_is_rejected(make: MakeBench) -> None:
     bench = make(inputs=2)
     bench.module.fix_mapping()
     with raises_code(DriverError, "drive-setup", "io: node 10, object 1A00:0: "):

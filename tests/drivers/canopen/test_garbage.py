@@ -29,7 +29,7 @@ def stray(bench: CanBench, cob: int, data: bytes, **how: bool) -> None:
         (0x582, b"\x43"),  # an SDO answer that nobody asked for, and too short
     ],
 )
-def test_one_frame_of_a_wrong_shape_is_dropped_and_three_are_an_alarm(
+def test_one_malformed_frame_is_dropped_and_three_are_a_fault(
     bench: CanBench, cob: int, data: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
     axes = bench.machine.axes
@@ -51,7 +51,7 @@ def test_one_frame_of_a_wrong_shape_is_dropped_and_three_are_an_alarm(
     assert axes.sample().fault == ""
 
 
-def test_frames_of_other_protocols_are_none_of_our_business(bench: CanBench) -> None:
+def test_frames_of_other_protocols_are_ignored(bench: CanBench) -> None:
     stray(bench, 0x18FF0102, b"\x01\x02", extended=True)
     stray(bench, 0x181, b"", is_remote_frame=True)
     stray(bench, 0x7E5, b"\x04\x00")  # LSS
@@ -62,7 +62,7 @@ def test_frames_of_other_protocols_are_none_of_our_business(bench: CanBench) -> 
 
 @settings(max_examples=5, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 0x7FF), st.binary(max_size=8)), min_size=1, max_size=20))
-def test_whatever_comes_nothing_is_raised_and_a_fault_stops_all(
+def test_random_frames_raise_no_exception_and_any_fault_stops_all(
     frames: list[tuple[int, bytes]],
 ) -> None:
     bench = CanBench()
@@ -83,7 +83,7 @@ def test_whatever_comes_nothing_is_raised_and_a_fault_stops_all(
     bench.close()
 
 
-def test_an_error_frame_that_says_bus_off_stops_everything(bench: CanBench) -> None:
+def test_bus_off_error_frame_stops_everything(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     assert bench.peers.network.bus is not None

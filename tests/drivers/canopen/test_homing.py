@@ -44,7 +44,7 @@ def test_homing_ends_at_the_switch_and_not_by_stale_bits(lost: CanBench) -> None
     assert axes.sample().fault == ""
 
 
-def test_homing_refuses_without_power_while_moving_and_an_unknown_axis(lost: CanBench) -> None:
+def test_homing_is_rejected_without_power_in_motion_or_for_unknown_axis(lost: CanBench) -> None:
     axes = lost.machine.axes
     with raises_code(DriverError, "power-lost"):
         axes.home("Z")
@@ -59,7 +59,7 @@ def test_homing_refuses_without_power_while_moving_and_an_unknown_axis(lost: Can
     assert told.value.reason == "axis-moves"
 
 
-def test_a_homing_that_is_stopped_leaves_the_axis_unhomed(lost: CanBench) -> None:
+def test_interrupted_homing_leaves_the_axis_unhomed(lost: CanBench) -> None:
     axes = lost.machine.axes
     lost.peers.plant.servos[1].switch = 50.0
     axes.enable(True)

@@ -62,7 +62,7 @@ def shop() -> Iterator[tuple[CanopenDevices, BaseNode402]]:
     peers.close()
 
 
-def test_the_librarys_profile_walks_it_up_and_changes_its_mode(
+def test_canopen_library_profile_enables_the_simulated_drive(
     shop: tuple[CanopenDevices, BaseNode402],
 ) -> None:
     peers, node = shop

@@ -86,7 +86,7 @@ def turning(rig: MeasuredRig, text: str = TURNS) -> None:
     rig.until_true(lambda shot: shot.rpm_actual > 1780.0, limit=8.0)
 
 
-def test_a_program_waits_for_the_measured_speed_and_runs_to_its_end(rig: MeasuredRig) -> None:
+def test_program_waits_for_the_measured_speed_and_completes(rig: MeasuredRig) -> None:
     rig.start(CUTS)
     rig.until(MachineState.IDLE, MachineState.FAULT, limit=120.0)
     assert rig.cause == ""
@@ -94,7 +94,7 @@ def test_a_program_waits_for_the_measured_speed_and_runs_to_its_end(rig: Measure
     assert rig.inverter.rpm == 0.0
 
 
-def test_a_motor_that_slips_is_not_at_speed(rig: MeasuredRig) -> None:
+def test_slipping_motor_is_not_at_speed(rig: MeasuredRig) -> None:
     rig.bench.peers.plant.spindle.faults.speed_fraction = (
         0.9  # within what both may disagree, outside of the band
     )
@@ -104,7 +104,7 @@ def test_a_motor_that_slips_is_not_at_speed(rig: MeasuredRig) -> None:
     assert rig.shot.demand[0] > 0.4 * INCH  # no cut has begun
 
 
-def test_a_thread_keeps_its_pitch(rig: MeasuredRig) -> None:
+def test_thread_has_its_programmed_pitch(rig: MeasuredRig) -> None:
     reads: list[tuple[float, float]] = []
 
     def note(_shot: object) -> None:
@@ -123,7 +123,7 @@ def test_a_thread_keeps_its_pitch(rig: MeasuredRig) -> None:
     assert lead == pytest.approx(-PITCH * INCH, rel=0.01)
 
 
-def test_an_encoder_that_falls_silent_in_a_cut_is_an_alarm(rig: MeasuredRig) -> None:
+def test_silent_encoder_during_a_cut_raises_an_alarm(rig: MeasuredRig) -> None:
     turning(rig)
     rig.bench.peers.nodes["turns"].is_silent = True
     rig.until(MachineState.FAULT, limit=0.5)
@@ -136,7 +136,7 @@ def test_an_encoder_that_falls_silent_in_a_cut_is_an_alarm(rig: MeasuredRig) -> 
     )  # the inverter's word: it gives nothing any more
 
 
-def test_after_reset_nothing_turns_by_itself_and_m03_needs_the_encoder(rig: MeasuredRig) -> None:
+def test_spindle_stays_off_after_reset_and_m03_needs_the_encoder(rig: MeasuredRig) -> None:
     turning(rig)
     rig.bench.peers.nodes["turns"].is_silent = True
     rig.until(MachineState.FAULT, limit=0.5)
@@ -155,7 +155,7 @@ def test_after_reset_nothing_turns_by_itself_and_m03_needs_the_encoder(rig: Meas
     turning(rig)
 
 
-def test_an_encoder_that_is_lost_while_nothing_turns_is_no_alarm_until_m03(rig: MeasuredRig) -> None:
+def test_encoder_lost_with_a_stopped_spindle_raises_an_alarm_at_m03(rig: MeasuredRig) -> None:
     rig.ready()
     rig.bench.peers.nodes["turns"].is_silent = True
     rig.run(1.0)
@@ -167,7 +167,7 @@ def test_an_encoder_that_is_lost_while_nothing_turns_is_no_alarm_until_m03(rig: 
     assert rig.inverter.rpm == 0.0
 
 
-def test_a_coupling_that_has_come_off_never_counts_as_standing(rig: MeasuredRig) -> None:
+def test_detached_encoder_coupling_never_counts_as_standstill(rig: MeasuredRig) -> None:
     turning(rig)
     assert rig.bench.peers.encoder is not None
     rig.bench.peers.encoder.detach_coupling()
@@ -180,7 +180,7 @@ def test_a_coupling_that_has_come_off_never_counts_as_standing(rig: MeasuredRig)
         rig.tick()
 
 
-def test_a_motor_cable_on_wrongly_is_seen(rig: MeasuredRig) -> None:
+def test_swapped_motor_cable_is_detected(rig: MeasuredRig) -> None:
     rig.inverter.backwards = True
     rig.start(TURNS)
     rig.until(MachineState.FAULT, limit=5.0)
@@ -197,24 +197,24 @@ def feed(pairs: list[tuple[float, float]], fraction: float = 0.15) -> list[str]:
     return [agreement.compare_speeds(measured, given, 0.1 * i) for i, (measured, given) in enumerate(pairs)]
 
 
-def test_slip_is_none_of_it() -> None:
+def test_motor_slip_is_not_a_disagreement() -> None:
     assert not any(feed([(1700.0, 1800.0)] * 50))
 
 
-def test_a_ramp_is_none_of_it() -> None:
+def test_acceleration_ramp_is_not_a_disagreement() -> None:
     assert not any(feed([(50.0 * i, min(150.0 * i, 3000.0)) for i in range(21)]))
 
 
-def test_running_down_is_none_of_it() -> None:
+def test_coasting_down_is_not_a_disagreement() -> None:
     assert not any(feed([(1800.0 - 10 * i, 0.0) for i in range(60)]))
 
 
-def test_a_short_disagreement_is_none_of_it() -> None:
+def test_short_disagreement_is_not_reported() -> None:
     assert not any(feed([(1800.0, 1800.0)] * 10 + [(1000.0, 1800.0)] * 9 + [(1800.0, 1800.0)] * 10))
 
 
 @pytest.mark.parametrize("measured", [0.0, 1400.0, 2300.0, -1800.0])
-def test_a_lasting_one_is_told_after_a_second(measured: float) -> None:
+def test_lasting_disagreement_is_reported_after_one_second(measured: float) -> None:
     said = feed([(1800.0, 1800.0)] * 10 + [(measured, 1800.0)] * 20)
     assert [bool(text) for text in said].index(True) == 20
     assert f"{measured:.0f} rpm" in said[-1]

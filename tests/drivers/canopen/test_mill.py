@@ -51,7 +51,7 @@ def mill() -> Machine:
     return parse_machine(text + BUS, "mill.toml")
 
 
-def test_five_axes_arrive_together_on_one_line() -> None:
+def test_five_axes_move_along_one_line_and_arrive_together() -> None:
     bench = CanBench(mill())
     axes = bench.machine.axes
     assert axes.axes == ("X", "Y", "Z", "A", "C")

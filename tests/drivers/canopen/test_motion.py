@@ -22,7 +22,7 @@ def moving(bench: CanBench) -> CanBench:
     return bench
 
 
-def test_a_path_is_followed_and_arrives(moving: CanBench) -> None:
+def test_path_is_followed_to_its_end(moving: CanBench) -> None:
     sample = moving.machine.axes.sample()
     assert sample.moving
     # 2(1 - .9)v/wn with wn = 2·pi·40 is 0.0955 mm; one step of the model more or less
@@ -34,7 +34,7 @@ def test_a_path_is_followed_and_arrives(moving: CanBench) -> None:
     assert sample.fault == ""
 
 
-def test_the_drive_passes_where_the_path_is_to_a_count(bench: CanBench) -> None:
+def test_drive_interpolation_matches_the_path_within_one_count(bench: CanBench) -> None:
     """The peer's cubic against the setpoints' own parabola, at every millisecond."""
     axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
@@ -54,7 +54,7 @@ def test_the_drive_passes_where_the_path_is_to_a_count(bench: CanBench) -> None:
     assert axes.follower.max_deviation_counts < 1.0
 
 
-def test_hold_from_full_speed_within_a_quarter_second(moving: CanBench) -> None:
+def test_feed_hold_from_full_speed_takes_a_quarter_second_at_most(moving: CanBench) -> None:
     axes = moving.machine.axes
     asked = moving.clock.now()
     axes.stop(StopMode.RAMP_HOLD)
@@ -66,7 +66,7 @@ def test_hold_from_full_speed_within_a_quarter_second(moving: CanBench) -> None:
 
 
 @pytest.mark.parametrize("before", [0.02, 0.06, 0.1, 0.139, 0.16, 0.18])
-def test_hold_at_the_end_of_a_move_changes_nothing_in_the_drives(bench: CanBench, before: float) -> None:
+def test_feed_hold_at_the_end_of_a_move_causes_no_jump(bench: CanBench, before: float) -> None:
     """What is left is in the drives already, or as good as: no jump, wherever it comes."""
     axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
@@ -83,7 +83,7 @@ def test_hold_at_the_end_of_a_move_changes_nothing_in_the_drives(bench: CanBench
     assert not axes.sample().moving
 
 
-def test_hold_at_a_turning_point_does_not_go_on(bench: CanBench) -> None:
+def test_feed_hold_at_a_reversal_point_does_not_start_the_return_move(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     there = ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.2)
@@ -110,7 +110,7 @@ def test_a_stop_with_power_off_does_not_wait_for_the_queue(moving: CanBench) -> 
     assert axes.sample().fault == ""
 
 
-def test_a_second_move_after_the_queues_have_ended(bench: CanBench) -> None:
+def test_second_move_is_executed_after_the_queues_have_ended(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.1))
@@ -125,7 +125,7 @@ def test_a_second_move_after_the_queues_have_ended(bench: CanBench) -> None:
 
 
 @pytest.mark.parametrize("wait", [0.50, 0.56, 0.60, 0.62, 0.64, 0.66, 0.68, 0.70, 0.75])
-def test_a_move_that_comes_while_the_queues_end(bench: CanBench, wait: float) -> None:
+def test_move_queued_while_the_queues_end_is_executed(bench: CanBench, wait: float) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.1))
@@ -136,7 +136,7 @@ def test_a_move_that_comes_while_the_queues_end(bench: CanBench, wait: float) ->
     assert axes.sample().actual[0] == pytest.approx(0.0, abs=0.002)
 
 
-def test_drives_refuse_when_off_too_fast_or_outside(bench: CanBench) -> None:
+def test_drives_reject_setpoints_when_off_too_fast_or_outside_travel(bench: CanBench) -> None:
     axes = bench.machine.axes
     with raises_code(DriverError, "power-lost"):
         axes.splice(ramp(0.2, ZERO, 60.0, 0.1))

@@ -35,7 +35,7 @@ def make() -> Iterator[Callable[..., BusRig]]:
 # --- start and hold ---------------------------------------------------------------------------------------
 
 
-def test_a_start_that_is_on_at_power_up_is_no_press(make: Callable[..., BusRig]) -> None:
+def test_start_signal_present_at_power_up_is_not_a_press(make: Callable[..., BusRig]) -> None:
     rig = make()
     rig.bench.peers.machine.press_left()
     rig.bench.peers.machine.press_right()
@@ -52,7 +52,7 @@ def test_a_start_that_is_on_at_power_up_is_no_press(make: Callable[..., BusRig])
     rig.until(MachineState.RUN, limit=0.5)
 
 
-def test_a_tied_down_palm_starts_one_cycle(make: Callable[..., BusRig]) -> None:
+def test_palm_button_tied_down_allows_only_one_cycle(make: Callable[..., BusRig]) -> None:
     rig = make()
     rig.ready()
     rig.load("G90G94F300\nX.05\nM30")
@@ -68,7 +68,7 @@ def test_a_tied_down_palm_starts_one_cycle(make: Callable[..., BusRig]) -> None:
     assert rig.shot.parts == 1
 
 
-def test_palms_more_than_half_a_second_apart_start_nothing(make: Callable[..., BusRig]) -> None:
+def test_palms_pressed_more_than_half_a_second_apart_do_not_start(make: Callable[..., BusRig]) -> None:
     rig = make()
     rig.ready()
     rig.load(OVER)
@@ -79,7 +79,7 @@ def test_palms_more_than_half_a_second_apart_start_nothing(make: Callable[..., B
     assert rig.state is MachineState.IDLE
 
 
-def test_hold_stops_on_the_path_and_bars_the_start_while_it_is_down(make: Callable[..., BusRig]) -> None:
+def test_hold_button_stops_on_the_path_and_bars_start_while_pressed(make: Callable[..., BusRig]) -> None:
     rig = make(ONE_HAND)
     under_way(rig)
     rig.bench.peers.machine.press_hold()
@@ -118,7 +118,7 @@ def test_a_broken_estop_wire_is_an_estop(
 # --- pots and switch --------------------------------------------------------------------------------------
 
 
-def test_the_feed_pot_slows_the_slides_at_once_and_a_risen_one_after_it_has_stood(
+def test_lower_feed_pot_acts_immediately_and_higher_after_settling(
     make: Callable[..., BusRig],
 ) -> None:
     rig = make(ONE_HAND)
@@ -134,7 +134,7 @@ def test_the_feed_pot_slows_the_slides_at_once_and_a_risen_one_after_it_has_stoo
     assert rig.state is MachineState.RUN
 
 
-def test_a_worn_wiper_is_a_feed_hold(make: Callable[..., BusRig]) -> None:
+def test_jumping_pot_signal_causes_a_feed_hold(make: Callable[..., BusRig]) -> None:
     rig = make(ONE_HAND)
     under_way(rig, 0.2)
     rig.bench.peers.machine.pot_noise(0.6)
@@ -153,7 +153,7 @@ def test_a_module_that_is_silent_stops_everything(make: Callable[..., BusRig]) -
     assert not rig.bench.peers.plant.terminals.output_states["coolant"]
 
 
-def test_the_spindle_switch_and_pot(make: Callable[..., BusRig]) -> None:
+def test_spindle_switch_and_pot_control_the_spindle(make: Callable[..., BusRig]) -> None:
     rig = make(ONE_HAND)
     rig.start("G90G94F50\nM03S2000\nG04F60\nM30")
     rig.until_true(lambda shot: abs(shot.rpm_actual - 2000.0) < 20.0, limit=5.0)
@@ -212,7 +212,7 @@ def turned() -> Iterator[Turned]:
     rig.bench.close()
 
 
-def test_clicks_on_the_bus_are_thousandths(turned: Turned) -> None:
+def test_handwheel_clicks_over_the_bus_are_thousandths_of_an_inch(turned: Turned) -> None:
     turned.spin(25)
     turned.until(MachineState.IDLE, limit=2.0)
     turned.run(0.3)
@@ -224,7 +224,7 @@ def test_clicks_on_the_bus_are_thousandths(turned: Turned) -> None:
     assert turned.shot.demand[1] == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_counter_that_goes_round_goes_on(turned: Turned) -> None:
+def test_handwheel_continues_when_its_counter_wraps(turned: Turned) -> None:
     turned.page = None
     turned.run(0.5)
     turned.bench.peers.machine.turn_handwheel(32766)
@@ -238,7 +238,7 @@ def test_a_counter_that_goes_round_goes_on(turned: Turned) -> None:
     assert turned.shot.demand[1] == pytest.approx(10 * THOU, abs=1e-6)
 
 
-def test_a_cable_that_comes_off_stops_the_slide(turned: Turned) -> None:
+def test_disconnected_handwheel_module_stops_the_axis(turned: Turned) -> None:
     turned.spin(50)
     turned.bench.peers.cable(is_disconnected=True)
     turned.spin(100)
@@ -248,7 +248,7 @@ def test_a_cable_that_comes_off_stops_the_slide(turned: Turned) -> None:
     assert turned.bench.peers.machine.get_true_position()[1] < 100 * THOU
 
 
-def test_a_module_that_restarts_counts_from_nought_and_moves_nothing(turned: Turned) -> None:
+def test_restarted_handwheel_module_moves_nothing(turned: Turned) -> None:
     turned.spin(50)
     turned.until(MachineState.IDLE, limit=2.0)
     at = turned.bench.peers.machine.get_true_position()[1]

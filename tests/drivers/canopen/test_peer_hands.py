@@ -11,7 +11,7 @@ from tests.drivers.canopen.bench import CanBench
 from tests.texts import opening, text
 
 
-def test_hands_at_the_station_reach_the_control(bench: CanBench) -> None:
+def test_simulated_station_actions_reach_the_control(bench: CanBench) -> None:
     assert execute_command("estop", bench.peers) == "estop: done"
     bench.run(0.1)
     assert bench.machine.io.read_state().estop
@@ -27,7 +27,7 @@ def test_hands_at_the_station_reach_the_control(bench: CanBench) -> None:
     assert bench.machine.io.inputs()["TB2-5"]
 
 
-def test_both_palms_are_one_start(bench: CanBench) -> None:
+def test_both_palm_buttons_give_one_start(bench: CanBench) -> None:
     seen = []
     assert execute_command("start", bench.peers) == "start: done"
     for _ in range(60):
@@ -37,7 +37,7 @@ def test_both_palms_are_one_start(bench: CanBench) -> None:
     assert not seen[-1]
 
 
-def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
+def test_disconnected_cable_silences_every_node(bench: CanBench) -> None:
     assert execute_command("cable off", bench.peers) == "cable off: done"
     bench.run(0.5)
     assert bench.machine.axes.sample().fault
@@ -55,13 +55,13 @@ def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
         ("jam Q on", text("drivers.no-drive", axis="Q", drives="X, Z")),
     ],
 )
-def test_what_is_not_understood_is_told_and_changes_nothing(bench: CanBench, line: str, told: str) -> None:
+def test_unknown_command_is_reported_and_changes_nothing(bench: CanBench, line: str, told: str) -> None:
     assert told in execute_command(line, bench.peers)
     bench.run(0.1)
     assert not bench.machine.axes.sample().fault
 
 
-def test_lines_come_whole_and_an_end_is_no_trouble() -> None:
+def test_lines_are_read_whole_and_end_of_input_is_not_an_error() -> None:
     theirs, ours = os.pipe()
     typed = LineReader(theirs)
     assert list(typed.read_lines()) == []

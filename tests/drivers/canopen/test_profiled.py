@@ -16,7 +16,7 @@ def profiled() -> CanBench:
     return CanBench(can_machine(('mode = "pvt"', 'mode = "pp"')))
 
 
-def test_profile_position_goes_where_the_queue_ends() -> None:
+def test_profile_position_moves_to_the_end_of_the_queue() -> None:
     bench = profiled()
     axes = bench.machine.axes
     axes.enable(True)
@@ -27,7 +27,7 @@ def test_profile_position_goes_where_the_queue_ends() -> None:
     bench.close()
 
 
-def test_profile_position_brakes_where_the_queue_does() -> None:
+def test_profile_position_brakes_where_the_queue_brakes() -> None:
     bench = profiled()
     axes = bench.machine.axes
     axes.enable(True)
@@ -55,7 +55,7 @@ def test_profile_position_refuses_a_corner() -> None:
     bench.close()
 
 
-def test_drives_that_see_only_the_end_of_a_move_play_no_drive_test() -> None:
+def test_profile_position_drives_do_not_run_drive_tests() -> None:
     bench = profiled()
     assert 'mode = "pp"' in bench.machine.ports.untraced
     bench.close()

@@ -79,7 +79,7 @@ def bench(request: pytest.FixtureRequest) -> Iterator[CanBench]:
     found.close()
 
 
-def test_it_is_configured_by_what_it_has_moves_and_stops(bench: CanBench) -> None:
+def test_drive_with_a_public_eds_is_configured_moves_and_stops(bench: CanBench) -> None:
     axes = bench.machine.axes
     for told in bench.machine.ports.warnings:
         assert re.search("[0-9A-F]{4}h", told)
@@ -94,7 +94,7 @@ def test_it_is_configured_by_what_it_has_moves_and_stops(bench: CanBench) -> Non
     assert not axes.sample().enabled
 
 
-def test_its_silence_stops_the_other_slide(bench: CanBench) -> None:
+def test_silent_drive_stops_the_other_axis(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.2, (0.0, 0.0, 0.0), 60.0, 1.0))

@@ -16,7 +16,7 @@ from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
 
-def test_each_sync_is_a_row_with_the_drives_positions(bench: CanBench) -> None:
+def test_each_sync_gives_a_sample_row_with_the_drive_positions(bench: CanBench) -> None:
     source = bench.machine.ports.samples
     assert source is not None
     assert source.sample_rate_hz == pytest.approx(1.0 / bench.machine.config.bus.sync)
@@ -43,9 +43,7 @@ def test_each_sync_is_a_row_with_the_drives_positions(bench: CanBench) -> None:
     assert np.isnan(rows[:, 3 * len(axes.axes)]).all()  # C is the spindle, whose drive is none of an axis
 
 
-def test_the_torque_of_a_drive_is_its_load_in_per_cent(
-    bench: CanBench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_drive_torque_is_its_load_in_percent(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
     """6077h counts per mille of the rated torque, signed."""
     read = AxisDrive.read
     monkeypatch.setattr(
@@ -57,7 +55,7 @@ def test_the_torque_of_a_drive_is_its_load_in_per_cent(
     assert list(source.take()[-1, 1 + 2 * len(axes.axes) : 3 + 2 * len(axes.axes)]) == [-34.5, -34.5]
 
 
-def test_a_drive_that_maps_no_torque_tells_none_and_starts_all_the_same(
+def test_drive_without_torque_mapping_reports_no_load_and_starts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     transmit = NodeSetup.map_sent_objects
@@ -78,7 +76,7 @@ def test_a_drive_that_maps_no_torque_tells_none_and_starts_all_the_same(
     bench.close()
 
 
-def test_what_a_silent_drive_told_last_is_no_load(bench: CanBench) -> None:
+def test_silent_drive_reports_no_load(bench: CanBench) -> None:
     bench.run(0.2)
     drive = bench.machine.axes.drives.axes[0].drive
     assert drive.torque_percent == 0.0

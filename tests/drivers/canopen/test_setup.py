@@ -21,7 +21,7 @@ from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
 
 
-def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> None:
+def test_every_drive_gets_its_stop_options_and_monitoring_settings(bench: CanBench) -> None:
     for name in ("X", "Z"):
         values = bench.peers.plant.axis_drives[name].values
         assert values[od.ABORT_OPTION, 0] == 3
@@ -35,7 +35,7 @@ def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> N
         assert (od.QUICK_OPTION, 0) not in values  # an EPOS2 has none
 
 
-def test_in_a_cyclic_mode_they_watch_setpoints_and_know_their_interval() -> None:
+def test_cyclic_drives_monitor_setpoints_and_get_the_sync_interval() -> None:
     bench = CanBench(cyclic())
     values = bench.peers.plant.axis_drives["X"].values
     assert values[od.QUICK_OPTION, 0] == 2
@@ -48,13 +48,13 @@ def test_in_a_cyclic_mode_they_watch_setpoints_and_know_their_interval() -> None
     bench.close()
 
 
-def test_a_value_of_the_machine_file_wins() -> None:
+def test_sdo_value_of_the_machine_file_overrides_the_default() -> None:
     bench = CanBench(can_machine(('"6007:0" = 3', '"6007:0" = 2')))
     assert bench.peers.plant.axis_drives["X"].values[od.ABORT_OPTION, 0] == 2
     bench.close()
 
 
-def test_outputs_have_their_safe_state_in_the_module(bench: CanBench) -> None:
+def test_safe_output_states_are_written_to_the_module(bench: CanBench) -> None:
     board = bench.peers.nodes["io"].device
     values = board.values  # type: ignore[attr-defined]
     # the collet, bit 1 of the first byte, keeps its state; the others fall
@@ -97,7 +97,7 @@ def test_a_read_only_object_with_the_wanted_value_is_not_written() -> None:
     assert od.QUICK_DECEL in record.written
 
 
-def test_a_read_only_object_with_another_value_is_named_with_both_values() -> None:
+def test_read_only_object_with_a_different_value_is_reported_with_both() -> None:
     def spoil(peers: CanopenDevices) -> None:
         says(peers, "X", {(od.WINDOW, 0): 77})
         Recorded(peers, "X", frozenset((od.WINDOW,)))
@@ -105,7 +105,7 @@ def test_a_read_only_object_with_another_value_is_named_with_both_values() -> No
     refused(spoil, "drive-setup", "node 1", "6065:0", "77", "1600", machine=cyclic())
 
 
-def test_a_pdo_that_is_mapped_as_wanted_is_left_alone() -> None:
+def test_pdo_already_mapped_as_required_is_not_written() -> None:
     """Mapping and communication of many modules are fixed; the second connection finds all as it wants it."""
     machine, clock = cyclic(), ManualClock()
     peers = create_simulated_devices(machine, clock)
@@ -128,19 +128,19 @@ def connected_without(machine: Machine, *lacking: int) -> tuple[str, ...]:
     return tuple(connected.ports.warnings)
 
 
-def test_all_that_a_drive_has_not_is_told_in_one_sentence_with_what_it_means() -> None:
+def test_all_objects_missing_in_a_drive_are_reported_in_one_warning() -> None:
     (told,) = connected_without(cyclic(), od.WINDOW, od.WINDOW_TIME, od.ABORT_OPTION, od.QUICK_DECEL)
     assert told.startswith("X: ")
     assert re.findall("([0-9A-F]{4})h", told) == ["6007", "6065", "6066", "6085"]
 
 
-def test_a_family_without_a_time_out_for_setpoints_says_so_of_each_drive() -> None:
+def test_missing_setpoint_timeout_is_reported_for_each_drive() -> None:
     told = connected_without(cyclic(drive="epos4"))
     assert [each.split(":")[0] for each in told] == ["X", "Z"]
     assert all("1400h" in each for each in told)
 
 
-def test_a_spindle_that_would_turn_on_without_us_is_refused() -> None:
+def test_spindle_drive_that_would_run_without_the_host_is_rejected() -> None:
     def spoil(peers: CanopenDevices) -> None:
         del peers.nodes["spindle"].local_node.object_dictionary[od.ABORT_OPTION]
 
@@ -165,40 +165,40 @@ def drive(peers: CanopenDevices, name: str = "Z") -> AxisDrive:
     return peers.plant.axis_drives[name]
 
 
-def test_a_node_that_is_not_there() -> None:
+def test_missing_node_is_reported_by_name() -> None:
     def spoil(peers: CanopenDevices) -> None:
         peers.nodes["Z"].is_silent = True
 
     refused(spoil, "drive-silent", "Z: node 2, object 1000:0: ")
 
 
-def test_a_terminal_block_where_a_drive_should_be() -> None:
+def test_terminal_block_in_place_of_a_drive_is_rejected() -> None:
     def spoil(peers: CanopenDevices) -> None:
         says(peers, "Z", {(od.DEVICE_TYPE, 0): 0x000F0191})
 
     refused(spoil, "drive-setup", "node 2 ", "401", "402")
 
 
-def test_a_drive_without_the_mode() -> None:
+def test_drive_without_the_required_mode_is_rejected() -> None:
     def spoil(peers: CanopenDevices) -> None:
         says(peers, "Z", {(od.SUPPORTED, 0): 0x21})
 
     refused(spoil, "drive-setup", "Z: ", "interpolated position")
 
 
-def test_a_drive_that_keeps_another_value() -> None:
+def test_drive_that_retains_another_value_is_rejected() -> None:
     def spoil(peers: CanopenDevices) -> None:
         says(peers, "Z", {(od.WINDOW, 0): 0xFFFFFFFF})
 
     refused(spoil, "drive-setup", "6065:0", "4294967295", "1600")
 
 
-def test_an_object_that_the_drive_does_not_have() -> None:
+def test_configured_object_that_the_drive_does_not_have_is_rejected() -> None:
     machine = can_machine(('"6007:0" = 3', '"5FFF:0" = 3'))
     refused(lambda _: None, "drive-setup", "X: node 1 ", "5FFF:0", "[canopen.sdo]", machine=machine)
 
 
-def test_a_drive_that_does_not_come_on_is_named(bench: CanBench) -> None:
+def test_drive_that_does_not_enable_is_reported_by_name(bench: CanBench) -> None:
     bench.peers.plant.axis_drives["Z"].power_states.refuses_power = True
     with raises_code(DriverError, "no-power", "Z", "switch on disabled"):
         bench.machine.axes.enable(True)
@@ -206,14 +206,14 @@ def test_a_drive_that_does_not_come_on_is_named(bench: CanBench) -> None:
     assert not bench.peers.plant.axis_drives["X"].power_states.is_powered  # none without the others
 
 
-def test_a_mode_that_is_not_taken_keeps_the_drives_off(bench: CanBench) -> None:
+def test_mode_that_the_drive_does_not_accept_bars_power(bench: CanBench) -> None:
     says(bench.peers, "X", {(od.MODE_SHOWN, 0): 1})
     with raises_code(DriverError, "no-power", "X", "operation enabled"):
         bench.machine.axes.enable(True)
     assert not bench.machine.axes.sample().enabled
 
 
-def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> None:
+def test_drive_fault_is_reported_in_words_and_cleared_without_power(bench: CanBench) -> None:
     axes, plant = bench.machine.axes, bench.peers.plant
 
     def state(name: str) -> str:
@@ -239,7 +239,7 @@ def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> 
     assert axes.sample().enabled
 
 
-def test_a_fault_that_stays_is_told_again(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_persistent_drive_fault_is_reported_again(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
     axes, power = bench.machine.axes, bench.peers.plant.axis_drives["Z"].power_states
     bench.peers.machine.drive_fault("Z")
     bench.run(0.1)
@@ -251,7 +251,7 @@ def test_a_fault_that_stays_is_told_again(bench: CanBench, monkeypatch: pytest.M
         axes.clear_fault()
 
 
-def test_a_driver_host_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanBench) -> None:
+def test_late_driver_host_starves_the_drives_and_all_stop(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 60.0, 1.0))
@@ -264,7 +264,7 @@ def test_a_driver_host_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanB
     assert not any(drive.power_states.is_powered for drive in bench.peers.plant.axis_drives.values())
 
 
-def test_a_fault_of_one_drive_stops_the_other_within_a_round_of_the_bus(bench: CanBench) -> None:
+def test_fault_of_one_drive_stops_the_other_within_one_bus_cycle(bench: CanBench) -> None:
     axes, plant = bench.machine.axes, bench.peers.plant
     axes.enable(True)
     both = ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 100.0, 0.5)
@@ -290,12 +290,12 @@ def refused_by(machine: Machine, says_of_x: dict[tuple[int, int], int], *values:
     refused(spoil, "drive-setup", *values, machine=machine)
 
 
-def test_a_turn_of_the_motor_is_what_gear_and_feed_say() -> None:
+def test_counts_per_rev_must_match_gear_and_feed_objects() -> None:
     geared = {(od.GEAR, 1): 3, (od.GEAR, 2): 1, (od.FEED, 1): 30000, (od.FEED, 2): 1}
     machine = cyclic("csp", ("X = { id = 1 }", "X = { id = 1, counts_per_rev = 4000 }"))
     refused_by(machine, geared, "X: ", "10000 counts", "6091h", "6092h", "4000")
 
 
-def test_a_homing_method_that_the_drive_does_not_list() -> None:
+def test_homing_method_that_the_drive_does_not_list_is_rejected() -> None:
     listed = {(od.HOME_METHODS, 0): 2, (od.HOME_METHODS, 1): 37, (od.HOME_METHODS, 2): 18}
     refused_by(cyclic("csp", absolute=False), listed, "method 1 ", "60E3h: 18, 37", "axis.X.home")

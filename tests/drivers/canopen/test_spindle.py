@@ -16,7 +16,7 @@ def powered(bench: CanBench) -> bool:
     return drive.power_states.is_powered
 
 
-def test_power_comes_with_the_command_and_goes_at_standstill(bench: CanBench) -> None:
+def test_spindle_is_enabled_by_a_speed_command_and_disabled_at_standstill(bench: CanBench) -> None:
     spindle = bench.machine.ports.spindle
     bench.run(0.2)
     assert not powered(bench)
@@ -31,7 +31,7 @@ def test_power_comes_with_the_command_and_goes_at_standstill(bench: CanBench) ->
     assert not powered(bench)
 
 
-def test_a_command_during_estop_is_an_alarm_and_not_a_start_at_its_release(bench: CanBench) -> None:
+def test_speed_command_during_estop_fails_and_does_not_start_on_release(bench: CanBench) -> None:
     spindle = bench.machine.ports.spindle
     bench.peers.machine.press_estop()
     spindle.set_speed(500.0)
@@ -45,7 +45,7 @@ def test_a_command_during_estop_is_an_alarm_and_not_a_start_at_its_release(bench
         spindle.set_speed(500.0)
 
 
-def test_a_blocked_motor_is_told_and_the_spindle_runs_down(bench: CanBench) -> None:
+def test_blocked_spindle_motor_is_reported_and_spindle_coasts_down(bench: CanBench) -> None:
     spindle = bench.machine.ports.spindle
     spindle.set_speed(500.0)
     bench.run(1.0)
@@ -65,13 +65,13 @@ def test_a_blocked_motor_is_told_and_the_spindle_runs_down(bench: CanBench) -> N
     assert spindle.speed() == pytest.approx(200.0, abs=1.0)
 
 
-def test_speed_is_limited_to_the_machines(bench: CanBench) -> None:
+def test_spindle_speed_is_limited_to_the_maximum_of_the_machine(bench: CanBench) -> None:
     bench.machine.ports.spindle.set_speed(-99999.0)
     bench.run(4.0)
     assert bench.machine.ports.spindle.speed() == -3500.0
 
 
-def test_an_angle_only_where_counts_a_turn_are_known() -> None:
+def test_spindle_angle_is_available_only_with_counts_per_revolution() -> None:
     plain = CanBench()
     assert plain.machine.ports.spindle.read_angle() is None
     plain.close()
@@ -85,7 +85,7 @@ def test_an_angle_only_where_counts_a_turn_are_known() -> None:
     bench.close()
 
 
-def test_the_angle_goes_on_when_the_drives_counter_goes_round() -> None:
+def test_spindle_angle_continues_when_the_drive_counter_wraps() -> None:
     bench = CanBench(can_machine(("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 4096 }")))
     spindle, drive = bench.machine.ports.spindle, bench.machine.spindle
     assert drive is not None
@@ -99,7 +99,7 @@ def test_the_angle_goes_on_when_the_drives_counter_goes_round() -> None:
     bench.close()
 
 
-def test_without_a_drive_on_the_bus_there_is_nothing_to_turn() -> None:
+def test_spindle_on_an_inverter_has_no_canopen_drive() -> None:
     inverter = 'vfd = { family = "delta-vfdb", port = "/dev/null", hz_per_rpm = 0.01667 }'
     bench = CanBench(
         can_machine(('driver = "cia402"', f'driver = "vfd"\n{inverter}'), ("spindle = { id = 3 }", ""))

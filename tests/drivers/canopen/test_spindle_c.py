@@ -64,7 +64,7 @@ def stopped_somewhere(stand: CBench, rpm: float = 700.0) -> float:
     return stand.degrees()
 
 
-def test_held_where_it_stands_it_does_not_turn(stand: CBench) -> None:
+def test_spindle_engaged_as_c_without_orienting_does_not_turn(stand: CBench) -> None:
     at = stopped_somewhere(stand)
     stand.hold(orient=False)
     assert stand.degrees() == pytest.approx(at, abs=0.1)
@@ -73,7 +73,7 @@ def test_held_where_it_stands_it_does_not_turn(stand: CBench) -> None:
     assert stand.peers.plant.spindle_drive.power_states.is_powered  # it holds
 
 
-def test_oriented_it_turns_to_its_index(stand: CBench) -> None:
+def test_spindle_engaged_as_c_with_orienting_turns_to_its_index(stand: CBench) -> None:
     stopped_somewhere(stand)
     stand.hold(orient=True)
     off = (stand.degrees() + 180.0) % 360.0 - 180.0
@@ -81,7 +81,9 @@ def test_oriented_it_turns_to_its_index(stand: CBench) -> None:
     assert stand.machine.axes.sample().actual[2] == pytest.approx(0.0, abs=0.1)
 
 
-def test_on_a_clock_that_goes_on_with_every_look(stand: CBench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_orientation_works_with_a_clock_that_advances_on_every_read(
+    stand: CBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
     plain = ManualClock.now
 
     def creeping(clock: ManualClock) -> float:
@@ -94,7 +96,7 @@ def test_on_a_clock_that_goes_on_with_every_look(stand: CBench, monkeypatch: pyt
     assert (stand.degrees() + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.1)
 
 
-def test_the_index_is_looked_for_once(stand: CBench) -> None:
+def test_index_is_searched_only_once(stand: CBench) -> None:
     stand.hold(orient=True)
     stand.c.set_c_mode(False)
     stand.until(lambda: stand.c.step is CanopenCStep.SPINDLE_MODE, 5.0)
@@ -111,7 +113,7 @@ def test_the_index_is_looked_for_once(stand: CBench) -> None:
     assert off == pytest.approx(0.0, abs=0.15)
 
 
-def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
+def test_spindle_turns_again_only_after_c_mode_ends(stand: CBench) -> None:
     stand.hold(orient=False)
     with raises_code(DriverError, "spindle-off") as told:
         stand.machine.ports.spindle.set_speed(500.0)
@@ -125,7 +127,7 @@ def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
     assert stand.peers.machine.get_spindle_rpm() == pytest.approx(500.0, abs=2.0)
 
 
-def test_it_is_refused_while_it_turns(stand: CBench) -> None:
+def test_c_mode_is_rejected_while_the_spindle_turns(stand: CBench) -> None:
     stand.machine.ports.spindle.set_speed(300.0)
     stand.run(1.0)
     with raises_code(DriverError, "c-coupling") as told:
@@ -138,7 +140,7 @@ def test_it_is_refused_while_it_turns(stand: CBench) -> None:
     assert told.value.reason == "spindle-turns"
 
 
-def test_it_is_refused_without_power() -> None:
+def test_c_mode_is_rejected_without_power() -> None:
     stand = CBench(c_machine())
     with raises_code(DriverError, "c-coupling") as told:
         stand.c.set_c_mode(True)
@@ -146,7 +148,7 @@ def test_it_is_refused_without_power() -> None:
     stand.close()
 
 
-def test_estop_ends_it_and_nothing_turns_on_release(stand: CBench) -> None:
+def test_estop_ends_c_mode_and_nothing_turns_on_release(stand: CBench) -> None:
     stand.hold(orient=False)
     stand.peers.machine.press_estop()
     stand.machine.ports.spindle.start_coasting()
@@ -160,7 +162,7 @@ def test_estop_ends_it_and_nothing_turns_on_release(stand: CBench) -> None:
 
 
 @pytest.mark.parametrize("step", [CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION, CanopenCStep.ENGAGED])
-def test_closing_leaves_it_without_power_wherever_it_is(stand: CBench, step: CanopenCStep) -> None:
+def test_closing_in_any_step_of_c_mode_disables_the_spindle_drive(stand: CBench, step: CanopenCStep) -> None:
     drive = stand.peers.plant.spindle_drive
     assert drive is not None
     stand.c.set_c_mode(True, True)
@@ -172,7 +174,7 @@ def test_closing_leaves_it_without_power_wherever_it_is(stand: CBench, step: Can
     assert not drive.power_states.is_powered
 
 
-def test_a_drive_without_those_modes_is_refused_at_the_start() -> None:
+def test_spindle_drive_without_the_c_modes_is_rejected_at_connection() -> None:
     stand = CBench(c_machine())
     assert stand.peers.plant.spindle_drive is not None
     stand.peers.plant.spindle_drive.can_position = False
@@ -215,7 +217,7 @@ def test_a_program_turns_then_positions_then_turns_again(rig: BusRig) -> None:
     assert any(abs(angle - 180.0) < 0.2 for angle in angles), at
 
 
-def test_a_slide_moves_while_c_is_held_still(rig: BusRig) -> None:
+def test_axes_move_while_c_is_stationary(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG01X.2Z-.5F60\nX0Z0\nM05\nM30")
     turned: list[float] = []
     rig.watch.append(lambda shot: turned.append(degrees(rig)) if shot.velocity > 5.0 else None)
@@ -225,7 +227,7 @@ def test_a_slide_moves_while_c_is_held_still(rig: BusRig) -> None:
     assert max((t + 180.0) % 360.0 for t in turned) - min((t + 180.0) % 360.0 for t in turned) < 0.1
 
 
-def test_x_and_c_together_keep_to_their_path(rig: BusRig) -> None:
+def test_x_and_c_together_follow_their_path(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG04F1\nG01X.5C360F30\nG04F1\nM05\nM30")
     off: list[float] = []
 
@@ -242,7 +244,7 @@ def test_x_and_c_together_keep_to_their_path(rig: BusRig) -> None:
     assert max(off) - min(off) < 0.6
 
 
-def test_hold_and_reset_in_a_turn(rig: BusRig) -> None:
+def test_feed_hold_and_reset_stop_a_c_move(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nC3600S100\nM05\nM30")
     rig.until_true(lambda shot: shot.demand[2] > 200.0, limit=40.0)
     rig.post(FeedHold())
@@ -278,7 +280,7 @@ def once_in(rig: BusRig, c: CanopenSpindleC, step: CanopenCStep, do: Callable[[]
 @pytest.mark.parametrize(
     "step", [CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION, CanopenCStep.TURN_TO_POSITION]
 )
-def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(
+def test_hold_during_c_engagement_stops_it_and_cycle_start_repeats_it(
     rig: BusRig, step: CanopenCStep
 ) -> None:
     c = rig.bench.machine.spindle_c
@@ -298,7 +300,7 @@ def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(
     assert rig.shot.alarms == ()
 
 
-def test_an_index_that_is_missing_is_an_alarm(rig: BusRig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_spindle_index_raises_an_alarm(rig: BusRig, monkeypatch: pytest.MonkeyPatch) -> None:
     drive = rig.bench.peers.plant.spindle_drive
     assert drive is not None
     monkeypatch.setattr(
@@ -314,7 +316,7 @@ def test_an_index_that_is_missing_is_an_alarm(rig: BusRig, monkeypatch: pytest.M
     assert not drive.power_states.is_powered
 
 
-def test_the_turns_of_the_spindle_do_not_leap_with_its_counter(rig: BusRig) -> None:
+def test_spindle_revolutions_do_not_jump_with_the_drive_counter(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nM05\nM03S777\nG04F1\nM05\nM89\nG04F1\nM05\nM30")
     rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     angle = rig.bench.machine.ports.spindle.read_angle()
@@ -325,7 +327,7 @@ def test_the_turns_of_the_spindle_do_not_leap_with_its_counter(rig: BusRig) -> N
     )  # the search is not counted
 
 
-def test_m89_locks_where_it_stands(rig: BusRig) -> None:
+def test_m89_locks_the_spindle_at_its_present_angle(rig: BusRig) -> None:
     rig.start("G90G94F300\nM03S777\nG04F1\nM05\nG04F1\nM89\nG04F1\nG91C90S60\nG04F2\nM05\nM30")
     seen: list[float] = []
     rig.watch.append(lambda shot: seen.append(degrees(rig)) if shot.waiting_for == "DWELL" else None)
@@ -334,7 +336,7 @@ def test_m89_locks_where_it_stands(rig: BusRig) -> None:
     assert (seen[-1] - seen[-250]) % 360.0 == pytest.approx(90.0, abs=0.2)
 
 
-def test_through_the_driver_host_too() -> None:
+def test_c_mode_works_through_the_driver_host() -> None:
     clock = ManualClock()
     machine = c_machine()
     connected = connect_machine(machine, clock)
@@ -364,7 +366,7 @@ def test_through_the_driver_host_too() -> None:
     connected.close()
 
 
-def test_a_fault_of_that_drive_stops_the_slides_too(rig: BusRig) -> None:
+def test_fault_of_the_spindle_drive_as_c_stops_all_axes(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG01X.5C3600F10\nM05\nM30")
     rig.until_true(lambda shot: shot.demand[2] > 200.0, limit=40.0)
     rig.bench.peers.machine.spindle_fault("blocked")
@@ -380,7 +382,7 @@ def test_a_fault_of_that_drive_stops_the_slides_too(rig: BusRig) -> None:
     assert rig.shot.alarms == ()
 
 
-def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
+def test_c_jog_waits_for_c_engagement(rig: BusRig) -> None:
     rig.ready()
     rig.post(Jog("C", 60.0, 0.2))
     assert text("executor.becomes-c") in rig.said("refused")[-1]
@@ -393,7 +395,7 @@ def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
     assert degrees(rig) == pytest.approx(rig.shot.demand[2], abs=0.1)
 
 
-def test_a_drive_that_restarts_as_c_is_a_spindle_again_and_has_lost_its_index(rig: BusRig) -> None:
+def test_drive_that_restarts_as_c_returns_to_spindle_mode_without_index(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG04F60\nM05\nM30")
     c = rig.bench.machine.spindle_c
     assert c is not None
@@ -425,7 +427,7 @@ def test_a_drive_that_restarts_as_c_is_a_spindle_again_and_has_lost_its_index(ri
         CanopenCStep.ENGAGED,
     ],
 )
-def test_estop_in_every_step_of_the_change_over(rig: BusRig, step: CanopenCStep) -> None:
+def test_estop_in_every_step_of_c_engagement_is_recoverable(rig: BusRig, step: CanopenCStep) -> None:
     c, drive = rig.bench.machine.spindle_c, rig.bench.peers.plant.spindle_drive
     assert c is not None
     assert drive is not None

@@ -23,11 +23,11 @@ from drivers.simulators.canopen_axis_drive import PowerStateMachine
         (0x0238, DriveState.FAULT),  # bit 5 does not matter there
     ],
 )
-def test_status_words(word: int, state: DriveState) -> None:
+def test_status_word_gives_the_drive_state(word: int, state: DriveState) -> None:
     assert decode_state(word) is state
 
 
-def test_the_walk_up_takes_one_step_a_word() -> None:
+def test_enabling_advances_one_state_per_control_word() -> None:
     power, seen = PowerStateMachine(lambda: None), []
     for _ in range(4):
         power.apply_control_word(get_enabling_word(decode_state(power.status_word)))
@@ -43,18 +43,18 @@ def test_the_walk_up_takes_one_step_a_word() -> None:
 @pytest.mark.parametrize(
     "state", [DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE, DriveState.NOT_READY_TO_SWITCH_ON]
 )
-def test_the_walk_up_never_leaves_a_fault(state: DriveState) -> None:
+def test_enabling_never_leaves_a_fault_state(state: DriveState) -> None:
     assert get_enabling_word(state) == 0
 
 
-def test_an_emergency_is_left_downwards_only() -> None:
+def test_quick_stop_state_is_left_only_by_disabling() -> None:
     power = PowerStateMachine(lambda: None)
     power.state = DriveState.QUICK_STOP_ACTIVE
     power.apply_control_word(get_enabling_word(power.state))
     assert power.state is DriveState.SWITCH_ON_DISABLED
 
 
-def test_a_reset_ends_without_power() -> None:
+def test_fault_reset_ends_without_power() -> None:
     power = PowerStateMachine(lambda: None)
     power.state, word = DriveState.FAULT, 0x0F
     power.apply_control_word(word)
@@ -65,7 +65,7 @@ def test_a_reset_ends_without_power() -> None:
     assert not power.is_powered
 
 
-def test_a_drive_without_voltage_does_not_come_on() -> None:
+def test_drive_without_voltage_is_not_enabled() -> None:
     power = PowerStateMachine(lambda: None)
     power.is_sto_active = True
     for _ in range(5):

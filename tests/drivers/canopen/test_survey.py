@@ -43,7 +43,7 @@ def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, SurveyRes
         peers.close()
 
 
-def test_every_node_says_what_it_is() -> None:
+def test_bus_survey_lists_every_node_with_its_identity() -> None:
     found = surveyed()
     assert {name: answer.node_id for name, answer in found.items()} == {
         "X": 1,
@@ -60,7 +60,7 @@ def test_every_node_says_what_it_is() -> None:
     assert found["io"].detail == "CiA 401"
 
 
-def test_a_family_that_has_not_the_mode_is_wrong_before_anything_is_written() -> None:
+def test_survey_reports_missing_mode_objects_before_writing() -> None:
     csp = (
         ('mode = "pvt"', 'mode = "csp"'),
         ('drive = "epos2"', 'drive = "epos4"'),
@@ -74,20 +74,20 @@ def test_a_family_that_has_not_the_mode_is_wrong_before_anything_is_written() ->
     assert "60C1:1" in trouble
 
 
-def test_one_that_is_silent_hides_no_other() -> None:
+def test_silent_node_does_not_hide_other_nodes_in_survey() -> None:
     found = surveyed(silent="Z")
     assert found["Z"].error_text.startswith("Z: node 2, object 1000:0: ")
     assert [name for name, answer in found.items() if answer.error_text] == ["Z"]
 
 
-def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
+def test_node_of_another_kind_is_reported_with_both_profiles() -> None:
     found = surveyed(("Z = { id = 2,", "Z = { id = 10,"), ("io = { id = 10,", "io = { id = 2,"))
     for name, values in (("Z", ["10", "401", "402"]), ("io", ["2", "402", "401"])):
         assert re.findall("[0-9]+", found[name].error_text) == values
     assert not found["X"].error_text
 
 
-def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_survey_sends_no_heartbeat_that_nodes_could_monitor(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, machine = ManualClock(), can_machine()
     peers = create_simulated_devices(machine, clock)
     heard: list[int] = []
@@ -106,7 +106,7 @@ def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest
     assert 0x700 + 127 not in heard
 
 
-def test_a_bus_that_is_not_there_is_one_sentence() -> None:
+def test_missing_bus_is_reported_in_one_line() -> None:
     machine = can_machine(('interface = "virtual"', 'interface = "nobody"'))
     with raises_code(DriverError, "driver", "interface nobody", "channel bench-"):
         identify_nodes(create_canopen_config(machine), ManualClock())

@@ -26,14 +26,14 @@ def turn(bench: CanBench, to: int) -> int:
     return bench.machine.io.read_state().handwheel
 
 
-def test_a_handwheel_counts_on_when_its_counter_goes_round(wheeled: CanBench) -> None:
+def test_handwheel_continues_when_its_counter_wraps(wheeled: CanBench) -> None:
     assert turn(wheeled, 32000) == 0  # where it stands at the start is nothing
     assert turn(wheeled, 32700) == 700
     assert turn(wheeled, -32736) == 800  # 32767 and 32 further: 32768 is -32768
     assert turn(wheeled, 32700) == 700
 
 
-def test_without_a_handwheel_nothing_turns(bench: CanBench) -> None:
+def test_handwheel_is_zero_without_a_handwheel(bench: CanBench) -> None:
     assert bench.machine.io.read_state().handwheel == 0
 
 
@@ -44,7 +44,7 @@ def test_a_broken_estop_wire_is_a_pressed_estop(bench: CanBench) -> None:
     assert bench.machine.io.read_state().estop
 
 
-def test_pots_at_both_ends_and_beyond(bench: CanBench) -> None:
+def test_pots_are_scaled_and_limited_at_both_ends(bench: CanBench) -> None:
     analog = bench.machine.io.modules["io"].analog
     for raw, feed, spindle in ((0, 0.0, 0.0), (32767, 1.5, 1.0), (-5, 0.0, 0.0)):
         analog[0] = analog[1] = raw
@@ -52,14 +52,14 @@ def test_pots_at_both_ends_and_beyond(bench: CanBench) -> None:
         assert (station.feed_pot, station.spindle_pot) == (feed, spindle)
 
 
-def test_a_module_that_falls_silent_ages_the_station(bench: CanBench) -> None:
+def test_silent_module_makes_the_station_state_old(bench: CanBench) -> None:
     bench.run(0.05)
     bench.peers.nodes["io"].is_silent = True
     bench.run(0.3)
     assert bench.machine.io.read_state().age > 0.25
 
 
-def test_outputs_of_a_silent_module_are_refused_and_its_safe_states_kept(bench: CanBench) -> None:
+def test_outputs_of_a_silent_module_are_rejected_and_go_to_safe_states(bench: CanBench) -> None:
     io = bench.machine.io
     io.write("coolant", True)
     bench.run(0.1)
@@ -72,7 +72,7 @@ def test_outputs_of_a_silent_module_are_refused_and_its_safe_states_kept(bench: 
     assert io.get_outputs()["collet"]
 
 
-def test_a_spindle_load_is_told_in_per_cent() -> None:
+def test_spindle_load_input_is_reported_in_percent() -> None:
     """0…150 % over the word; the peer tells what its motor has."""
     text = ("spindle_pot = {", 'spindle_load = { at = "401.6401.3", range = [0, 150] }\nspindle_pot = {')
     bench = CanBench(can_machine(text))
@@ -89,7 +89,7 @@ def test_a_spindle_load_is_told_in_per_cent() -> None:
         bench.close()
 
 
-def test_without_that_input_no_load_is_told() -> None:
+def test_no_spindle_load_is_reported_without_a_load_input() -> None:
     bench = CanBench(can_machine())
     try:
         assert bench.machine.io.read_state().spindle_load is None

@@ -27,7 +27,7 @@ def on(control: Control) -> set[str]:
 
 
 @pytest.mark.parametrize("stall", [0.5, 5.0])
-def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, stall: float) -> None:
+def test_stalled_host_leaves_the_axes_on_their_path(control: Control, stall: float) -> None:
     cutting(control)
     off, way, before = 0.0, 0.0, control.world.place()
     for _ in range(round(stall / TICK)):
@@ -52,7 +52,7 @@ def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, s
     assert control.world.place() == pytest.approx((0.0, 0.0), abs=0.003)
 
 
-def test_a_jog_that_nobody_renews_ends_with_its_lease(control: Control) -> None:
+def test_jog_that_is_not_renewed_ends_with_its_lease(control: Control) -> None:
     speed, lease = 30.0, 0.2
     control.ready()
     control.run(0.5)
@@ -69,7 +69,7 @@ def test_a_jog_that_nobody_renews_ends_with_its_lease(control: Control) -> None:
     assert control.shot.alarms == ()
 
 
-def test_a_slide_that_does_not_follow_brakes_all_axes(control: Control) -> None:
+def test_following_error_of_one_axis_brakes_all_axes(control: Control) -> None:
     if "following error" not in control.rig.faults:
         pytest.skip("its drives are none of this control's: their error is an alarm of the controller")
     cutting(control)
@@ -85,7 +85,7 @@ def test_a_slide_that_does_not_follow_brakes_all_axes(control: Control) -> None:
     assert not control.shot.powered
 
 
-def test_estop_at_any_moment_leaves_all_off_and_its_release_starts_nothing(control: Control) -> None:
+def test_estop_at_any_time_switches_all_off_and_release_starts_nothing(control: Control) -> None:
     for after in (0.3, 1.0, 2.0):
         control.start(PART)
         control.run(after)
@@ -112,7 +112,7 @@ def test_estop_at_any_moment_leaves_all_off_and_its_release_starts_nothing(contr
         assert control.shot.parts == 0
 
 
-def test_a_silent_station_keeps_its_pots_and_holds(control: Control) -> None:
+def test_silent_station_retains_its_pots_and_causes_hold(control: Control) -> None:
     need(control.rig, "station")
     control.start("G90G94F300\nG01F30Z-5\nM30\n")
     control.run(1.0)
@@ -126,7 +126,7 @@ def test_a_silent_station_keeps_its_pots_and_holds(control: Control) -> None:
     assert control.shot.waiting_for == text("executor.station-silent")
 
 
-def test_two_starts_within_a_bounce_are_one_cycle(control: Control) -> None:
+def test_two_start_signals_within_a_bounce_start_one_cycle(control: Control) -> None:
     control.ready()
     control.load("G90G94F300\nX.01\nM30\n")
     control.run(0.5)
@@ -138,7 +138,7 @@ def test_two_starts_within_a_bounce_are_one_cycle(control: Control) -> None:
     assert control.shot.parts == 1
 
 
-def test_a_program_that_has_changed_since_its_proof_is_refused(control: Control) -> None:
+def test_program_changed_since_its_proof_is_refused(control: Control) -> None:
     control.ready()
     job = control.load("G90G94F300\nX1\nM30\n")
     other = make_job(ProgramSource("PART", "G90G94F300\nX2\nM30\n"), job.setup)

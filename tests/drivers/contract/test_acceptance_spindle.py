@@ -29,7 +29,7 @@ THREADING: dict[str, Callable[[], Rig]] = {
 }
 
 
-def test_a_feed_per_turn_with_a_still_spindle_moves_nothing(control: Control) -> None:
+def test_feed_per_rev_with_a_stopped_spindle_moves_nothing(control: Control) -> None:
     """Proving refuses it; should a proof ever let it pass, the executor or the controller does."""
     with pytest.raises(AssertionError, match="spindle-stopped"):
         control.load(STILL_G95)
@@ -42,7 +42,7 @@ def test_a_feed_per_turn_with_a_still_spindle_moves_nothing(control: Control) ->
 
 
 @pytest.mark.parametrize("name", THREADING)
-def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(name: str) -> None:
+def test_spindle_loss_in_a_thread_retracts_and_starts_no_other_pass(name: str) -> None:
     rig = THREADING[name]()
     control = Control(rig)
     control.start(THREAD)
@@ -64,7 +64,7 @@ def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(name: str) ->
     rig.close()
 
 
-def test_without_an_encoder_a_thread_is_refused_before_it_cuts(control: Control) -> None:
+def test_thread_is_refused_before_cutting_without_an_encoder(control: Control) -> None:
     if control.rig.ports.spindle.read_angle() is not None or control.rig.blocks is not None:
         pytest.skip("it has an encoder: its threads are cut, and tried above")
     control.start(THREAD)
@@ -73,7 +73,7 @@ def test_without_an_encoder_a_thread_is_refused_before_it_cuts(control: Control)
     assert control.world.place()[1] > 0.2 * INCH - 0.01
 
 
-def test_the_collet_stays_closed_until_the_spindle_stands(shipped: Rig) -> None:
+def test_collet_stays_closed_until_the_spindle_has_stopped(shipped: Rig) -> None:
     """Where the machine file says so."""
     locks = dataclasses.replace(shipped.machine.interlocks, unclamp_while_turning=False)
     control = Control(shipped, dataclasses.replace(shipped.machine, interlocks=locks))
@@ -95,7 +95,7 @@ def test_no_spindle_start_with_the_collet_open(control: Control) -> None:
     assert control.nothing_moves()
 
 
-def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_the_estop(
+def test_spindle_that_ignores_its_stop_is_reported_and_asks_for_the_estop(
     control: Control,
 ) -> None:
     control.start("G90G94F300\nM03S1800\nG04F3\nM05\nG04F9\nM30\n")
@@ -109,7 +109,7 @@ def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_th
 
 
 @pytest.mark.parametrize("name", [name for name in THREADING if name != "grblhal"])
-def test_a_pass_that_came_too_late_to_be_queued_is_cut_when_it_goes_on(
+def test_thread_pass_queued_too_late_is_cut_after_resuming(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nothing of it is passed over: what stands next would begin elsewhere."""
@@ -134,7 +134,7 @@ def test_a_pass_that_came_too_late_to_be_queued_is_cut_when_it_goes_on(
     rig.close()
 
 
-def test_a_pass_that_comes_too_late_again_and_again_begins_at_a_later_index(
+def test_repeatedly_late_thread_pass_starts_at_a_later_index(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """At rest a computer that was away for .3 s costs a turn, not a hold: the sixth try is .32 s ahead."""
@@ -158,7 +158,7 @@ def test_a_pass_that_comes_too_late_again_and_again_begins_at_a_later_index(
     rig.close()
 
 
-def test_an_encoder_that_is_read_too_seldom_is_no_fault_of_the_spindle(
+def test_slow_encoder_polling_is_not_a_spindle_fault(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     rig = Simulated()

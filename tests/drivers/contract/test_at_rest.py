@@ -28,7 +28,7 @@ def off(control: Control, limit: float) -> float:
 
 
 @pytest.mark.parametrize("held", [False, True], ids=["ready", "hold"])
-def test_a_slide_that_is_forced_away_at_rest_loses_its_power(control: Control, held: bool) -> None:
+def test_axis_forced_away_at_rest_loses_power(control: Control, held: bool) -> None:
     need(control.rig, "slides")
     control.start(CUT) if held else control.ready()
     if held:
@@ -53,7 +53,7 @@ def test_a_slide_that_is_forced_away_at_rest_loses_its_power(control: Control, h
 
 
 @pytest.mark.parametrize(("speed", "most"), [(2.0, 1.0), (20.0, 4.0)])
-def test_a_drive_that_runs_away_at_rest(control: Control, speed: float, most: float) -> None:
+def test_runaway_drive_at_rest_is_stopped(control: Control, speed: float, most: float) -> None:
     need(control.rig, "slides")
     control.ready()
     control.run(0.5)
@@ -65,7 +65,7 @@ def test_a_drive_that_runs_away_at_rest(control: Control, speed: float, most: fl
     assert abs(control.world.place()[1] - place) < most
 
 
-def test_an_encoder_that_counts_nothing_in_a_cut(control: Control) -> None:
+def test_encoder_that_stops_counting_in_a_cut_stops_the_axis(control: Control) -> None:
     need(control.rig, "slides")
     control.start(CUT)
     control.until_true(lambda _: control.world.place()[1] < -5.0)

@@ -20,14 +20,14 @@ MISSING = [
 
 
 @pytest.mark.parametrize(("name", "what"), MISSING, ids="-".join)
-def test_what_a_wire_cannot_have_is_said_in_words(name: str, what: str) -> None:
+def test_fault_without_a_trial_has_a_stated_reason(name: str, what: str) -> None:
     """A skip with its reason for each of the nine that a driver has no trial of; without one it fails."""
     assert what in RIGS[name].missing, f"{name} neither has a trial of {what!r} nor says why not"
     pytest.skip(f"{name}: {RIGS[name].missing[what]}")
 
 
 @pytest.mark.parametrize("name", RIGS)
-def test_every_fault_has_its_hammer(name: str) -> None:
+def test_every_fault_of_a_driver_can_be_simulated(name: str) -> None:
     kind, rig = RIGS[name], make(name)
     assert set(rig.acts()) == {*kind.faults, *kind.harmless}
     assert not {*kind.faults, *kind.harmless} & set(kind.missing)
@@ -60,7 +60,7 @@ def takes_no_orders(rig: Rig) -> None:
         rig.go(10.0, 0.1)
 
 
-def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken: Broken) -> None:
+def test_fault_is_reported_in_time_and_only_clearing_allows_power(broken: Broken) -> None:
     (rig, fault), axes = broken, broken[0].ports.axes
     rig.ports.spindle.set_speed(600.0)
     rig.under_way()
@@ -92,7 +92,7 @@ def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken:
     assert rig.told == ""
 
 
-def test_a_disturbance_that_does_not_matter_does_not_matter(disturbed: Broken) -> None:
+def test_harmless_disturbance_does_not_affect_the_move(disturbed: Broken) -> None:
     rig, what = disturbed
     end = rig.under_way()
     rig.ports.spindle.set_speed(600.0)

@@ -21,7 +21,7 @@ PART = (
 END = (0.5 * INCH, 0.25 * INCH)
 
 
-def test_a_part_with_everything_in_it_comes_out(control: Control) -> None:
+def test_part_with_all_functions_is_made(control: Control) -> None:
     seen: set[str] = set()
     places: list[tuple[float, float]] = []
     control.watch.append(lambda _: seen.update(name for name, on in control.world.outputs().items() if on))
@@ -42,7 +42,7 @@ def test_a_part_with_everything_in_it_comes_out(control: Control) -> None:
     control.until_true(lambda _: control.world.rpm() == 0.0, 3.0)
 
 
-def test_full_queue_of_short_blocks_loses_none_and_plays_none_twice(control: Control) -> None:
+def test_full_queue_of_short_blocks_runs_each_exactly_once(control: Control) -> None:
     """Four hundred blocks of a thousandth of an inch, 150 a second."""
     block = 0.001 * INCH
     steps = "".join(f"Z-{0.001 * n:.3f}\n" for n in range(1, 401))
@@ -61,7 +61,7 @@ def test_full_queue_of_short_blocks_loses_none_and_plays_none_twice(control: Con
     assert shown == sorted(shown)
 
 
-def test_feed_hold_from_full_speed_within_its_bound_and_on_the_path(control: Control) -> None:
+def test_feed_hold_from_full_speed_stops_in_time_on_the_path(control: Control) -> None:
     cutting(control)
     control.until_true(lambda shot: shot.velocity == pytest.approx(127.0, rel=0.01), 0.2)  # 300 in/min
     off: list[float] = []
@@ -88,7 +88,7 @@ def off_line(place: tuple[float, float]) -> float:
     return abs(0.2 * place[0] + 3.0 * place[1]) / math.hypot(0.2, 3.0)
 
 
-def test_the_hold_button_holds_and_keeps_holding(control: Control) -> None:
+def test_hold_button_holds_and_bars_start_while_pressed(control: Control) -> None:
     cutting(control)
     control.world.press_hold()
     control.until(MachineState.HOLD, limit=0.4)
@@ -100,7 +100,7 @@ def test_the_hold_button_holds_and_keeps_holding(control: Control) -> None:
     control.until(MachineState.RUN, limit=0.1)
 
 
-def test_an_override_of_nothing_stands_and_a_half_is_half(control: Control) -> None:
+def test_zero_override_stops_motion_and_half_override_halves_the_speed(control: Control) -> None:
     control.start("G90G94F300\nG01F60Z-3\nM30\n")
     control.until_true(lambda shot: shot.velocity > 25.0)
     control.post(SetFeedOverride(0.5))
@@ -117,7 +117,7 @@ def test_an_override_of_nothing_stands_and_a_half_is_half(control: Control) -> N
     assert control.world.place()[1] == pytest.approx(-3.0 * INCH, abs=0.003)
 
 
-def test_single_block_stops_behind_each_block(control: Control) -> None:
+def test_single_block_stops_after_each_block(control: Control) -> None:
     control.post(SetSwitch("single_block", True))
     control.start("G90G94F300\nX.5\nG01F100Z-.5\nX.7\nM30\n")
     places = []
@@ -132,7 +132,7 @@ def test_single_block_stops_behind_each_block(control: Control) -> None:
         assert place == pytest.approx((x * INCH, z * INCH), abs=0.003)
 
 
-def test_single_block_gets_past_blocks_that_go_nowhere(control: Control) -> None:
+def test_single_block_continues_past_blocks_without_motion(control: Control) -> None:
     control.post(SetSwitch("single_block", True))
     control.start("G90G94F300\nX.3Z.1\nX.3\nG01X.3F100\nX.35\nX.35\nM30\n")
     lines = []
@@ -161,7 +161,7 @@ def test_reset_in_motion_stops_and_starts_nothing(control: Control) -> None:
     control.post(CycleStart())
 
 
-def test_a_cycle_comes_after_homing(lost: Rig) -> None:
+def test_cycle_runs_after_homing(lost: Rig) -> None:
     control = Control(lost)
     control.start("G90G94F300\nX.1Z.1\nM30\n")
     assert control.state is MachineState.IDLE

@@ -30,7 +30,7 @@ def hold(control: Control, path: DriveTestMotion) -> list[float]:
 
 
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.shape.value)
-def test_a_test_is_played_and_comes_back_or_is_refused_with_the_reason(
+def test_drive_test_returns_to_its_start_or_is_refused_with_a_reason(
     control: Control, path: DriveTestMotion
 ) -> None:
     control.ready()
@@ -54,7 +54,7 @@ def test_a_test_is_played_and_comes_back_or_is_refused_with_the_reason(
     assert control.world.place() == pytest.approx(began, abs=2.0 * STILL)
 
 
-def test_a_test_that_nobody_renews_ends_with_its_lease(control: Control) -> None:
+def test_drive_test_that_is_not_renewed_ends_with_its_lease(control: Control) -> None:
     control.ready()
     control.run(0.5)
     if control.shot.drive_test.barred:

@@ -12,7 +12,7 @@ CUT = "G90G94F300\nM03S1000\nX.5Z.2\nG01F10Z-2.\nM30\n"
 
 
 @pytest.mark.parametrize("name", ["simulated", "fed", "fed canopen", "fed csp", "grblhal", "hal", "delta"])
-def test_an_opened_guard_stops_slides_and_spindle_and_closing_it_starts_nothing(name: str) -> None:
+def test_opened_guard_stops_axes_and_spindle_and_closing_starts_nothing(name: str) -> None:
     rig = make(name)
     assert rig.machine.interlocks.guard_stops
     control = Control(rig)

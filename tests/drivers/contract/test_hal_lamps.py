@@ -43,7 +43,7 @@ def lit_steadily(control: Control, seconds: float, lamps: set[str]) -> None:
         assert tower(control) == lamps
 
 
-def test_red_is_lit_while_the_chain_is_open(control: Control) -> None:
+def test_red_lamp_is_lit_while_the_estop_chain_is_open(control: Control) -> None:
     control.start(CUT)
     control.run(0.5)
     assert tower(control) == {"green"}
@@ -59,13 +59,13 @@ def test_red_is_lit_while_the_chain_is_open(control: Control) -> None:
     assert not [text for text in control.said("disturbed") if "LAMP" in text]
 
 
-def test_before_the_first_reset_nothing_is_lit_or_told(control: Control) -> None:
+def test_no_lamp_is_lit_or_reported_before_the_first_reset(control: Control) -> None:
     control.run(0.5)
     lit_steadily(control, 1.5, set())
     assert control.said("disturbed") == []
 
 
-def test_an_alarm_of_a_drive_that_opens_the_chain_blinks_red(control: Control) -> None:
+def test_red_lamp_blinks_for_a_drive_alarm_that_opens_the_chain(control: Control) -> None:
     control.start(CUT)
     control.run(0.5)
     control.rig.slides.drive_fault("X")

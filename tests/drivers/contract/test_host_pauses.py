@@ -26,7 +26,7 @@ def look_away(rig: Rig, ticks: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_host_pauses_at_full_rapid_are_no_fault_of_the_wire(powered: Rig, seed: int) -> None:
+def test_short_host_pauses_at_full_rapid_cause_no_fault(powered: Rig, seed: int) -> None:
     rig, dice = powered, random.Random(seed)
     for way in (1.0, -1.0) * 3:
         end = rig.go(way * SPEED, 0.5)
@@ -39,7 +39,7 @@ def test_host_pauses_at_full_rapid_are_no_fault_of_the_wire(powered: Rig, seed: 
     assert rig.ports.axes.sample().enabled
 
 
-def test_a_pause_longer_than_any_watch_over_answers_is_no_silence(powered: Rig) -> None:
+def test_long_host_pause_is_not_mistaken_for_a_silent_device(powered: Rig) -> None:
     """What was asked before it has been answered meanwhile, or will be at once."""
     rig = powered
     if rig.watched:

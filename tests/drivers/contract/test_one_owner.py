@@ -39,7 +39,7 @@ def port() -> Iterator[str]:
 
 @pytest.mark.parametrize("second", OWNERS)
 @pytest.mark.parametrize("first", OWNERS)
-def test_a_second_owner_is_one_sentence(port: str, first: str, second: str) -> None:
+def test_second_owner_of_a_port_is_rejected_in_one_line(port: str, first: str, second: str) -> None:
     close = OWNERS[first](port)
     with raises_code(DriverError, "driver", port) as refused:
         OWNERS[second](port)

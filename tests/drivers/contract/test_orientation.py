@@ -63,7 +63,7 @@ def at(rig: Rig) -> float:
     return rig.slides.spindle_turns() % 1.0 * ROUND
 
 
-def test_the_tool_goes_on_once_the_spindle_is_held_at_its_angle(control: Control) -> None:
+def test_feed_starts_after_the_spindle_is_oriented(control: Control) -> None:
     start(control)
     feeding: list[tuple[float, float]] = []
 
@@ -78,7 +78,7 @@ def test_the_tool_goes_on_once_the_spindle_is_held_at_its_angle(control: Control
     assert all(abs(angle - 90.0) < 0.1 and rpm == 0.0 for angle, rpm in feeding[:50])
 
 
-def test_a_drive_that_never_arrives_is_told_once_and_nothing_moves(control: Control) -> None:
+def test_orientation_that_never_completes_is_one_alarm_without_motion(control: Control) -> None:
     control.rig.slides.spindle_never_oriented()
     start(control)
     place = control.world.place()
@@ -88,7 +88,7 @@ def test_a_drive_that_never_arrives_is_told_once_and_nothing_moves(control: Cont
     assert control.world.place() == pytest.approx(place, abs=STILL)
 
 
-def test_a_drive_that_lets_its_angle_go_stops_the_slides(control: Control) -> None:
+def test_drive_that_loses_its_angle_stops_the_axes(control: Control) -> None:
     start(control)
     control.until_true(lambda _: control.world.place()[1] < -12.0)
     control.rig.slides.spindle_never_oriented()
@@ -98,7 +98,7 @@ def test_a_drive_that_lets_its_angle_go_stops_the_slides(control: Control) -> No
     assert control.world.place()[1] > -25.0
 
 
-def test_estop_on_the_way_lets_the_spindle_stand_where_it_is(control: Control) -> None:
+def test_estop_during_orientation_stops_the_spindle_where_it_is(control: Control) -> None:
     start(control)
     control.until_true(lambda _: control.rig.slides.get_spindle_rpm() != 0.0)
     control.world.press_estop()
@@ -108,7 +108,7 @@ def test_estop_on_the_way_lets_the_spindle_stand_where_it_is(control: Control) -
 
 
 @pytest.mark.parametrize("fault", ["silence", "dead reader", "garbage"])
-def test_a_wire_that_is_lost_on_the_way_is_one_alarm_of_the_wire(control: Control, fault: str) -> None:
+def test_connection_lost_during_orientation_raises_one_alarm(control: Control, fault: str) -> None:
     if fault not in control.rig.faults:
         pytest.skip("the simulated machine is in this process: there is no wire")
     start(control)
@@ -124,7 +124,7 @@ def test_a_wire_that_is_lost_on_the_way_is_one_alarm_of_the_wire(control: Contro
 
 
 @pytest.mark.parametrize("held", [True, False], ids=["held", "on its way"])
-def test_a_control_that_was_silent_for_a_moment_goes_on(control: Control, held: bool) -> None:
+def test_short_control_pause_does_not_interrupt_orientation(control: Control, held: bool) -> None:
     """What is held stays so, with the tool in the cut; a way that has been cut short is begun again."""
     start(control)
     if held:
@@ -142,7 +142,7 @@ def test_a_control_that_was_silent_for_a_moment_goes_on(control: Control, held: 
     assert control.world.place()[1] == pytest.approx(-30.0, abs=0.01)
 
 
-def test_answers_that_come_late_cost_nothing_but_time(control: Control) -> None:
+def test_late_replies_only_delay_orientation(control: Control) -> None:
     if "late answers" not in control.rig.harmless:
         pytest.skip("the simulated machine is in this process: there is no wire")
     control.rig.acts()["late answers"]()
@@ -151,7 +151,7 @@ def test_answers_that_come_late_cost_nothing_but_time(control: Control) -> None:
     assert at(control.rig) == pytest.approx(90.0, abs=0.1)
 
 
-def test_an_angle_in_a_sense_another_one_and_none(control: Control) -> None:
+def test_orientation_follows_its_direction_and_ends_with_a_speed_command(control: Control) -> None:
     """At the port: as M04 turns, then as M03, each less than a turn; a speed ends it."""
     rig, port = control.rig, control.rig.ports.orientation
     control.ready()
@@ -169,7 +169,7 @@ def test_an_angle_in_a_sense_another_one_and_none(control: Control) -> None:
     assert not port.is_oriented()
 
 
-def test_none_in_estop(control: Control) -> None:
+def test_orientation_is_rejected_in_estop(control: Control) -> None:
     control.ready()
     control.world.press_estop()
     control.until(MachineState.ESTOP, limit=0.5)
@@ -179,14 +179,14 @@ def test_none_in_estop(control: Control) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(RIGS.keys() - ABLE.keys()))
-def test_who_cannot_says_so_in_the_machine_file_and_has_no_such_port(name: str) -> None:
+def test_driver_without_orientation_has_no_orientation_port(name: str) -> None:
     rig = RIGS[name]()
     assert rig.ports.orientation is None
     rig.close()
 
 
 @pytest.mark.parametrize("name", ["gt75-canopen", "gt75-grblhal", "gt75-vfd"])
-def test_a_machine_file_that_asks_it_of_them_is_refused(name: str) -> None:
+def test_orientation_is_rejected_if_the_driver_does_not_support_it(name: str) -> None:
     text = resources.read_machine_file(f"{name}.toml").replace(
         "[spindle]\n", "[spindle]\noriented = true\n", 1
     )
@@ -194,13 +194,13 @@ def test_a_machine_file_that_asks_it_of_them_is_refused(name: str) -> None:
         parse_machine(text, name)
 
 
-def test_a_lathe_whose_spindle_is_c_is_not_oriented_besides() -> None:
+def test_lathe_with_spindle_as_c_rejects_separate_orientation() -> None:
     text = resources.read_machine_file("gt75.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
     with pytest.raises(MachineFileError, match=r"spindle\.oriented = true: .*axis\.C\.own_drive"):
         parse_machine(text, "gt75")
 
 
-def test_hal_needs_the_four_pins_of_it() -> None:
+def test_hal_orientation_requires_its_four_pins() -> None:
     text = resources.read_machine_file("gt75-hal.toml").replace(
         "[spindle]\n", "[spindle]\noriented = true\n", 1
     )

@@ -24,7 +24,7 @@ def test_connecting_switches_nothing_on(rig: Rig) -> None:
     assert sample.actual[:2] == pytest.approx(before, abs=0.002)
 
 
-def test_a_move_arrives_where_it_was_told(powered: Rig) -> None:
+def test_move_arrives_at_its_commanded_position(powered: Rig) -> None:
     end = powered.go(120.0, 0.3)
     powered.run(0.3)
     powered.until(lambda: not powered.ports.axes.sample().moving)
@@ -36,7 +36,7 @@ def test_a_move_arrives_where_it_was_told(powered: Rig) -> None:
     assert powered.stands()
 
 
-def test_without_power_nothing_is_taken(rig: Rig) -> None:
+def test_setpoints_are_rejected_without_power(rig: Rig) -> None:
     with raises_code(DriverError, "power-lost"):
         rig.go(60.0, 0.1)
     assert not rig.ports.axes.sample().enabled
@@ -44,7 +44,7 @@ def test_without_power_nothing_is_taken(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("stall", [0.5, 5.0])
-def test_a_stalled_host_leaves_slides_that_stop_at_the_end_of_what_they_have(rig: Rig, stall: float) -> None:
+def test_stalled_host_leaves_axes_that_stop_at_the_end_of_their_queue(rig: Rig, stall: float) -> None:
     end = rig.under_way()
     for _ in range(round(stall / 0.01)):
         rig.alone(0.01)
@@ -55,7 +55,7 @@ def test_a_stalled_host_leaves_slides_that_stop_at_the_end_of_what_they_have(rig
     assert rig.stands()
 
 
-def test_hold_within_its_bound(moving: Rig) -> None:
+def test_feed_hold_stops_within_its_time_limit(moving: Rig) -> None:
     asked = moving.clock.now()
     moving.ports.axes.stop(StopMode.RAMP_HOLD)
     before = (0.0, 0.0)
@@ -68,7 +68,7 @@ def test_hold_within_its_bound(moving: Rig) -> None:
 
 
 @pytest.mark.parametrize("how", [StopMode.RAMP_OFF, StopMode.OFF])
-def test_stops_that_take_the_power(moving: Rig, how: StopMode) -> None:
+def test_stop_modes_that_remove_power_reject_further_moves(moving: Rig, how: StopMode) -> None:
     before = moving.world.place()[0]
     moving.ports.axes.stop(how)
     moving.until(lambda: not moving.ports.axes.sample().moving, 1.0)
@@ -80,7 +80,7 @@ def test_stops_that_take_the_power(moving: Rig, how: StopMode) -> None:
         moving.go(-60.0, 0.1)
 
 
-def test_what_was_stopped_is_forgotten(moving: Rig) -> None:
+def test_stopped_move_is_discarded_when_power_returns(moving: Rig) -> None:
     """Power that comes back finds no rest of the old way."""
     moving.ports.axes.stop(StopMode.RAMP_OFF)
     moving.run(1.0)
@@ -92,7 +92,7 @@ def test_what_was_stopped_is_forgotten(moving: Rig) -> None:
     moving.until(lambda: abs(moving.world.place()[0] - end) < 0.003, 2.0)
 
 
-def test_homing_finds_home_for_one_axis_and_only_where_power_is(lost: Rig) -> None:
+def test_homing_finds_home_for_one_axis_and_needs_power(lost: Rig) -> None:
     axes = lost.ports.axes
     z = axes.axes.index("Z")
     lost.run(0.1)
@@ -118,7 +118,7 @@ def test_homing_finds_home_for_one_axis_and_only_where_power_is(lost: Rig) -> No
     assert lost.told == ""
 
 
-def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
+def test_estop_removes_power_and_its_release_restores_nothing(moving: Rig) -> None:
     axes, spindle = moving.ports.axes, moving.ports.spindle
     spindle.set_speed(500.0)
     moving.run(0.2)
@@ -147,7 +147,7 @@ def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
     assert moving.world.rpm() == 0.0
 
 
-def test_letting_go_leaves_nothing_under_way(moving: Rig) -> None:
+def test_stop_with_power_off_leaves_nothing_moving(moving: Rig) -> None:
     """What a control that ends in good order does: it stops, then it closes."""
     moving.ports.spindle.set_speed(0.0)
     moving.ports.axes.stop(StopMode.RAMP_OFF)
@@ -155,7 +155,7 @@ def test_letting_go_leaves_nothing_under_way(moving: Rig) -> None:
     assert moving.stands()
 
 
-def test_estop_loses_the_home_of_what_only_counts(lost: Rig) -> None:
+def test_estop_loses_home_of_incremental_axes(lost: Rig) -> None:
     need(lost, "home in E-stop")
     axes = lost.ports.axes
     z = axes.axes.index("Z")

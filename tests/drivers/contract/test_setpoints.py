@@ -13,7 +13,7 @@ from tests.drivers.contract.moves import start
 from tests.drivers.contract.rig import Rig
 
 
-def test_a_splice_goes_on_from_what_demand_at_foretells(rig: Rig) -> None:
+def test_spliced_path_continues_from_the_predicted_demand(rig: Rig) -> None:
     need(rig, "setpoints")
     rig.under_way()
     axes = rig.ports.axes
@@ -44,7 +44,7 @@ def stopping(rig: Rig) -> MotionSegments:
     )
 
 
-def test_bad_setpoints_are_refused_and_the_old_ones_stay(rig: Rig) -> None:
+def test_invalid_setpoints_are_rejected_and_the_queue_is_unchanged(rig: Rig) -> None:
     need(rig, "setpoints")
     end = rig.under_way()
     axes = rig.ports.axes
@@ -71,7 +71,7 @@ def test_bad_setpoints_are_refused_and_the_old_ones_stay(rig: Rig) -> None:
     assert axes.sample().actual[0] == pytest.approx(end, abs=0.003)
 
 
-def test_the_longest_plan_of_many_short_pieces(powered: Rig) -> None:
+def test_longest_plan_of_many_short_pieces_is_executed(powered: Rig) -> None:
     """Full queue: two seconds in pieces of a millisecond, more than any drive's queue holds."""
     need(powered, "setpoints")
     axes = powered.ports.axes
@@ -91,14 +91,14 @@ def test_the_longest_plan_of_many_short_pieces(powered: Rig) -> None:
     assert sample.actual[0] == pytest.approx(20.0, abs=0.003)  # mean 10 mm/s for 2 s
 
 
-def test_a_planner_takes_no_setpoints(powered: Rig) -> None:
+def test_block_controller_rejects_setpoints(powered: Rig) -> None:
     need(powered, "blocks")
     with raises_code(DriverError, "driver") as told:
         powered.ports.axes.splice(start(powered.ports.axes, 60.0, 0.1))
     assert told.value.reason == "blocks-only"
 
 
-def test_a_full_planner_says_so_and_no_ticket_is_lost_or_twice(powered: Rig) -> None:
+def test_full_block_controller_rejects_blocks_and_runs_each_ticket_once(powered: Rig) -> None:
     need(powered, "blocks")
     sink = powered.blocks
     assert sink is not None

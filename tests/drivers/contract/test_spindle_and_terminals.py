@@ -15,7 +15,7 @@ def _turns_at(spindle: Spindle, rpm: float) -> bool:
     return abs(spindle.speed() - rpm) < 2.0
 
 
-def test_the_spindle_turns_both_ways_and_stops(rig: Rig) -> None:
+def test_spindle_turns_both_directions_and_stops(rig: Rig) -> None:
     spindle = rig.ports.spindle
     for rpm in (-1200.0, 600.0, 1500.0, 0.0):
         spindle.set_speed(rpm)
@@ -31,14 +31,14 @@ def test_the_spindle_turns_both_ways_and_stops(rig: Rig) -> None:
     assert spindle.read_fault() == ""
 
 
-def test_no_more_rpm_than_the_machine_allows(rig: Rig) -> None:
+def test_spindle_speed_is_limited_to_the_maximum_of_the_machine(rig: Rig) -> None:
     rig.ports.spindle.set_speed(-99999.0)
     rig.run(4.0)
     assert rig.world.rpm() == pytest.approx(-rig.machine.spindle.max_rpm, abs=1.0)
     assert rig.ports.spindle.read_fault() == ""
 
 
-def test_of_many_speeds_the_last_one_counts(rig: Rig) -> None:
+def test_last_of_many_speed_commands_applies(rig: Rig) -> None:
     """More of them than any line takes, as a surface speed makes them; and a stop behind them all."""
     for step in range(200):
         rig.ports.spindle.set_speed(500.0 + 5.0 * step)
@@ -54,7 +54,7 @@ def test_of_many_speeds_the_last_one_counts(rig: Rig) -> None:
     assert rig.ports.spindle.read_fault() == ""
 
 
-def test_outputs_go_out_and_fall_safe(rig: Rig) -> None:
+def test_outputs_are_switched_and_fall_to_their_safe_state(rig: Rig) -> None:
     io = rig.ports.io
     io.write("coolant", True)
     io.write("collet", True)
@@ -71,7 +71,7 @@ def test_outputs_go_out_and_fall_safe(rig: Rig) -> None:
         io.write("laser", True)
 
 
-def test_inputs_and_station_are_seen(rig: Rig) -> None:
+def test_inputs_and_station_are_read(rig: Rig) -> None:
     rig.world.set_input("guard", True)
     rig.world.press_hold()
     rig.world.set_feed_pot(0.5)

@@ -48,7 +48,7 @@ def all_off(control: Control, outcome: Fault) -> None:
         assert control.shot.alarms[0].remedy.startswith(text("executor.press-estop"))
 
 
-def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None:
+def test_fault_stops_all_and_only_the_operator_can_resume(broken: Broken) -> None:
     rig, fault = broken
     outcome = rig.faults[fault]
     control = Control(rig)
@@ -85,7 +85,7 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     assert control.shot.parts == parts + 1
 
 
-def test_reset_before_the_wire_is_mended_gives_nothing_free(broken: Broken) -> None:
+def test_reset_with_a_persistent_connection_fault_enables_nothing(broken: Broken) -> None:
     """Whatever it tries: no power, no motion, and what is not heard stays unknown."""
     rig, fault = broken
     outcome = rig.faults[fault]

@@ -38,7 +38,7 @@ def in_the_cut(control: Control) -> None:
     assert "coolant" in on(control)
 
 
-def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Control) -> None:
+def test_output_that_turns_off_during_a_cut_holds_and_is_announced(control: Control) -> None:
     need(control.rig, "outputs told")
     in_the_cut(control)
     control.rig.switch_output("coolant", False)
@@ -64,7 +64,7 @@ def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Contro
     assert why.startswith(text("executor.cycle-disturbed", why=gone))
 
 
-def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
+def test_output_that_turns_on_unexpectedly_causes_hold(control: Control) -> None:
     need(control.rig, "outputs told")
     control.start(CUT.replace("M08\n", ""))
     control.until_true(lambda _: control.world.place()[1] < -8.0)
@@ -78,7 +78,7 @@ def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
     assert "coolant" not in on(control)
 
 
-def test_a_spindle_that_dies_in_a_cut_by_the_minute_holds(control: Control) -> None:
+def test_spindle_failure_during_feed_per_minute_causes_hold(control: Control) -> None:
     in_the_cut(control)
     control.world.spindle_dies()
     control.until(MachineState.HOLD, MachineState.FAULT, limit=6.0)
@@ -90,7 +90,9 @@ def test_a_spindle_that_dies_in_a_cut_by_the_minute_holds(control: Control) -> N
 
 
 @pytest.mark.parametrize("program", [DWELL, STOP], ids=["dwell", "stop"])
-def test_a_control_that_was_silent_at_a_standstill(control: Control, program: str) -> None:
+def test_control_pause_at_standstill_is_announced_if_outputs_turned_off(
+    control: Control, program: str
+) -> None:
     """Where something switches off meanwhile it is declared and announced; else all is as it was."""
     control.start(program)
     control.until_true(lambda shot: shot.waiting_for == "DWELL" or shot.state is MachineState.PROGRAM_STOP)
@@ -138,7 +140,7 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, program: st
     assert re.match(pattern("executor.cycle-disturbed"), control.said("uncounted")[0])
 
 
-def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: Control) -> None:
+def test_stall_longer_than_the_queue_in_a_cut_resumes_with_cycle_start(control: Control) -> None:
     in_the_cut(control)
     away(control, 5.0)
     control.run(1.0)
@@ -158,7 +160,7 @@ def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: 
 @pytest.mark.parametrize("program", [DWELL, CUT], ids=["dwell", "cut"])
 @pytest.mark.parametrize("kind", [Fed, FedCanopen])
 @pytest.mark.parametrize("seconds", [0.3, 1.0])
-def test_outputs_that_fell_with_a_driver_host_that_stood_still_do_not_come_back(
+def test_outputs_switched_off_in_a_driver_host_stall_stay_off(
     kind: type[Fed | FedCanopen], program: str, seconds: float
 ) -> None:
     rig = kind()
@@ -185,7 +187,7 @@ def test_outputs_that_fell_with_a_driver_host_that_stood_still_do_not_come_back(
     rig.close()
 
 
-def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(
+def test_stall_between_polling_and_setpoints_moves_nothing(
     control: Control, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Frozen between the look and the setpoints: the driver host refuses them until the control knows."""

@@ -16,7 +16,7 @@ def table() -> str:
 
 
 @pytest.mark.parametrize(("file", "test"), named_in(table()))
-def test_what_the_table_names_exists(file: str, test: str) -> None:
+def test_tests_named_in_the_acceptance_table_exist(file: str, test: str) -> None:
     found = file_of(file)
     assert found is not None, f"no file {file} below tests or tests/drivers"
     assert test in functions_of(found)

@@ -65,7 +65,7 @@ def bench(shipped: Rig) -> Bench:
     return made
 
 
-def test_the_place_of_the_touch_is_found_as_near_as_is_said(bench: Bench) -> None:
+def test_touch_position_is_found_within_the_stated_uncertainty(bench: Bench) -> None:
     bench.touch()
     bench.until(MachineState.JOG)
     bench.until(MachineState.IDLE, limit=60.0)
@@ -86,7 +86,7 @@ def test_the_place_of_the_touch_is_found_as_near_as_is_said(bench: Bench) -> Non
 
 
 @pytest.mark.parametrize("phase", [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW_TOUCH])
-def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
+def test_releasing_the_key_stops_the_touch_off(bench: Bench, phase: TouchPhase) -> None:
     bench.touch()
     bench.until_true(lambda shot: shot.touch_phase is phase)
     bench.run(0.1)
@@ -97,7 +97,7 @@ def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
     assert text("executor.let-go") in bench.touched.why
 
 
-def test_a_screen_that_is_gone_stops_it(bench: Bench) -> None:
+def test_lost_screen_stops_the_touch_off(bench: Bench) -> None:
     bench.touch()
     bench.run(0.3)
     bench.held = None
@@ -107,7 +107,7 @@ def test_a_screen_that_is_gone_stops_it(bench: Bench) -> None:
     assert bench.touched.touch_position_mm is None
 
 
-def test_nothing_there_leads_back(bench: Bench) -> None:
+def test_touch_off_without_contact_returns_to_its_start(bench: Bench) -> None:
     bench.there = False
     begin = bench.shot.actual[0]
     bench.touch()
@@ -118,7 +118,7 @@ def test_nothing_there_leads_back(bench: Bench) -> None:
     assert bench.shot.alarms == ()
 
 
-def test_an_input_that_is_on_begins_nothing(bench: Bench) -> None:
+def test_touch_off_does_not_start_with_the_setter_input_on(bench: Bench) -> None:
     bench.rig.world.set_input(PROBE_INPUT, True)
     bench.there = False
     for _ in range(30):
@@ -131,7 +131,7 @@ def test_an_input_that_is_on_begins_nothing(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize("fault", ["drive fault", "cable out", "silence"])
-def test_what_breaks_ends_it(bench: Bench, fault: str) -> None:
+def test_fault_ends_the_touch_off(bench: Bench, fault: str) -> None:
     need(bench.rig, fault)
     if fault not in bench.rig.faults:
         pytest.skip(f"its wires cannot have it: {fault}")

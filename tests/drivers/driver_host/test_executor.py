@@ -44,13 +44,13 @@ def story(rig: Rig, text: str) -> list[tuple[float, str, str, int]]:
 
 
 @pytest.mark.parametrize("text", [TURN, EXTERNAL], ids=["turning", "thread"])
-def test_a_part_takes_the_same_steps_at_the_same_times(text: str) -> None:
+def test_part_runs_the_same_steps_with_and_without_a_driver_host(text: str) -> None:
     plain, fed = story(Rig(), text), story(FedRig(), text)
     assert fed == plain
     assert any(kind == "part" for _, kind, _, _ in fed)
 
 
-def test_a_hold_comes_to_rest_at_the_same_place() -> None:
+def test_hold_stops_at_the_same_position_with_a_driver_host() -> None:
     places = []
     for rig in (Rig(), FedRig()):
         rig.start("G90G94F300\nG01F300\nX3Z-4\nX0Z0\nM30\n")
@@ -61,7 +61,7 @@ def test_a_hold_comes_to_rest_at_the_same_place() -> None:
     assert places[0] == pytest.approx(places[1], abs=1e-12)
 
 
-def test_without_its_driver_host_the_control_shows_no_station_and_no_motion() -> None:
+def test_lost_driver_host_leaves_station_and_motion_unknown() -> None:
     rig = FedRig()
     rig.ready()
     rig.link.why = "the driver host has ended"
@@ -75,7 +75,7 @@ def tripped(seconds: float, names: str) -> str:
     return text("executor.control-trip", seconds=seconds, names=names)
 
 
-def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start() -> None:
+def test_coolant_not_renewed_in_a_cut_causes_hold_and_resumes_with_start() -> None:
     """Its terminal wants a word each .3 s; the control was away for .5 s, and the slides went on."""
     rig = FedRig()
     rig.host._refresh = {"coolant": 0.3}
@@ -122,7 +122,7 @@ def in_dwell_away(on: str) -> FedRig:
     return rig
 
 
-def test_a_lamp_that_the_driver_host_switched_off_costs_no_part() -> None:
+def test_lamp_switched_off_by_the_driver_host_does_not_cost_a_part() -> None:
     rig = in_dwell_away("")
     rig.run(1.2)
     assert tower(rig) == {"green"}
@@ -134,14 +134,14 @@ def test_a_lamp_that_the_driver_host_switched_off_costs_no_part() -> None:
 @pytest.mark.parametrize(
     ("on", "names"), [("M08", "COOLANT"), ("M03S600", "SPINDLE"), ("M03S600\nM08", "SPINDLE, COOLANT")]
 )
-def test_what_else_it_switched_off_holds_and_is_named_without_the_lamp(on: str, names: str) -> None:
+def test_other_output_switched_off_by_driver_host_causes_hold_naming_it(on: str, names: str) -> None:
     rig = in_dwell_away(on)
     rig.tick()
     rig.until(MachineState.HOLD, limit=0.5)
     assert rig.shot.waiting_for == tripped(0.3, names)
 
 
-def test_at_rest_nothing_is_told_of_a_lamp() -> None:
+def test_lamp_timeout_at_rest_is_not_reported() -> None:
     rig = FedRig(with_lamps())
     rig.start("G90G94F300\nX1Z.1\nG00Z.2\nM30\n")
     rig.until(MachineState.IDLE)

@@ -37,13 +37,13 @@ def refuse(why: str) -> Callable[..., object]:
 
 
 @pytest.mark.parametrize("told", ["1, 2", [1.0, "2"], None, {"x": 1.0}])
-def test_what_are_no_numbers_is_no_place(told: object) -> None:
+def test_position_that_is_not_numeric_is_rejected(told: object) -> None:
     with raises_code(DriverError, "feeder-silent") as refused:
         parse_floats(told)
     assert refused.value.reason == "no-numbers"
 
 
-def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_driver_host() -> None:
+def test_missing_gear_port_is_reported_through_the_driver_host() -> None:
     sim, clock = simulation()
     plain = dataclasses.replace(sim.ports, gear=None)
     line = HostConnection(
@@ -58,7 +58,7 @@ def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_driver_host
     assert told.value.reason == "no-gear"
 
 
-def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failing_spindle_stop_does_not_prevent_switching_outputs_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """A control that has ended: all is tried, and what did not work is told to the next one."""
     sim, clock = simulation()
     host = DriverHost(simulation_driven(sim.ports, sim.machine))
@@ -73,7 +73,7 @@ def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.
     assert [note for note in host._notes if "was stopping the machine: the inverter does not answer" in note]
 
 
-def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failing_outputs_do_not_prevent_stopping_the_spindle(monkeypatch: pytest.MonkeyPatch) -> None:
     sim, clock = simulation()
     host = DriverHost(simulation_driven(sim.ports, sim.machine))
     ports = create_host_ports(HostConnection(InProcessLink(host), clock))
@@ -91,7 +91,7 @@ def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyP
     assert [note for note in host._notes if "was stopping the machine: terminal 2 does not answer" in note]
 
 
-def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_driver_that_fails_wakes_a_sleeping_control(monkeypatch: pytest.MonkeyPatch) -> None:
     """Asleep on a machine of which nothing is known it would sleep on."""
     sim, clock = simulation()
     rung: list[bool] = []
@@ -109,7 +109,7 @@ def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: 
 # --- the line ---------------------------------------------------------------------------------------------
 
 
-def test_a_driver_host_that_nobody_can_start_again_asks_for_another_control() -> None:
+def test_driver_host_that_cannot_be_restarted_reports_that_it_is_gone() -> None:
     sim, clock = simulation()
     line = HostConnection(InProcessLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
     line.fault = "the driver host has ended"
@@ -128,7 +128,7 @@ def test_a_reset_that_the_drives_refuse_starts_no_driver_host(monkeypatch: pytes
         clear_host_faults(link)
 
 
-def test_an_answer_in_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reply_received_in_pieces_is_reassembled(monkeypatch: pytest.MonkeyPatch) -> None:
     """A socket gives what has come: half a message is none yet, and no end of the driver host."""
     monkeypatch.setattr(host_connection, "_RECEIVE_SIZE", 5)  # bytes
     ours, theirs = socket.socketpair()
@@ -142,7 +142,7 @@ def test_an_answer_in_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
 # --- the process ------------------------------------------------------------------------------------------
 
 
-def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_system_without_memory_locking_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(*_: object, **__: object) -> object:
         raise OSError("no C library")
 

@@ -96,7 +96,7 @@ def _alive(pid: int) -> bool:
         return False
 
 
-def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> None:
+def test_killed_control_leaves_axes_that_stop_on_their_path(shop: Shop) -> None:
     drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     off: list[float] = []
     os.kill(shop.control.pid, signal.SIGKILL)
@@ -112,7 +112,7 @@ def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> N
     shop.until(lambda: abs(shop.peers.machine.get_spindle_rpm()) < 1.0)
 
 
-def test_a_killed_driver_host_leaves_it_to_the_drives(shop: Shop) -> None:
+def test_killed_driver_host_leaves_the_drives_to_stop_the_axes(shop: Shop) -> None:
     drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     before = shop.x
     os.kill(shop.host, signal.SIGKILL)
@@ -127,7 +127,7 @@ def test_a_killed_driver_host_leaves_it_to_the_drives(shop: Shop) -> None:
     assert shop.lines[1]["code"] == "feeder-gone"
 
 
-def test_a_stopped_driver_host_is_no_life_sign(shop: Shop) -> None:
+def test_suspended_driver_host_gives_no_sign_of_life(shop: Shop) -> None:
     """SIGSTOP: the process is there and does nothing. Its heartbeat must not go on."""
     drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     os.kill(shop.host, signal.SIGSTOP)

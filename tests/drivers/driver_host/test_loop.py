@@ -69,7 +69,7 @@ def assert_off(sim: Simulation) -> None:
         assert clock.now() < end
 
 
-def test_the_loop_answers_and_ends_with_its_control(
+def test_loop_replies_and_ends_with_its_control(
     served: tuple[socket.socket, Simulation, threading.Thread],
 ) -> None:
     ours, sim, thread = served
@@ -82,7 +82,7 @@ def test_the_loop_answers_and_ends_with_its_control(
     assert_off(sim)
 
 
-def test_garbage_from_the_control_counts_as_its_end(
+def test_invalid_data_from_the_control_is_treated_as_its_end(
     served: tuple[socket.socket, Simulation, threading.Thread],
 ) -> None:
     ours, sim, thread = served
@@ -128,7 +128,7 @@ def test_a_mistake_in_the_loop_leaves_the_drives_without_power() -> None:
         ),
     ],
 )
-def test_memory_is_locked_as_far_as_it_cannot_run_out(
+def test_memory_is_locked_within_the_memlock_limit(
     monkeypatch: pytest.MonkeyPatch, user: int, limit: int, flags: int, told: list[str]
 ) -> None:
     asked: list[int] = []
@@ -146,7 +146,7 @@ def test_memory_is_locked_as_far_as_it_cannot_run_out(
     assert asked == [flags]
 
 
-def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_denied_real_time_priority_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> None:
         raise PermissionError(1, "Operation not permitted")
 
@@ -155,7 +155,7 @@ def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "(Operation not permitted)" in told
 
 
-def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
+def test_request_is_not_handled_shortly_before_a_sync_is_due() -> None:
     ours, theirs = socket.socketpair()
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
@@ -178,7 +178,7 @@ def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
     ("shipped", "expected"),
     [("gt75-epos4.toml", 0.002), ("gt75-canopen.toml", 0.0), ("gt75.toml", 0.0)],
 )
-def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -> None:
+def test_setpoint_interval_applies_to_drives_with_a_setpoint_each_sync(shipped: str, expected: float) -> None:
     assert get_setpoint_interval(parse_machine(resources.read_machine_file(shipped), shipped)) == expected
 
 
@@ -189,16 +189,14 @@ def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -
         (0.0071, "0.3 s test, the SYNC did not arrive in time (up to 7.1 ms late)"),
     ],
 )
-def test_what_is_lost_without_priority_is_said_with_what_a_trial_has_found(
-    late: float, expected: str
-) -> None:
+def test_missing_priority_warning_gives_the_measured_wakeup_delay(late: float, expected: str) -> None:
     told = make_priority_warning(0.002, late)
     assert told.startswith(NO_PRIORITY_TEXT)  # the desk looks for that
     assert "2 ms" in told
     assert expected in told
 
 
-def test_a_trial_finds_a_process_that_wakes_up_late(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_measured_wakeup_delay_detects_a_process_that_wakes_late(monkeypatch: pytest.MonkeyPatch) -> None:
     class Stalled(ManualClock):
         def sleep_until(self, time_s: float) -> None:
             super().sleep_until(time_s + (0.02 if 0.1 < time_s < 0.103 else 0.0001))
@@ -207,7 +205,7 @@ def test_a_trial_finds_a_process_that_wakes_up_late(monkeypatch: pytest.MonkeyPa
     assert host_loop.measure_wakeup_delay(0.002) == pytest.approx(0.02)
 
 
-def test_a_driver_host_that_does_not_answer_is_a_fault_and_no_hang() -> None:
+def test_driver_host_that_does_not_reply_is_a_fault_and_does_not_block() -> None:
     ours, theirs = socket.socketpair()
     line = HostConnection(SocketLink(ours), RealClock())
     with ours, theirs, raises_code(DriverError, "feeder-silent"):
@@ -232,7 +230,7 @@ def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[DriverHostProcess, Mac
     process.close()
 
 
-def test_a_driver_host_that_is_killed_wakes_its_control_and_the_next_one_rings_too(
+def test_killed_driver_host_wakes_its_control_and_its_successor_does_too(
     asleep: tuple[DriverHostProcess, MachinePorts],
 ) -> None:
     process, ports = asleep
@@ -254,7 +252,7 @@ def test_a_driver_host_that_is_killed_wakes_its_control_and_the_next_one_rings_t
     assert ports.station.read_state().estop
 
 
-def test_a_driver_host_that_stands_while_its_control_sleeps_is_told_with_the_next_look(
+def test_driver_host_suspended_during_control_sleep_is_found_at_next_poll(
     asleep: tuple[DriverHostProcess, MachinePorts], patient: pytest.MonkeyPatch
 ) -> None:
     process, ports = asleep
@@ -289,7 +287,7 @@ class Asleep:
         (True, True, 0.02, False),  # setpoints at their time
     ],
 )
-def test_a_round_that_is_soon_due_comes_with_the_look_of_a_control_that_sleeps(
+def test_cycle_due_soon_runs_early_with_the_poll_of_a_sleeping_control(
     asleep: bool, punctual: bool, left: float, early: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ours, theirs = socket.socketpair()

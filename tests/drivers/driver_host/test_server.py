@@ -61,7 +61,7 @@ def bench() -> Bench:
     return Bench(sim, clock, host, line, create_host_ports(line))
 
 
-def test_a_slow_wire_of_the_spindle_is_reported_to_the_control() -> None:
+def test_slow_spindle_connection_is_reported_to_the_control() -> None:
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     slow = dataclasses.replace(sim.ports, spindle_lag=lambda: 0.75)
@@ -76,7 +76,7 @@ def working(bench: Bench) -> None:
     bench.ports.axes.splice(ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0))
 
 
-def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(bench: Bench) -> None:
+def test_silent_control_lets_the_queue_play_to_its_end_then_all_stops(bench: Bench) -> None:
     working(bench)
     bench.alone(0.9)
     assert bench.sim.machine.get_spindle_rpm() > 500.0  # the tool is still in the cut
@@ -92,7 +92,7 @@ def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(b
     assert bench.sim.machine.get_spindle_rpm() == 0.0
 
 
-def test_what_happened_while_the_control_was_late_comes_with_its_next_looks(bench: Bench) -> None:
+def test_samples_recorded_while_the_control_was_late_are_delivered_later(bench: Bench) -> None:
     source = bench.ports.samples
     assert source is not None
     assert source.sample_rate_hz == 1000.0
@@ -114,14 +114,14 @@ def test_what_happened_while_the_control_was_late_comes_with_its_next_looks(benc
     assert source.take().shape == (0, 14)
 
 
-def test_samples_that_were_damaged_on_their_way_are_none(bench: Bench) -> None:
+def test_damaged_sample_batch_is_dropped(bench: Bench) -> None:
     assert bench.ports.samples is not None
     bench.line.sample_batches.append(np.zeros(15))
     bench.line.sample_batches.append(np.zeros(28))
     assert bench.ports.samples.take().shape == (2, 14)
 
 
-def test_a_driver_without_samples_has_none_through_the_driver_host_either() -> None:
+def test_driver_without_samples_has_no_sample_port_in_driver_host() -> None:
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     plain = dataclasses.replace(sim.ports, samples=None)
@@ -132,7 +132,7 @@ def test_a_driver_without_samples_has_none_through_the_driver_host_either() -> N
     assert ports.samples is None
 
 
-def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
+def test_control_that_returns_in_time_continues(bench: Bench) -> None:
     working(bench)
     bench.alone(0.5)
     assert bench.ports.axes.sample().moving
@@ -141,7 +141,7 @@ def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
     assert bench.sim.machine.get_spindle_rpm() > 500.0
 
 
-def test_what_the_driver_host_did_alone_is_told(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
+def test_actions_of_the_driver_host_alone_are_logged(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
     working(bench)
     bench.alone(3.0)
     bench.ports.axes.sample()
@@ -149,7 +149,7 @@ def test_what_the_driver_host_did_alone_is_told(bench: Bench, caplog: pytest.Log
     assert "3.00 s" in caplog.text
 
 
-def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
+def test_orphaned_driver_host_removes_power_at_rest_and_ends(bench: Bench) -> None:
     working(bench)
     bench.line.close()
     bench.alone(0.5)
@@ -161,7 +161,7 @@ def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
     assert not bench.sim.ports.axes.sample().enabled
 
 
-def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
+def test_orphaned_driver_host_brakes_the_spindle_before_it_ends(bench: Bench) -> None:
     bench.ports.spindle.set_speed(3000.0)
     bench.alone(0.19)
     for _ in range(20):
@@ -177,7 +177,7 @@ def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
     assert abs(bench.sim.machine.get_spindle_rpm()) < 5.0
 
 
-def test_an_orphan_does_not_wait_for_ever_for_a_spindle(bench: Bench) -> None:
+def test_orphaned_driver_host_does_not_wait_forever_for_the_spindle(bench: Bench) -> None:
     bench.ports.spindle.set_speed(600.0)
     bench.alone(0.1)
     bench.sim.machine.spindle_ignores_stop()
@@ -189,11 +189,11 @@ def test_an_orphan_does_not_wait_for_ever_for_a_spindle(bench: Bench) -> None:
     assert bench.host.is_done
 
 
-def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
+def test_startup_warnings_reach_the_control(bench: Bench) -> None:
     assert bench.ports.warnings == ("without real-time priority",)
 
 
-def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
+def test_station_actions_apply_with_the_next_poll_without_waiting(bench: Bench) -> None:
     hands = HostStationControls(bench.line)
     hands.press_estop()
     assert not bench.sim.ports.station.read_state().estop
@@ -225,7 +225,9 @@ def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
         ({"do": "hand", "name": "press_estop", "values": 3}, "no-station"),
     ],
 )
-def test_nonsense_is_refused_and_changes_nothing(bench: Bench, head: dict[str, object], reason: str) -> None:
+def test_invalid_request_is_rejected_and_changes_nothing(
+    bench: Bench, head: dict[str, object], reason: str
+) -> None:
     answer = bench.host.handle_message(Message(head, NO_NUMBERS))
     assert answer.head["error"]
     assert answer.head["reason"] == reason
@@ -234,7 +236,7 @@ def test_nonsense_is_refused_and_changes_nothing(bench: Bench, head: dict[str, o
 
 
 @pytest.mark.parametrize("damage", [float("nan"), float("inf")])
-def test_setpoints_that_are_no_numbers_never_reach_a_drive(bench: Bench, damage: float) -> None:
+def test_setpoints_that_are_not_finite_never_reach_a_drive(bench: Bench, damage: float) -> None:
     bench.ports.axes.enable(True)
     way = ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0)
     way.positions[1, 1] = damage
@@ -245,7 +247,7 @@ def test_setpoints_that_are_no_numbers_never_reach_a_drive(bench: Bench, damage:
     assert bench.sim.ports.axes.sample().actual[0] == pytest.approx(0.0, abs=0.002)
 
 
-def test_a_driver_host_of_another_version_is_not_driven(bench: Bench) -> None:
+def test_driver_host_of_another_version_is_rejected(bench: Bench) -> None:
     class Older(InProcessLink):
         def send_request(self, message: Message) -> Message:
             answer = super().send_request(message)
@@ -255,7 +257,7 @@ def test_a_driver_host_of_another_version_is_not_driven(bench: Bench) -> None:
         create_host_ports(HostConnection(Older(bench.host), bench.clock))
 
 
-def test_messages_in_pieces_and_in_heaps() -> None:
+def test_messages_are_decoded_from_pieces_and_from_one_block() -> None:
     one = Message({"do": "look", "t": 0.1}, np.array([1.5, -2.0]))
     two = Message({"do": "hello"}, NO_NUMBERS)
     data = encode_message(one) + encode_message(two)
@@ -277,13 +279,15 @@ def test_messages_in_pieces_and_in_heaps() -> None:
         (MAX_MESSAGE_BYTES + 1).to_bytes(4, "little") + b"\x00\x00\x00\x00",
     ],
 )
-def test_garbage_on_the_socket_is_an_error(data: bytes) -> None:
+def test_invalid_data_on_the_socket_is_an_error(data: bytes) -> None:
     with raises_code(DriverError, "feeder-silent") as told:
         list(MessageDecoder().decode(data))
     assert told.value.reason == "no-message"
 
 
-def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_slow_command_is_not_counted_as_silence_of_the_control(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
     enable = bench.sim.ports.axes.enable
 
     def slowly(on: bool) -> None:
@@ -297,7 +301,7 @@ def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytes
     assert bench.ports.io.get_outputs()["coolant"]
 
 
-def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench: Bench) -> None:
+def test_output_that_is_not_renewed_turns_off_while_axes_still_move(bench: Bench) -> None:
     host = DriverHost(simulation_driven(bench.sim.ports, bench.sim.machine), refresh_periods={"coolant": 0.3})
     bench.host = host
     working(bench)
@@ -309,7 +313,7 @@ def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench:
     assert bench.sim.ports.axes.sample().moving
 
 
-def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
+def test_loop_delay_is_logged_once_for_each_new_maximum(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
     for seconds in (0.01, 0.06, 0.055, 0.08):
@@ -318,7 +322,7 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
     assert [re.findall(r"\d+ ms", line)[0] for line in caplog.messages] == ["60 ms", "80 ms"]
 
 
-def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: Bench) -> None:
+def test_stopped_spindle_in_a_thread_does_not_block_an_orphaned_host(bench: Bench) -> None:
     """The slides follow the spindle: one that stands in the pass never lets their queue end."""
     bench.ports.axes.enable(True)
     bench.ports.spindle.set_speed(600.0)
@@ -391,7 +395,7 @@ def sleeper() -> Iterator[Sleeper]:
     made.bell.close()
 
 
-def test_what_a_round_has_asked_for_is_looked_at_with_the_next_one(sleeper: Sleeper) -> None:
+def test_control_does_not_sleep_while_a_poll_is_requested(sleeper: Sleeper) -> None:
     sleeper.asked = True
     sleeper.sim.machine.press_estop()
     assert not sleeper.sleeps()
@@ -399,7 +403,7 @@ def test_what_a_round_has_asked_for_is_looked_at_with_the_next_one(sleeper: Slee
     assert sleeper.sleeps()
 
 
-def test_one_look_serves_a_tick_of_a_control_that_sleeps(sleeper: Sleeper) -> None:
+def test_one_poll_serves_a_whole_cycle_of_a_sleeping_control(sleeper: Sleeper) -> None:
     assert not sleeper.sleeps()
     sleeper.look()
     sleeper.sim.machine.press_estop()
@@ -411,7 +415,7 @@ def test_one_look_serves_a_tick_of_a_control_that_sleeps(sleeper: Sleeper) -> No
     assert sleeper.ports.station.read_state().estop
 
 
-def test_nothing_rings_where_nothing_happens(sleeper: Sleeper) -> None:
+def test_sleeping_control_is_not_woken_without_a_change(sleeper: Sleeper) -> None:
     for _ in range(5):
         assert not sleeper.sleeps()
         sleeper.look()
@@ -434,7 +438,7 @@ def test_nothing_rings_where_nothing_happens(sleeper: Sleeper) -> None:
         lambda sim: sim.machine.station_silent(),
     ],
 )
-def test_whatever_happens_rings_once_and_again_after_the_next_look(
+def test_change_wakes_the_control_once_per_poll(
     sleeper: Sleeper, happens: Callable[[Simulation], None]
 ) -> None:
     assert not sleeper.sleeps()
@@ -448,12 +452,12 @@ def test_whatever_happens_rings_once_and_again_after_the_next_look(
     assert sleeper.rung == 1
 
 
-def test_what_has_changed_between_the_last_look_and_falling_asleep_rings(sleeper: Sleeper) -> None:
+def test_change_between_last_poll_and_sleep_wakes_the_control(sleeper: Sleeper) -> None:
     sleeper.sim.machine.set_input("TB2-5", True)
     assert sleeper.sleeps()
 
 
-def test_a_control_that_looks_as_ever_is_not_rung(sleeper: Sleeper) -> None:
+def test_control_that_polls_normally_is_not_woken(sleeper: Sleeper) -> None:
     sleeper.sleeps()
     assert sleeper.ports.wakeup is not None
     sleeper.bell.wake()
@@ -465,7 +469,7 @@ def test_a_control_that_looks_as_ever_is_not_rung(sleeper: Sleeper) -> None:
     assert sleeper.rung == 0
 
 
-def test_an_order_ends_its_sleep(sleeper: Sleeper) -> None:
+def test_command_ends_the_sleep(sleeper: Sleeper) -> None:
     sleeper.sleeps()
     assert sleeper.host.is_asleep
     sleeper.ports.io.write("coolant", True)
@@ -473,12 +477,12 @@ def test_an_order_ends_its_sleep(sleeper: Sleeper) -> None:
     assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
 
 
-def test_a_hand_at_the_screen_wakes_its_own_control(sleeper: Sleeper) -> None:
+def test_station_action_on_screen_wakes_its_own_control(sleeper: Sleeper) -> None:
     HostStationControls(sleeper.line).press_hold()
     assert sleeper.bell.wait(0.0)
 
 
-def test_one_that_sleeps_is_missed_after_half_a_second(sleeper: Sleeper) -> None:
+def test_sleeping_control_is_missed_after_half_a_second(sleeper: Sleeper) -> None:
     sleeper.sleeps()
     for _ in range(9):
         sleeper.clock.advance(0.05)
@@ -491,12 +495,12 @@ def test_one_that_sleeps_is_missed_after_half_a_second(sleeper: Sleeper) -> None
     assert re.search("spindle .*outputs ", note)
 
 
-def test_drivers_that_cannot_tell_how_long_they_need_nothing_go_round_as_ever(sleeper: Sleeper) -> None:
+def test_drivers_without_an_idle_time_run_at_the_normal_cycle(sleeper: Sleeper) -> None:
     sleeper.sleeps()
     assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
 
 
-def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleeper: Sleeper) -> None:
+def test_drivers_are_notified_when_the_control_sleeps_and_wakes(sleeper: Sleeper) -> None:
     told: list[bool] = []
 
     def idle(asleep: bool) -> float:
@@ -513,7 +517,7 @@ def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleep
     assert told == [True, False]
 
 
-def test_an_orphan_does_not_go_on_sleeping(sleeper: Sleeper) -> None:
+def test_orphaned_driver_host_does_not_continue_sleeping(sleeper: Sleeper) -> None:
     sleeper.host._driven = dataclasses.replace(sleeper.host._driven, get_idle_time=lambda _: 9.0)
     sleeper.sleeps()
     assert sleeper.pause() == pytest.approx(MAX_SLEEP_CYCLE_S)
@@ -521,7 +525,7 @@ def test_an_orphan_does_not_go_on_sleeping(sleeper: Sleeper) -> None:
     assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
 
 
-def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
+def test_full_or_closed_wakeup_is_not_an_error() -> None:
     bell = ProcessWakeup()
     for _ in range(3000):
         bell.wake()
@@ -541,14 +545,14 @@ def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
         ("dance", "unknown-order"),
     ],
 )
-def test_an_order_for_what_the_machine_has_not_is_refused_with_the_reason(what: str, reason: str) -> None:
+def test_command_for_a_missing_port_is_rejected_with_the_reason(what: str, reason: str) -> None:
     sim = build_simulation(CONFIG, ManualClock())
     with raises_code(DriverError, "driver") as told:
         execute_command(sim.ports, {"what": what, "angle": 90.0, "sense": 0})
     assert told.value.reason == reason
 
 
-def test_a_trip_is_acknowledged_by_its_number_alone_and_a_stop_is_always_let_through() -> None:
+def test_trip_is_acknowledged_only_by_its_number_and_stops_always_pass() -> None:
     guard = TripGuard()
     guard.record_trip(0.4, [], is_spindle_stopped=True)
     assert guard.active_trip is None  # nothing was on

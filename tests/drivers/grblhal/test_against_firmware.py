@@ -145,7 +145,7 @@ def asked_anew(end: Real | Ours) -> None:
 
 
 @pytest.mark.parametrize("talk", TALKS)
-def test_both_answer_alike(real: Real, ours: Ours, talk: str) -> None:
+def test_simulator_replies_like_the_firmware(real: Real, ours: Ours, talk: str) -> None:
     answers: list[list[list[str]]] = []
     for end in (real, ours):
         asked_anew(end)
@@ -160,7 +160,7 @@ def test_a_full_report_has_the_same_fields_in_the_same_order(real: Real, ours: O
     assert _fields(ours.say(FULL)[-1]) == _fields(real.say(FULL)[-1])
 
 
-def test_a_plain_report_has_the_same_fields_once_all_has_been_told(real: Real, ours: Ours) -> None:
+def test_status_report_has_the_same_fields_after_a_full_report(real: Real, ours: Ours) -> None:
     told = []
     for end in (real, ours):
         asked_anew(end)
@@ -170,7 +170,7 @@ def test_a_plain_report_has_the_same_fields_once_all_has_been_told(real: Real, o
     assert told[0] == told[1]
 
 
-def test_it_tells_the_same_of_itself(real: Real, ours: Ours) -> None:
+def test_simulator_identifies_itself_like_the_firmware(real: Real, ours: Ours) -> None:
     """The signals of its board, its axes, its buffer; versions and stores are nobody's business."""
     told = [
         {line.partition(":")[0]: line for line in end.say(b"$I\n") if line.startswith("[")}

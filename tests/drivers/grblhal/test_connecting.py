@@ -35,7 +35,7 @@ def left_behind(data: bytes, **quirks: object) -> tuple[GrblFirmware, ManualCloc
     return firmware, clock
 
 
-def test_modes_of_another_host_are_ended() -> None:
+def test_modes_left_by_another_host_are_reset() -> None:
     firmware, clock = left_behind(b"G7G17G20G91G95\nG96S100\nG51\nM53P0\n")
     assert firmware.program.modes.speed == "G96"
     connect(firmware, clock)
@@ -49,7 +49,7 @@ def test_modes_of_another_host_are_ended() -> None:
     )
 
 
-def test_offsets_of_another_host_are_taken_out() -> None:
+def test_offsets_left_by_another_host_are_cleared() -> None:
     firmware, clock = left_behind(b"G8G18G21G90\nG10L2P1X5Y0Z-3\n")
     made = connect(firmware, clock)
     assert firmware.program.work_offset == [0.0, 0.0, 0.0]
@@ -61,7 +61,7 @@ def test_offsets_of_another_host_are_taken_out() -> None:
     assert firmware.motion.position == (1.0, 2.0)
 
 
-def test_what_a_killed_control_has_left_on_is_switched_off() -> None:
+def test_outputs_left_on_by_a_killed_control_are_switched_off() -> None:
     firmware, clock = left_behind(b"G8G18G21G90G97\nM3S800\nM8\n")
     assert firmware.programmed_rpm == 800.0
     connect(firmware, clock)
@@ -69,14 +69,14 @@ def test_what_a_killed_control_has_left_on_is_switched_off() -> None:
     assert not firmware.output_states["flood"]
 
 
-def test_half_a_line_of_another_host_is_no_part_of_ours() -> None:
+def test_partial_line_left_by_another_host_is_discarded() -> None:
     firmware, clock = left_behind(b"G1X5")
     made = connect(firmware, clock)
     assert made.controller.fault == ""
     assert firmware.motion.position == (0.0, 0.0)
 
 
-def test_a_program_of_another_host_is_braked_and_given_up() -> None:
+def test_program_of_another_host_is_braked_and_discarded() -> None:
     firmware, clock = left_behind(b"G8G18G21G90G94\nG1X80F600\n")
     assert firmware.motion.is_moving
     connect(firmware, clock)
@@ -85,12 +85,12 @@ def test_a_program_of_another_host_is_braked_and_given_up() -> None:
     assert firmware.motion.position[0] < 10.0
 
 
-def test_firmware_that_is_built_for_lathes_has_no_lathe_setting() -> None:
+def test_firmware_built_for_lathes_connects_without_a_lathe_setting() -> None:
     firmware, clock = left_behind(b"", built_for_lathes=True)
     assert connect(firmware, clock).controller.fault == ""
 
 
-def test_in_a_critical_alarm_settings_wait_for_the_reset() -> None:
+def test_settings_are_written_after_reset_of_a_critical_alarm() -> None:
     clock = ManualClock()
     firmware = GrblFirmware(clock, quirky(settings={13: 1.0}))
     firmware.raise_alarm(17)
@@ -108,7 +108,7 @@ def test_in_a_critical_alarm_settings_wait_for_the_reset() -> None:
 
 
 @pytest.mark.parametrize("at", [0.41, 0.42, 0.43, 0.44, 0.5])
-def test_an_alarm_without_a_number_is_one(at: float) -> None:
+def test_alarm_without_a_number_is_reported(at: float) -> None:
     """Its number is a matter of $10 while it is told plainly; it may come while an input is asked for."""
     bench = GrblBench()
     bench.ready()
@@ -118,7 +118,7 @@ def test_an_alarm_without_a_number_is_one(at: float) -> None:
     assert "ALARM" in bench.alarms()
 
 
-def test_an_open_door_is_told_and_left_by_reset() -> None:
+def test_open_door_is_reported_and_cleared_by_reset() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX1\nM30\n")
     bench.until_true(lambda _: bench.peer.motion.is_moving)
@@ -139,7 +139,7 @@ def test_an_open_door_is_told_and_left_by_reset() -> None:
     assert not bench.peer.motion.block_queue
 
 
-def test_what_nobody_knows_in_a_report_or_a_message_is_no_trouble() -> None:
+def test_unknown_fields_of_reports_and_messages_are_ignored() -> None:
     bench = GrblBench()
     bench.ready()
     bench.run(0.5)
@@ -150,7 +150,7 @@ def test_what_nobody_knows_in_a_report_or_a_message_is_no_trouble() -> None:
     assert not bench.shot.alarms
 
 
-def test_three_axes_and_more_are_read_by_their_letters() -> None:
+def test_reports_with_three_or_more_axes_are_read_by_axis_letter() -> None:
     firmware, clock = left_behind(b"")
     made = connect(firmware, clock)
     firmware.motion.position = (1.25, -2.5)
@@ -161,7 +161,7 @@ def test_three_axes_and_more_are_read_by_their_letters() -> None:
 
 
 @pytest.mark.parametrize("rests", [b"", b"<Idle|MPos:0.000,0.000,0.000>\r\n" * 200])
-def test_hanging_up_waits_until_the_other_end_has_said_all(rests: bytes) -> None:
+def test_closing_waits_until_the_other_end_has_sent_everything(rests: bytes) -> None:
     """The simulator ends when it writes to a connection that is gone."""
     listener = socket.create_server(("127.0.0.1", 0))
     broken: list[OSError] = []
@@ -187,24 +187,24 @@ def test_hanging_up_waits_until_the_other_end_has_said_all(rests: bytes) -> None
     assert not broken
 
 
-def test_a_controller_that_comes_up_in_diameter_is_made_to_count_radii() -> None:
+def test_controller_in_diameter_mode_is_switched_to_radius_mode() -> None:
     bench = GrblBench(quirks=quirky(diameter=True))
     assert bench.peer.program.modes.radius == "G8"
     assert bench.machine.controller.is_diameter_mode is False
 
 
-def test_a_controller_that_is_no_lathe_is_refused() -> None:
+def test_controller_without_lathe_mode_is_rejected() -> None:
     with raises_code(DriverError, "driver", "G8", "error:20"):
         GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0 }")), quirky(lathe=False))
 
 
-def test_an_estop_that_the_board_has_not_is_refused() -> None:
+def test_estop_input_that_the_board_does_not_have_is_rejected() -> None:
     """The firmware's own simulator tells [SIGNALS:D]: a pin that is never reported is no E-stop."""
     with raises_code(DriverError, "driver", "pn.E", "[SIGNALS:D]"):
         GrblBench(quirks=quirky(signals="D"))
 
 
-def test_an_estop_that_the_board_has_not_is_refused_in_an_alarm_too() -> None:
+def test_missing_estop_input_is_rejected_during_an_alarm_too() -> None:
     """Else the Reset of the alarm would go by."""
     firmware, clock = left_behind(b"")
     firmware.behavior.signals = "D"
@@ -213,7 +213,7 @@ def test_an_estop_that_the_board_has_not_is_refused_in_an_alarm_too() -> None:
         connect(firmware, clock)
 
 
-def test_an_estop_by_hardware_alone_is_said_and_runs() -> None:
+def test_hardware_only_estop_is_reported_and_machine_runs() -> None:
     bench = GrblBench(
         grbl_machine(('estop = { at = "pn.E" }', 'estop = { at = "hardware" }')), quirky(signals="D")
     )
@@ -225,7 +225,7 @@ def test_an_estop_by_hardware_alone_is_said_and_runs() -> None:
     assert bench.shot.parts == 1
 
 
-def test_older_firmware_tells_no_inputs_and_is_believed() -> None:
+def test_firmware_that_does_not_list_its_signals_is_accepted() -> None:
     bench = GrblBench(quirks=quirky(signals=None))
     assert not [told for told in bench.machine.ports.warnings if "pn.E" in told]
 
@@ -258,7 +258,7 @@ class TellsWire(LoopWire):
         (b"<Idle|", b"<Check|", ("Check", "Idle")),
     ],
 )
-def test_a_controller_that_cannot_be_brought_into_its_state_is_refused_with_the_cause(
+def test_controller_that_cannot_be_set_up_is_rejected_with_the_cause(
     old: bytes, new: bytes, values: tuple[str, ...]
 ) -> None:
     clock = ManualClock()

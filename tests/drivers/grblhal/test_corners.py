@@ -34,7 +34,7 @@ def run(slides: GrblMotion) -> list[tuple[Position, float]]:
     return seen
 
 
-def test_turning_back_is_a_stop_between() -> None:
+def test_axis_stops_at_a_reversal() -> None:
     seen = run(way((0.0, 20.0), (0.0, 0.0)))
     fastest_near_the_end = max(v for (_, z), v in seen if z > 19.9)
     assert fastest_near_the_end <= math.sqrt(2.0 * ACCEL * 0.1) + 2.0 * ACCEL * STEP
@@ -42,12 +42,12 @@ def test_turning_back_is_a_stop_between() -> None:
     assert len(seen) * STEP == pytest.approx(2 * (20.0 / SPEED + SPEED / ACCEL), rel=0.02)
 
 
-def test_a_straight_joint_is_none() -> None:
+def test_collinear_blocks_are_joined_without_slowing_down() -> None:
     whole, pieces = run(way((0.0, 20.0))), run(way((0.0, 7.0), (0.0, 13.0), (0.0, 20.0)))
     assert len(whole) == len(pieces)
 
 
-def test_a_right_angle_is_taken_by_the_deviation() -> None:
+def test_right_angle_corner_is_limited_by_the_junction_deviation() -> None:
     seen = run(way((0.0, 20.0), (20.0, 20.0)))
     # Grbl's junction: v² = a · δ · sin(θ/2) / (1 − sin(θ/2)), δ = .01 mm, θ = 90°; a is what both slides
     # together have along the change of direction, √2 of one of them: 10.2 mm/s.
@@ -58,7 +58,7 @@ def test_a_right_angle_is_taken_by_the_deviation() -> None:
     assert max(near) <= corner + 2.0 * ACCEL * STEP
 
 
-def test_each_slide_has_its_own_limits() -> None:
+def test_each_axis_has_its_own_speed_limit() -> None:
     """Along Z as Z may, along X as X may, at 45 degrees √2 of the slower."""
     registers = SettingRegisters(SimulatorBehavior(settings={112: 9000.0}))  # Z 150 mm/s, X 127
 
@@ -70,7 +70,7 @@ def test_each_slide_has_its_own_limits() -> None:
     assert top((40.0, 40.0)) == pytest.approx(127.0 * math.sqrt(2.0), abs=0.1)
 
 
-def test_a_slower_block_begins_at_its_own_speed() -> None:
+def test_slower_block_starts_at_its_own_speed() -> None:
     slides = way((0.0, 20.0))
     length, shape = make_line_path((0.0, 20.0), (0.0, 30.0))
     slides.block_queue.append(PlannedBlock(0, length, 5.0, shape))
@@ -94,7 +94,7 @@ TURNS = 1000.0 / 60.0 * (0.5 * 1000.0 / 1500.0 + 2.0 - 0.08 - 1000.0 / 1500.0)
     ],
     ids=["spindle", "arc", "jog", "dwell"],
 )
-def test_a_controller_that_was_idle_carries_out_its_lines_whoever_looks_when(
+def test_idle_controller_executes_lines_regardless_of_polling_interval(
     lines: bytes, place: Position, turns: float, tick: float
 ) -> None:
     clock = ManualClock()

@@ -37,7 +37,7 @@ def clear(bench: GrblBench) -> None:
     bench.run(0.1)
 
 
-def test_a_reset_of_the_controller_ends_the_cycle_and_keeps_what_x_means() -> None:
+def test_controller_reset_ends_the_cycle_and_retains_the_x_mode() -> None:
     bench = cutting(GrblBench())
     bench.peer.reset()
     bench.until(MachineState.FAULT, limit=1.0)
@@ -56,7 +56,7 @@ def test_a_reset_of_the_controller_ends_the_cycle_and_keeps_what_x_means() -> No
     assert not all(bench.shot.homed)  # it was reset while it moved: ALARM:3
 
 
-def test_a_sticky_error_is_told_once_and_nothing_behind_it_runs() -> None:
+def test_persistent_error_is_reported_once_and_later_lines_do_not_run() -> None:
     bench = cutting(GrblBench())
     done = len(bench.peer.program.executed_lines)
     bench.peer.program.last_error = 33  # as a line that it refuses leaves it
@@ -70,7 +70,7 @@ def test_a_sticky_error_is_told_once_and_nothing_behind_it_runs() -> None:
 
 
 @pytest.mark.parametrize("damage", [b"o", b"k", b"o*", b"okok", b"\xffk"])
-def test_a_damaged_answer_stops_and_moves_no_position(damage: bytes) -> None:
+def test_damaged_reply_stops_motion_and_does_not_change_the_position(damage: bytes) -> None:
     bench = cutting(GrblBench())
     bench.peer.behavior.garbled_replies.append(damage)
     bench.until(MachineState.FAULT, limit=1.0)
@@ -81,7 +81,7 @@ def test_a_damaged_answer_stops_and_moves_no_position(damage: bytes) -> None:
     assert not bench.peer.motion.block_queue
 
 
-def test_an_answer_that_never_comes_is_missed() -> None:
+def test_missing_reply_raises_an_alarm() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX.5Z.2\nM30\n")
     bench.until(MachineState.IDLE)
@@ -94,7 +94,7 @@ def test_an_answer_that_never_comes_is_missed() -> None:
     assert "'N2G0X7.62Z5.08'" in alarm.detail
 
 
-def test_a_leaping_position_is_not_believed() -> None:
+def test_jump_in_the_reported_position_is_rejected() -> None:
     bench = cutting(GrblBench())
     before = bench.shot.actual[0]
     bench.peer.send_text("<Run|MPos:-18542.000,0.000,0.000|FS:0,0,0>\r\n")
@@ -102,7 +102,7 @@ def test_a_leaping_position_is_not_believed() -> None:
     assert bench.shot.actual[0] == pytest.approx(before, abs=1.0)
 
 
-def test_a_controller_that_was_late_itself_makes_up_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_controller_that_was_delayed_recovers_without_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its own computer held it up for a quarter of a second; what it reports then is confirmed at once."""
     bench = GrblBench()
     bench.start("G90G94F300\nX3Z-3\nX0Z0\nX3Z-3\nX0Z0\nM30\n")
@@ -116,7 +116,7 @@ def test_a_controller_that_was_late_itself_makes_up_for_it(monkeypatch: pytest.M
     assert bench.shot.alarms == ()
 
 
-def test_a_silent_controller_is_told() -> None:
+def test_silent_controller_is_reported() -> None:
     bench = cutting(GrblBench())
     bench.peer.behavior.sends_nothing = True
     took = bench.until(MachineState.FAULT, limit=3.0)
@@ -124,7 +124,7 @@ def test_a_silent_controller_is_told() -> None:
     assert [alarm.code for alarm in bench.shot.alarms] == ["controller-silent"]
 
 
-def test_without_its_host_it_runs_on_for_no_more_than_it_was_given() -> None:
+def test_controller_without_its_host_runs_only_its_queued_blocks() -> None:
     bench = cutting(GrblBench())
     z = bench.peer.motion.position[1]
     bench.wire.cut = True
@@ -134,7 +134,7 @@ def test_without_its_host_it_runs_on_for_no_more_than_it_was_given() -> None:
     assert abs(bench.peer.motion.position[1] - z) < 12.7 * 0.9  # of 50 mm that the block still had
 
 
-def test_estop_at_the_controller() -> None:
+def test_estop_at_the_controller_stops_all_and_is_cleared() -> None:
     bench = cutting(GrblBench())
     bench.peer.active_pins = "E"
     bench.peer.raise_alarm(10)
@@ -152,7 +152,7 @@ def test_estop_at_the_controller() -> None:
 
 
 @pytest.mark.parametrize("alarm", [10, 17])
-def test_an_alarm_that_ends_the_steps_of_a_moving_slide_has_lost_its_place(alarm: int) -> None:
+def test_alarm_in_motion_loses_the_position(alarm: int) -> None:
     """The firmware says ALARM:3 for a reset in motion, and of E-stop and motor fault nothing of the place."""
     bench = cutting(GrblBench())
     bench.peer.raise_alarm(alarm)
@@ -169,7 +169,7 @@ def test_an_alarm_that_ends_the_steps_of_a_moving_slide_has_lost_its_place(alarm
 
 
 @pytest.mark.parametrize("alarm", [10, 17])
-def test_the_same_at_rest_has_lost_nothing(alarm: int) -> None:
+def test_alarm_at_rest_retains_the_position(alarm: int) -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX.5\nM30\n")
     bench.until(MachineState.IDLE)
@@ -179,7 +179,7 @@ def test_the_same_at_rest_has_lost_nothing(alarm: int) -> None:
     assert all(bench.shot.homed[:2])
 
 
-def test_what_an_estop_switches_off_is_no_output_that_has_gone_off_by_itself() -> None:
+def test_output_switched_off_by_estop_is_not_reported_as_disturbed() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nM08\nG01X1F30\nM30\n")
     bench.until_true(lambda shot: shot.line == 3)
@@ -192,7 +192,7 @@ def test_what_an_estop_switches_off_is_no_output_that_has_gone_off_by_itself() -
     assert not bench.said("stop")
 
 
-def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_reset() -> None:
+def test_feed_per_rev_with_a_stopped_spindle_waits_in_planner_until_reset() -> None:
     """The simulator's own habit, and that the recovery gets rid of it."""
     bench = GrblBench()
     bench.ready()
@@ -208,7 +208,7 @@ def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_re
     assert bench.peer.program.modes.feed_mode == "G94"
 
 
-def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
+def test_controller_that_requires_homing_is_homed_axis_by_axis() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=True))
     bench.ready()
     bench.run(0.5)
@@ -227,7 +227,7 @@ def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
     assert bench.shot.parts == 1
 
 
-def test_homing_that_the_controller_does_not_know_is_told() -> None:
+def test_homing_that_the_controller_does_not_support_is_reported() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED))
     bench.ready()
     bench.run(0.5)
@@ -238,7 +238,7 @@ def test_homing_that_the_controller_does_not_know_is_told() -> None:
     assert not bench.shot.homed[0]
 
 
-def test_an_override_that_is_not_taken_is_an_alarm() -> None:
+def test_override_that_the_controller_ignores_is_an_alarm() -> None:
     bench = GrblBench(quirks=quirky(stubborn=True))
     bench.start("G90G94F300\nX.5Z.2\nG01Z-2F10\nM30\n")
     bench.until_true(lambda shot: shot.line == 3)
@@ -247,7 +247,7 @@ def test_an_override_that_is_not_taken_is_an_alarm() -> None:
     assert "override" in bench.alarms()
 
 
-def test_a_line_that_never_ends_is_a_disturbed_line() -> None:
+def test_endless_line_is_reported_as_interference() -> None:
     bench = cutting(GrblBench())
     bench.peer.send_text("x" * 1500)
     bench.until(MachineState.FAULT, limit=1.0)

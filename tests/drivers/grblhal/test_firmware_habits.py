@@ -38,7 +38,7 @@ class Desk:
         return [line for line in self.firmware.pop_output().decode().split("\r\n") if line]
 
 
-def test_behind_a_reset_in_motion_comes_the_alarm_then_the_banner_then_how_to_unlock() -> None:
+def test_reset_in_motion_sends_alarm_then_banner_then_unlock_hint() -> None:
     desk = Desk()
     desk.say(LATHE + b"G1X50F600\n")
     desk.hear(1.0)
@@ -52,12 +52,12 @@ def test_behind_a_reset_in_motion_comes_the_alarm_then_the_banner_then_how_to_un
     assert desk.say(b"$X\n") == ["[MSG:Caution: Unlocked]", "ok"]
 
 
-def test_a_reset_at_rest_says_its_banner_and_nothing_else() -> None:
+def test_reset_at_rest_sends_only_its_banner() -> None:
     (banner,) = Desk().say(RESET)
     assert banner.startswith("GrblHAL")
 
 
-def test_a_stop_does_not_brake_and_tells_nobody_that_the_position_is_lost() -> None:
+def test_stop_command_stops_abruptly_without_reporting_lost_position() -> None:
     desk = Desk()
     desk.say(LATHE + b"M3S1000\nG1X50F600\n")
     desk.hear(1.0)
@@ -69,7 +69,7 @@ def test_a_stop_does_not_brake_and_tells_nobody_that_the_position_is_lost() -> N
     assert desk.say(STATUS)[0].startswith("<Idle|")
 
 
-def test_a_jog_knows_no_feed_hold_and_refuses_lines_until_it_ends() -> None:
+def test_jog_ignores_feed_hold_and_rejects_lines_until_it_ends() -> None:
     desk = Desk()
     assert desk.say(LATHE + b"$J=G53X50F600\n") == ["ok", "ok"]
     desk.hear(0.5)
@@ -83,7 +83,7 @@ def test_a_jog_knows_no_feed_hold_and_refuses_lines_until_it_ends() -> None:
     assert desk.say(b"M5\n") == ["ok"]
 
 
-def test_in_a_hold_no_line_is_read() -> None:
+def test_lines_are_not_read_during_feed_hold() -> None:
     desk = Desk()
     desk.say(LATHE + b"G1X50F600\n")
     desk.hear(0.5)
@@ -96,7 +96,7 @@ def test_in_a_hold_no_line_is_read() -> None:
 
 
 @pytest.mark.parametrize(("restore", "runs"), [(3, True), (1, False)])
-def test_behind_a_hold_the_spindle_comes_back_by_a_setting(restore: int, runs: bool) -> None:
+def test_setting_63_decides_whether_the_spindle_restarts_after_a_hold(restore: int, runs: bool) -> None:
     desk = Desk(settings={63: float(restore)})
     desk.say(LATHE + b"M3S1000\nG1X50F600\n")
     desk.hear(0.5)
@@ -108,7 +108,7 @@ def test_behind_a_hold_the_spindle_comes_back_by_a_setting(restore: int, runs: b
     assert (desk.firmware.commanded_rpm != 0.0) is runs
 
 
-def test_a_critical_alarm_takes_a_reset_and_no_unlocking() -> None:
+def test_critical_alarm_needs_a_reset_and_cannot_be_unlocked() -> None:
     desk = Desk()
     desk.firmware.raise_alarm(17)
     desk.hear()
@@ -118,7 +118,7 @@ def test_a_critical_alarm_takes_a_reset_and_no_unlocking() -> None:
     assert desk.say(STATUS)[0].startswith("<Idle|")
 
 
-def test_with_e_stop_pressed_it_does_not_come_back() -> None:
+def test_reset_gets_no_reply_while_estop_is_pressed() -> None:
     desk = Desk()
     desk.firmware.active_pins = "E"
     desk.firmware.raise_alarm(10)
@@ -126,7 +126,7 @@ def test_with_e_stop_pressed_it_does_not_come_back() -> None:
     assert desk.say(RESET) == []
 
 
-def test_a_full_report_tells_offsets_overrides_and_what_is_on() -> None:
+def test_full_report_has_offsets_overrides_and_active_outputs() -> None:
     """``report.c`` of 2026; that of 2023 left the overrides out."""
     desk = Desk()
     desk.say(b"\x92")
@@ -135,7 +135,7 @@ def test_a_full_report_tells_offsets_overrides_and_what_is_on() -> None:
     assert "|FW:grblHAL" in full
 
 
-def test_what_has_changed_is_in_the_next_report_and_offsets_wait() -> None:
+def test_changed_values_are_in_the_next_report_and_offsets_come_later() -> None:
     desk = Desk()
     desk.say(FULL)
     desk.say(b"\x92")
@@ -148,7 +148,7 @@ def test_what_has_changed_is_in_the_next_report_and_offsets_wait() -> None:
     assert not any("|WCO:" in line and "|Ov:" in line for line in told)
 
 
-def test_what_it_is_set_to_is_told_with_decimals_of_its_own() -> None:
+def test_settings_are_reported_with_their_number_of_decimals() -> None:
     desk = Desk()
     assert desk.say(b"$12=0.0005\n") == ["ok"]
     lines = desk.say(b"$$\n")
@@ -161,7 +161,7 @@ def test_what_it_is_set_to_is_told_with_decimals_of_its_own() -> None:
     assert "$110=1.000" in desk.say(b"$$\n")
 
 
-def test_homing_is_refused_where_it_is_off_and_for_one_axis_where_that_is() -> None:
+def test_homing_is_rejected_if_disabled_or_not_enabled_for_single_axis() -> None:
     assert Desk().say(b"$HX\n") == ["error:5"]
     assert Desk(homing=1).say(b"$HX\n") == ["error:5"]
     assert Desk(homing=1).say(b"$H\n") == []
@@ -179,7 +179,7 @@ def test_homing_is_refused_where_it_is_off_and_for_one_axis_where_that_is() -> N
     assert "|H:1,5" in told
 
 
-def test_with_a_hundred_free_bytes_it_takes_nothing_more_from_its_wire() -> None:
+def test_receive_buffer_with_less_than_100_bytes_free_reads_nothing() -> None:
     """A cycle start that is sent behind a full buffer is never heard."""
     desk = Desk()
     desk.say(LATHE + b"G1X50F600\n")
@@ -195,7 +195,7 @@ def test_with_a_hundred_free_bytes_it_takes_nothing_more_from_its_wire() -> None
 
 
 @pytest.mark.parametrize("words", ["G3X1Z1", "G2X1Z-1"])
-def test_an_arc_counts_from_z_to_x(words: str) -> None:
+def test_arc_in_g18_is_measured_from_z_to_x(words: str) -> None:
     """Plane G18: Z is its first axis, X its second, G3 the way from Z+ to X+.
 
     A quarter of 1 mm about X 1: it begins at X-, from where G3 goes on to Z+, and G2 back to Z-.
@@ -206,7 +206,7 @@ def test_an_arc_counts_from_z_to_x(words: str) -> None:
     assert block.length_mm == pytest.approx(math.pi / 2)
 
 
-def test_an_arc_that_rounds_to_nothing_is_a_whole_circle() -> None:
+def test_arc_that_rounds_to_zero_is_a_full_circle() -> None:
     desk = Desk()
     desk.say(LATHE + b"G3X0Z0.00000I10K0F600\n")
     (block,) = desk.firmware.motion.block_queue
@@ -216,6 +216,6 @@ def test_an_arc_that_rounds_to_nothing_is_a_whole_circle() -> None:
 @pytest.mark.parametrize(
     ("end", "answer"), [(20.004, "ok"), (20.0055, "ok"), (20.02, "error:33"), (21.0, "error:33")]
 )
-def test_an_arc_may_miss_its_end_by_a_thousandth_of_its_radius_at_most(end: float, answer: str) -> None:
+def test_arc_end_may_deviate_by_a_thousandth_of_its_radius(end: float, answer: str) -> None:
     """5 µm are free; beyond, a thousandth of 10 mm is."""
     assert Desk().say(LATHE + f"G3X{end}Z0I10K0F600\n".encode())[-1] == answer

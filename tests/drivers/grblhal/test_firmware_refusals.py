@@ -31,7 +31,7 @@ NO_TARGET, NO_PORT, SPINDLE_STANDS, TOO_FAST = 33, 39, 41, 43
         ("G33Z5K1", SPINDLE_STANDS),
     ],
 )
-def test_a_line_that_cannot_be_is_refused_and_moves_nothing(line: str, error: int) -> None:
+def test_invalid_line_is_rejected_and_moves_nothing(line: str, error: int) -> None:
     desk = Desk()
     desk.say(LATHE)
     assert desk.say(f"{line}\n".encode()) == [f"error:{error}"]
@@ -43,20 +43,20 @@ def test_a_line_that_cannot_be_is_refused_and_moves_nothing(line: str, error: in
     assert desk.say(b"M8\n") == ["ok"]
 
 
-def test_an_arc_in_another_plane_than_g18_is_refused() -> None:
+def test_arc_in_a_plane_other_than_g18_is_rejected() -> None:
     desk = Desk()
     desk.say(LATHE + b"G17\n")
     assert desk.say(b"G2X1Z1I1F60\n") == [f"error:{NO_TARGET}"]
 
 
 @pytest.mark.parametrize(("line", "built"), [("G8", False), ("G96S100", False), ("G8", True)])
-def test_words_of_a_lathe_need_its_lathe_mode(line: str, built: bool) -> None:
+def test_lathe_words_require_lathe_mode(line: str, built: bool) -> None:
     desk = Desk(lathe=False, built_for_lathes=built)
     answer = desk.say(f"{line}\n".encode())
     assert answer == (["ok"] if built else [f"error:{UNKNOWN}"])
 
 
-def test_without_an_encoder_no_feed_by_the_turn_and_no_thread() -> None:
+def test_feed_per_rev_and_threading_are_rejected_without_an_encoder() -> None:
     desk = Desk(encoder=False)
     desk.say(b"G8G18G21G90G94\nM3S600\n")
     desk.hear(2.0)
@@ -64,7 +64,7 @@ def test_without_an_encoder_no_feed_by_the_turn_and_no_thread() -> None:
     assert desk.say(b"G33Z5K1\n") == [f"error:{UNKNOWN}"]
 
 
-def test_a_thread_that_the_slide_cannot_keep_up_with_is_refused() -> None:
+def test_thread_too_fast_for_the_axis_is_rejected() -> None:
     """20 mm at 600 rpm are 12 000 mm/min of 7620."""
     desk = Desk()
     desk.say(LATHE + b"M3S600\n")
@@ -72,7 +72,7 @@ def test_a_thread_that_the_slide_cannot_keep_up_with_is_refused() -> None:
     assert desk.say(b"G33Z50K20\n") == [f"error:{TOO_FAST}"]
 
 
-def test_while_a_line_moves_no_jog_and_no_setting_is_taken() -> None:
+def test_jog_and_settings_are_rejected_while_a_line_moves() -> None:
     desk = Desk()
     desk.say(LATHE + b"G1X50F600\n")
     desk.hear(0.5)
@@ -82,5 +82,5 @@ def test_while_a_line_moves_no_jog_and_no_setting_is_taken() -> None:
     assert desk.firmware.motion.position == pytest.approx((50.0, 0.0))
 
 
-def test_unlocking_what_is_not_locked_is_well_and_says_nothing() -> None:
+def test_unlocking_an_unlocked_controller_replies_only_ok() -> None:
     assert Desk().say(b"$X\n") == ["ok"]

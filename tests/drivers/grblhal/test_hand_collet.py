@@ -22,14 +22,14 @@ def by_hand(*changes: tuple[str, str]) -> Machine:
     return grbl_machine((CLAMPED, BY_HAND), *changes)
 
 
-def test_an_output_that_is_said_to_be_absent_is_no_trouble() -> None:
+def test_output_configured_as_absent_is_accepted() -> None:
     bench = GrblBench(by_hand(), quirky())
     assert not any("collet" in warning for warning in bench.machine.ports.warnings)
     assert "collet" not in bench.machine.ports.io.get_outputs()
     assert bench.shot.absent == {"collet"}
 
 
-def test_a_program_runs_and_one_that_asks_for_it_is_refused_before_the_start() -> None:
+def test_program_that_needs_an_absent_output_is_refused_before_start() -> None:
     bench = GrblBench(by_hand(), quirky())
     bench.start(PART.format(""))
     bench.until(MachineState.IDLE)
@@ -39,11 +39,11 @@ def test_a_program_runs_and_one_that_asks_for_it_is_refused_before_the_start() -
     assert text("executor.no-such-for-line", line=3, what="output collet") in bench.shot.start_refusal
 
 
-def test_one_that_is_only_left_out_is_still_a_mistake_of_the_file() -> None:
+def test_output_missing_from_the_machine_file_is_a_file_error() -> None:
     with pytest.raises(MachineFileError, match=r'io\.out\.collet: .*at = "none"'):
         grbl_machine((CLAMPED, ""))
 
 
-def test_an_m_code_needs_an_output_that_is_there() -> None:
+def test_m_code_needs_an_output_that_is_present() -> None:
     with pytest.raises(MachineFileError, match=r"m_codes\.25\.output"):
         by_hand(('catcher = { at = "out.1", safe = false }', 'catcher = { at = "none" }'))

@@ -11,7 +11,7 @@ from tests.drivers.grblhal.test_run import LONG
 from tests.texts import text
 
 
-def test_hold_and_on() -> None:
+def test_feed_hold_stops_and_cycle_start_resumes() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -28,7 +28,7 @@ def test_hold_and_on() -> None:
     assert bench.peer.motion.position == pytest.approx((25.4, -50.8))
 
 
-def test_reset_out_of_a_hold_keeps_the_position_and_the_modes() -> None:
+def test_reset_from_hold_retains_position_and_modes() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -62,7 +62,7 @@ def test_reset_in_motion_brakes_and_starts_nothing() -> None:
     assert not bench.peer.motion.block_queue
 
 
-def test_a_hold_that_does_not_end_is_a_reset_and_a_lost_position() -> None:
+def test_hold_that_does_not_end_causes_a_reset_and_a_lost_position() -> None:
     bench = GrblBench(quirks=quirky(hold_broken=True))
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -78,7 +78,7 @@ def test_a_hold_that_does_not_end_is_a_reset_and_a_lost_position() -> None:
     assert not all(bench.shot.homed)
 
 
-def test_an_override_of_nothing_holds_and_goes_on_by_itself() -> None:
+def test_zero_override_stops_and_a_higher_override_resumes() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -95,7 +95,7 @@ def test_an_override_of_nothing_holds_and_goes_on_by_itself() -> None:
     assert bench.peer.motion.position == pytest.approx((25.4, -50.8))
 
 
-def test_pins_of_the_controller_hold_and_start() -> None:
+def test_hold_and_start_pins_of_the_controller_act() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -112,7 +112,7 @@ def test_pins_of_the_controller_hold_and_start() -> None:
     assert bench.shot.parts == 1
 
 
-def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
+def test_hold_triggered_at_the_controller_holds_the_cycle() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -126,7 +126,7 @@ def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
     assert bench.shot.parts == 1
 
 
-def test_a_button_at_the_controller_ends_no_hold_of_ours() -> None:
+def test_cycle_start_at_the_controller_does_not_end_a_hold_of_turndesk() -> None:
     """Its own cycle start moves the slides at once; the screen says FEED HOLD, so they stand again."""
     bench = GrblBench()
     bench.start(LONG)

@@ -87,7 +87,7 @@ def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
         peer.join(60.0)
 
 
-def test_it_turns_both_ways_and_says_so_only_when_it_does(both: Both) -> None:
+def test_inverter_spindle_turns_both_directions_and_reports_its_speed(both: Both) -> None:
     made = connect_machine(load_machine(both.path), RealClock())
     try:
         spindle = made.ports.spindle
@@ -127,7 +127,7 @@ def test_threads_need_the_controllers_encoder(both: Both) -> None:
         made.close()
 
 
-def test_a_program_runs_with_it(
+def test_program_runs_with_an_inverter_spindle(
     both: Both, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
@@ -139,7 +139,7 @@ def test_a_program_runs_with_it(
     assert not both.inverter.running
 
 
-def test_a_surface_speed_is_held_by_the_inverter(
+def test_inverter_follows_the_constant_surface_speed(
     both: Both, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """100 ft/min are 1200 in: at a radius of .2 in 1200/(2π·.2) = 955 rpm, from 382 at .5 in."""
@@ -152,7 +152,7 @@ def test_a_surface_speed_is_held_by_the_inverter(
     assert both.belt.ordered == 0.0
 
 
-def test_an_inverter_that_does_not_answer_is_one_sentence_and_the_controller_is_let_go(both: Both) -> None:
+def test_missing_inverter_is_reported_in_one_line_and_controller_released(both: Both) -> None:
     text = both.path.read_text(encoding="utf-8")
     port = text.partition('family = "huanyang", port = "')[2].partition('"')[0]
     missing = parse_machine(text.replace(port, "/dev/ttyNONE7"), "missing.toml")
@@ -161,7 +161,7 @@ def test_an_inverter_that_does_not_answer_is_one_sentence_and_the_controller_is_
     connect_machine(load_machine(both.path), RealClock()).close()
 
 
-def test_another_driver_beside_the_controller_is_refused() -> None:
+def test_other_spindle_driver_with_grblhal_is_rejected() -> None:
     text = SHIPPED.replace('driver = "grblhal"', 'driver = "cia402"')
     with pytest.raises((DriverError, MachineFileError), match=r"spindle\.driver"):
         create_grblhal_config(parse_machine(text, "bad.toml"))

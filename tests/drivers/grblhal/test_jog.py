@@ -27,7 +27,7 @@ def hold_key(bench: GrblBench, seconds: float) -> None:
         bench.run(0.04)
 
 
-def test_a_jog_goes_as_long_as_it_is_renewed() -> None:
+def test_jog_continues_while_it_is_renewed() -> None:
     bench = ready()
     hold_key(bench, 1.0)
     assert bench.state is MachineState.JOG
@@ -35,7 +35,7 @@ def test_a_jog_goes_as_long_as_it_is_renewed() -> None:
     assert bench.peer.motion.position[0] == pytest.approx(V * 1.0, abs=4.0)
 
 
-def test_a_lost_lease_is_the_stop() -> None:
+def test_jog_stops_when_its_lease_expires() -> None:
     bench = ready()
     hold_key(bench, 1.0)
     at = bench.peer.motion.position[0]
@@ -45,7 +45,7 @@ def test_a_lost_lease_is_the_stop() -> None:
     bench.until(MachineState.IDLE, limit=0.5)
 
 
-def test_letting_go_stops_at_once() -> None:
+def test_releasing_the_key_stops_the_jog_immediately() -> None:
     bench = ready()
     hold_key(bench, 0.5)
     at = bench.peer.motion.position[0]
@@ -73,7 +73,7 @@ def jogs(bench: GrblBench) -> int:
     return sum(line.startswith("$J") for line in bench.wire.lines())
 
 
-def test_a_key_pressed_again_waits_for_the_jog_before_and_goes_on() -> None:
+def test_jog_key_pressed_again_waits_for_the_previous_jog() -> None:
     bench = let_go_on_a_slow_line()
     before = jogs(bench)
     hold_key(bench, 0.1)
@@ -85,7 +85,7 @@ def test_a_key_pressed_again_waits_for_the_jog_before_and_goes_on() -> None:
     assert bench.peer.motion.position[0] > at + 0.5 * V
 
 
-def test_a_key_that_is_let_go_before_the_jog_before_is_over_moves_nothing() -> None:
+def test_jog_key_released_before_the_previous_jog_ends_moves_nothing() -> None:
     bench = let_go_on_a_slow_line()
     before = jogs(bench)
     hold_key(bench, 0.1)
@@ -96,7 +96,7 @@ def test_a_key_that_is_let_go_before_the_jog_before_is_over_moves_nothing() -> N
     assert not bench.alarms()
 
 
-def test_a_screen_that_dies_while_its_key_waits_moves_nothing() -> None:
+def test_screen_lost_while_a_jog_key_waits_moves_nothing() -> None:
     bench = let_go_on_a_slow_line()
     before = jogs(bench)
     hold_key(bench, 0.05)
@@ -104,7 +104,7 @@ def test_a_screen_that_dies_while_its_key_waits_moves_nothing() -> None:
     assert jogs(bench) == before
 
 
-def test_a_killed_host_stops_within_its_lease() -> None:
+def test_killed_host_stops_jogging_within_its_lease() -> None:
     bench = ready()
     hold_key(bench, 0.5)
     at = bench.peer.motion.position[0]
@@ -121,7 +121,7 @@ def test_a_jog_ends_at_the_end_of_the_travel() -> None:
     assert any(text("executor.travel-end", axis="X", sign="+") in said for said in bench.said("refused"))
 
 
-def test_a_step_is_exact_and_refused_while_it_moves() -> None:
+def test_jog_step_is_exact_and_rejected_in_motion() -> None:
     bench = ready()
     bench.post(JogByStep("Z", -0.254, 5.0))
     bench.post(JogByStep("Z", -0.254, 5.0))

@@ -42,7 +42,7 @@ def machine_file(tmp_path: Path) -> Iterator[Path]:
     assert not peer.is_alive()
 
 
-def test_what_it_lacks_is_told() -> None:
+def test_missing_capabilities_are_reported() -> None:
     warnings = GrblBench(quirks=quirky(**AS_IT_COMES)).machine.ports.warnings
     for values in (
         ("X: ", "500 mm/min", "7620"),
@@ -56,7 +56,7 @@ def test_what_it_lacks_is_told() -> None:
     assert " 0 " in outputs
 
 
-def test_a_program_runs_at_its_own_pace_and_no_rapid_is_faster_than_it() -> None:
+def test_program_runs_with_default_speeds_of_the_controller() -> None:
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start("G90G94F300\nX.1Z.1\nG01X.05F60\nM08\nM09\nM30\n")
     bench.until(MachineState.IDLE)
@@ -65,7 +65,7 @@ def test_a_program_runs_at_its_own_pace_and_no_rapid_is_faster_than_it() -> None
     assert not bench.said("alarm")
 
 
-def test_more_speed_than_it_allows_is_an_alarm_and_no_slow_cut() -> None:
+def test_speed_above_the_controller_limit_is_an_alarm() -> None:
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start("G90G94F300\nM03S1500\nX.1Z.1\nM30\n")
     bench.until(MachineState.FAULT, limit=5.0)
@@ -83,7 +83,7 @@ def test_a_thread_is_refused_before_the_start() -> None:
     assert bench.wire.lines() == []
 
 
-def test_reset_at_its_slow_ramp_waits_for_it_and_loses_nothing() -> None:
+def test_reset_during_a_slow_deceleration_retains_the_position() -> None:
     """500 mm/min is 8.3 mm/s: 0.83 s to brake with 10 mm/s²."""
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start("G90G94F300\nX1\nM30\n")
@@ -94,12 +94,12 @@ def test_reset_at_its_slow_ramp_waits_for_it_and_loses_nothing() -> None:
     assert not bench.shot.alarms
 
 
-def test_inputs_that_it_has_not_are_trouble_in_a_check(machine_file: Path, capsys: Captured) -> None:
+def test_inputs_missing_on_the_controller_fail_the_check(machine_file: Path, capsys: Captured) -> None:
     assert main(["machine", "check", str(machine_file)]) == 1
     assert "collet_closed" in capsys.readouterr().err
 
 
-def test_check_and_run_without_them(
+def test_missing_outputs_fail_the_check_and_the_program_still_runs(
     machine_file: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))

@@ -27,7 +27,7 @@ def pulled(bench: GrblBench) -> GrblBench:
     return bench
 
 
-def test_nothing_is_known_of_a_controller_whose_wire_is_lost() -> None:
+def test_lost_connection_makes_all_machine_states_unknown() -> None:
     bench = pulled(GrblBench())
     assert bench.shot.unknown == ALL_UNKNOWN_PARTS
     assert bench.peer.spindle.speed == pytest.approx(600.0)  # whatever the screen says
@@ -35,7 +35,7 @@ def test_nothing_is_known_of_a_controller_whose_wire_is_lost() -> None:
     assert not bench.executor._context.spindle.is_stopped
 
 
-def test_reset_without_the_cable_says_so_again() -> None:
+def test_reset_without_the_cable_repeats_the_alarm() -> None:
     bench = pulled(GrblBench())
     bench.post(Reset())
     bench.run(0.5)
@@ -44,7 +44,7 @@ def test_reset_without_the_cable_says_so_again() -> None:
     assert bench.shot.unknown == ALL_UNKNOWN_PARTS
 
 
-def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
+def test_reset_reconnects_and_switches_off_outputs_that_are_still_on() -> None:
     bench = pulled(GrblBench())
     bench.wire.cut = False
     bench.post(Reset())
@@ -60,7 +60,7 @@ def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
     assert bench.shot.actual[:2] == pytest.approx(bench.peer.motion.position, abs=0.001)
 
 
-def test_a_part_is_made_behind_it() -> None:
+def test_part_is_made_after_reconnecting() -> None:
     bench = pulled(GrblBench())
     bench.wire.cut = False
     bench.post(Reset())
@@ -91,7 +91,7 @@ def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) 
     assert re.fullmatch(pattern("executor.not-homed"), bench.shot.start_refusal)
 
 
-def test_a_reset_by_its_button_keeps_the_place_where_it_does_not_stand_at_0() -> None:
+def test_controller_reset_by_its_button_retains_a_nonzero_position() -> None:
     """Its modes are gone, but a controller that restarts counts from 0: this one has not."""
     bench = pulled(GrblBench())
     bench.peer.reset()
@@ -102,7 +102,7 @@ def test_a_reset_by_its_button_keeps_the_place_where_it_does_not_stand_at_0() ->
     assert bench.shot.actual[1] < -8.0
 
 
-def test_firmware_that_knows_no_question_for_its_modes_is_taken_by_its_place(
+def test_firmware_without_a_mode_query_is_recognized_by_its_position(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     bench = pulled(GrblBench())

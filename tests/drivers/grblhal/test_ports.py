@@ -27,7 +27,7 @@ def test_setpoints_are_refused() -> None:
     assert told.value.reason == "blocks-only"
 
 
-def test_a_block_arrives_where_it_was_told_to_the_last_decimal() -> None:
+def test_block_arrives_exactly_at_its_target() -> None:
     bench = powered()
     ticket = bench.machine.block_controller.submit_block(LineOperation(3.14159, -2.71828, 20.0))
     assert ticket == 1
@@ -37,7 +37,7 @@ def test_a_block_arrives_where_it_was_told_to_the_last_decimal() -> None:
     assert bench.machine.axes.sample().actual[:2] == (3.14159, -2.71828)
 
 
-def test_a_controller_of_coarse_steps_rests_where_the_block_has_ended() -> None:
+def test_position_at_rest_is_the_block_end_despite_coarse_steps() -> None:
     """100 steps in a millimetre: reports are up to 5 µm off; the next block begins where this one ended."""
     bench = GrblBench(quirks=quirky(settings={100: 100.0, 102: 100.0}))
     bench.machine.axes.enable(True)
@@ -49,7 +49,7 @@ def test_a_controller_of_coarse_steps_rests_where_the_block_has_ended() -> None:
 
 
 @pytest.mark.parametrize("how", [StopMode.OFF, StopMode.RAMP_OFF, StopMode.RAMP_HOLD])
-def test_stops_brake_and_void_what_was_handed_over(how: StopMode) -> None:
+def test_stop_brakes_and_discards_the_queued_blocks(how: StopMode) -> None:
     bench = powered()
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)
@@ -75,7 +75,7 @@ def test_the_spindle_turns_and_stops() -> None:
     assert bench.machine.spindle.read_fault() == ""
 
 
-def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_down() -> None:
+def test_reversing_spindle_reports_new_direction_only_after_slowing_down() -> None:
     """Its encoder tells no direction: 600 rpm of before are none the other way, at which one may cut."""
     bench = powered()
     bench.machine.spindle.set_speed(600.0)
@@ -88,7 +88,7 @@ def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_dow
     assert bench.machine.spindle.speed() == pytest.approx(-600.0, abs=1.0)
 
 
-def test_in_motion_the_spindle_follows_by_its_override() -> None:
+def test_spindle_speed_changes_by_override_while_axes_move() -> None:
     bench = powered()
     bench.machine.spindle.set_speed(1000.0)
     bench.alone(1.5)
@@ -103,7 +103,7 @@ def test_in_motion_the_spindle_follows_by_its_override() -> None:
     assert (bench.peer.programmed_rpm, bench.peer.spindle_percent) == (870.0, 100)
 
 
-def test_outputs_go_out_and_fall_safe() -> None:
+def test_outputs_are_switched_and_fall_to_their_safe_state() -> None:
     bench = powered()
     io = bench.machine.io
     io.write("coolant", True)
@@ -118,7 +118,7 @@ def test_outputs_go_out_and_fall_safe() -> None:
         io.write("laser", True)
 
 
-def test_an_output_that_could_not_be_said_is_said_later() -> None:
+def test_output_change_blocked_by_an_alarm_is_sent_after_reset() -> None:
     bench = powered()
     bench.machine.io.write("catcher", True)
     bench.alone(0.1)

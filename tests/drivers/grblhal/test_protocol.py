@@ -50,7 +50,7 @@ class ScriptedWire:
         """Nothing to let go."""
 
 
-def test_the_handshake_byte_for_byte() -> None:
+def test_connection_handshake_is_sent_byte_for_byte() -> None:
     wire = ScriptedWire(
         (b"\x87", FULL),
         (b"\n", b"ok\r\n"),
@@ -76,7 +76,7 @@ def test_the_handshake_byte_for_byte() -> None:
     assert machine.controller.line_sender.free_bytes == 896  # of 1024 bytes, 128 are never used
 
 
-def test_a_setting_that_does_not_stay_is_refused() -> None:
+def test_setting_that_is_not_retained_is_rejected() -> None:
     wire = ScriptedWire(
         (b"\x87", FULL),
         (b"\n", b"ok\r\n"),
@@ -91,7 +91,7 @@ def test_a_setting_that_does_not_stay_is_refused() -> None:
 
 
 @pytest.mark.parametrize("answer", [b"", b"hello\r\n", b"<Idle>\r\n"])
-def test_what_is_no_controller_is_refused(answer: bytes) -> None:
+def test_device_that_is_not_a_controller_is_rejected(answer: bytes) -> None:
     with raises_code(DriverError, "driver", "/dev/ttyACM0: ", NO_REPORTS_TEXT):
         GrblMachine(create_grblhal_config(grbl_machine()), ManualClock(), ScriptedWire((b"\x87", answer)))
 
@@ -111,18 +111,18 @@ def test_what_is_no_controller_is_refused(answer: bytes) -> None:
         "<Idle|MPos:1.0,0.0,2.0|D:7>",
     ],
 )
-def test_a_damaged_report_is_none(line: str) -> None:
+def test_damaged_report_is_ignored(line: str) -> None:
     assert parse_report(line) is None
 
 
 @pytest.mark.parametrize("line", ["<Idle|MPos:1.0,2.0|WPos:3.0,4.0>", "<Idle|WPos:3.0,4.0|MPos:1.0,2.0>"])
-def test_two_lines_run_into_one_tell_the_machines_place(line: str) -> None:
+def test_report_with_two_positions_uses_the_machine_position(line: str) -> None:
     report = parse_report(line)
     assert report is not None
     assert report.position == (1.0, 2.0)
 
 
-def test_a_whole_report() -> None:
+def test_full_report_is_parsed() -> None:
     report = parse_report(
         "<Hold:1|MPos:-1.234,0.000,5.600|Bf:98,1000|Ln:33|FS:500,1000,998|Pn:EH|Ov:83,50,100|D:1>"
     )
@@ -148,11 +148,11 @@ def test_a_whole_report() -> None:
         (191, 200, "94 91"),  # a coarse step would be cut short at 200
     ],
 )
-def test_steps_to_a_pot(told: int, percent: int, expected: str) -> None:
+def test_override_is_encoded_in_steps(told: int, percent: int, expected: str) -> None:
     assert encode_override_steps(percent, told) == bytes.fromhex(expected)
 
 
-def test_every_override_fits_into_the_controllers_queue_and_leaps_nowhere() -> None:
+def test_every_override_fits_the_command_queue_and_approaches_steadily() -> None:
     worth = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
     for told in range(10, 201):
         for percent in range(10, 201):
@@ -169,11 +169,11 @@ def test_every_override_fits_into_the_controllers_queue_and_leaps_nowhere() -> N
     ("value", "text"),
     [(0.0, "0"), (-1e-9, "0"), (25.4, "25.4"), (0.00127, "0.00127"), (-101.6, "-101.6"), (1 / 3, "0.33333")],
 )
-def test_numbers_keep_a_hundredth_of_a_micrometre(value: float, text: str) -> None:
+def test_numbers_have_a_resolution_of_a_hundredth_micrometer(value: float, text: str) -> None:
     assert number(value) == text
 
 
-def test_lines_of_blocks() -> None:
+def test_blocks_are_formatted_as_lines() -> None:
     assert format_block(RapidOperation(1.0, 2.0, 127.0), 7, 127.0, 1.0) == "N7G0X1Z2"
     assert format_block(RapidOperation(1.0, 2.0, 50.0), 7, 127.0, 1.0) == "N7G1X1Z2F3000"
     assert (
@@ -196,7 +196,7 @@ def test_lines_of_blocks() -> None:
     assert format_jog("X", -1.5, 10.0) == "$J=G53G21G90X-1.5F600"
 
 
-def test_no_more_bytes_are_unanswered_than_fit() -> None:
+def test_unanswered_bytes_never_exceed_the_buffer() -> None:
     sent: list[bytes] = []
     stream = LineSender(sent.append)
     stream.set_buffer_size(328)  # of which 200 may be used
@@ -210,7 +210,7 @@ def test_no_more_bytes_are_unanswered_than_fit() -> None:
     assert len(sent) == 9
 
 
-def test_an_answer_to_nothing_is_told() -> None:
+def test_unexpected_reply_is_detected() -> None:
     stream = LineSender(lambda _: None)
     assert stream.handle_reply(0) is None
 
@@ -223,7 +223,7 @@ def test_an_answer_to_nothing_is_told() -> None:
         (["[VER:1:]", "[OPT:V,16,128]"], "small-buffer"),
     ],
 )
-def test_an_identity_is_demanded(lines: list[str], reason: str) -> None:
+def test_controller_identity_is_validated(lines: list[str], reason: str) -> None:
     with raises_code(DriverError, "driver") as told:
         parse_identity(lines)
     assert told.value.reason == reason

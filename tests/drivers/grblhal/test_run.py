@@ -13,7 +13,7 @@ from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 LONG = "G90G94F300\nM03S1000\nX.5Z.2\nG01Z-2F30\nX1F30\nM30\n"  # 2.2 in and .5 in at 30 in/min: 4.4 s and 1 s
 
 
-def test_the_lines_of_a_small_program() -> None:
+def test_small_program_is_sent_line_by_line() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX.5Z.2\nG01X.25F60\nG03X.5Z-.05I.5K.2F60\nM08\nX.6F300\nM30\n")
     bench.until(MachineState.IDLE)
@@ -40,7 +40,7 @@ def test_the_lines_of_a_small_program() -> None:
         ("X3Z1", 127.0),
     ],
 )
-def test_a_rapid_takes_the_time_that_was_proved(target: str, speed: float) -> None:
+def test_rapid_takes_the_proved_time(target: str, speed: float) -> None:
     """Way / speed + speed / acceleration, X and Z 127 mm/s and 3000 mm/s²; 40 ms to see that it is over."""
     bench = GrblBench()
     bench.start(f"G90G94F300\n{target}\nM30\n")
@@ -50,7 +50,7 @@ def test_a_rapid_takes_the_time_that_was_proved(target: str, speed: float) -> No
     assert all("G0" not in line for line in bench.wire.lines() if "X" in line and target != "Z3")
 
 
-def test_an_axis_that_is_slow_holds_back_its_own_way_alone() -> None:
+def test_slow_axis_limits_only_its_own_share_of_the_speed() -> None:
     """X 1 in/s by $110, Z 5: along Z at Z's speed, up and across at X's times the way over X's part of it."""
     bench = GrblBench(quirks=quirky(settings={110: 1524.0}))
     bench.start("G90G94F300\nZ3\nX1Z4\nX0Z4\nM30\n")
@@ -62,14 +62,14 @@ def test_an_axis_that_is_slow_holds_back_its_own_way_alone() -> None:
     assert bench.machine.block_controller.get_max_line_speed(1.0, 1.0) == pytest.approx(25.4 * math.sqrt(2.0))
 
 
-def test_a_controller_that_may_more_does_no_more_than_was_proved() -> None:
+def test_faster_controller_runs_no_faster_than_proved() -> None:
     bench = GrblBench(quirks=quirky(settings={110: 12000.0, 112: 12000.0}))
     bench.start("G90G94F300\nZ3\nX1Z1\nM30\n")
     bench.until(MachineState.IDLE)
     assert all(line.endswith("F7620") for line in bench.wire.lines() if "Z" in line)
 
 
-def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
+def test_arc_speed_is_limited_by_the_acceleration() -> None:
     """R 2 mm: √(0.8 · 3048 · 2) = 69.8 mm/s, though 127 are programmed and the firmware would take them."""
     bench = GrblBench()
     bench.start("G90G94F300\nX.07874Z0\nG03X0Z-.07874I0K0\nM30\n")
@@ -79,7 +79,7 @@ def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
     assert {round(float(arc.partition("F")[2]) / 60.0, 1) for arc in arcs} == {69.8}
 
 
-def test_a_program_ends_where_it_says_and_counts_a_part() -> None:
+def test_program_ends_at_its_programmed_position_and_counts_a_part() -> None:
     bench = GrblBench()
     bench.start(LONG)
     took = bench.until(MachineState.IDLE)
@@ -89,7 +89,7 @@ def test_a_program_ends_where_it_says_and_counts_a_part() -> None:
     assert took == pytest.approx(5.4 + 0.7, abs=0.6)  # and the spindle, which reaches its speed in .7 s
 
 
-def test_the_block_that_is_moved_is_the_one_that_is_shown() -> None:
+def test_active_block_is_the_block_shown() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -100,7 +100,7 @@ def test_the_block_that_is_moved_is_the_one_that_is_shown() -> None:
     assert bench.peer.motion.position[1] == pytest.approx(-50.8, abs=2.0)
 
 
-def test_no_more_than_its_share_of_motion_is_ahead() -> None:
+def test_amount_of_queued_motion_is_limited() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -131,7 +131,7 @@ def _speed_of(bench: GrblBench) -> float:
     return bench.peer.motion.speed
 
 
-def test_single_block_stops_behind_each_block() -> None:
+def test_single_block_stops_after_each_block() -> None:
     bench = GrblBench()
     bench.ready()
     bench.post(SetSwitch("single_block", True))
@@ -149,7 +149,7 @@ def test_single_block_stops_behind_each_block() -> None:
 
 
 @pytest.mark.parametrize("fraction", [0.83, 0.1, 1.5, 0.37])
-def test_overrides_are_reset_and_steps_and_read_back(fraction: float) -> None:
+def test_override_is_sent_as_reset_and_steps_and_verified(fraction: float) -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
@@ -168,7 +168,7 @@ def test_overrides_are_reset_and_steps_and_read_back(fraction: float) -> None:
         ("M91", "input TB2-5"),
     ],
 )
-def test_what_the_controller_cannot_do_is_refused_before_the_start(text: str, expected: str) -> None:
+def test_unsupported_function_is_refused_before_the_start(text: str, expected: str) -> None:
     bench = GrblBench(
         grbl_machine(("enabled = false\nvmax", "enabled = true\nvmax")),
         quirky(encoder=False, outputs=0, inputs=0),
@@ -179,7 +179,7 @@ def test_what_the_controller_cannot_do_is_refused_before_the_start(text: str, ex
     assert bench.wire.lines() == []
 
 
-def test_a_feed_per_turn_goes_out_as_a_feed_of_the_commanded_speed() -> None:
+def test_feed_per_rev_is_sent_as_feed_at_the_commanded_speed() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nM03S600\nX.5\nG01G95F.005X.45\nM30\n")
     bench.until(MachineState.IDLE)
@@ -194,7 +194,7 @@ def test_a_thread_with_a_pull_out_is_refused_before_the_start() -> None:
     assert "pull-out" in bench.shot.start_refusal
 
 
-def test_outputs_are_switched_and_inputs_are_waited_for() -> None:
+def test_outputs_are_switched_and_inputs_are_awaited() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX.5Z.2\nM25\nM92\nM26\nM30\n")
     bench.until(MachineState.WAIT)

@@ -12,7 +12,7 @@ DIAGONALS = "G90G94F300\n" + "X1Z1\nX0Z0\n" * 4 + "M30\n"
 
 
 @pytest.mark.parametrize("drip", [0.012, 0.025])
-def test_a_question_that_lies_behind_lines_is_no_silence(drip: float) -> None:
+def test_status_query_delayed_after_queued_lines_is_not_silence(drip: float) -> None:
     """Four blocks are some 72 bytes: at 25 ms a byte a question behind them waits for two seconds."""
     bench = GrblBench()
     bench.ready()
@@ -23,7 +23,7 @@ def test_a_question_that_lies_behind_lines_is_no_silence(drip: float) -> None:
     assert bench.peer.motion.position == pytest.approx((0.0, 0.0))
 
 
-def test_one_question_waits_for_its_report() -> None:
+def test_only_one_status_query_is_pending_at_a_time() -> None:
     """What is asked ten times a second and answered once only fills the line."""
     bench = GrblBench(quirks=quirky())
     bench.ready()
@@ -34,7 +34,7 @@ def test_one_question_waits_for_its_report() -> None:
     assert 1 <= bench.wire.sent.count(0x80) + bench.wire.sent.count(0x87) <= 3
 
 
-def test_one_that_answers_nothing_is_told_as_before() -> None:
+def test_controller_that_never_replies_is_reported_on_a_slow_connection() -> None:
     """Lines that nobody answers are no sign of life, on a slow line neither."""
     bench = GrblBench()
     bench.ready()

@@ -40,9 +40,7 @@ def waiting(bench: GrblBench) -> GrblBench:
 
 @pytest.mark.parametrize("encoder", [True, False])
 @pytest.mark.parametrize("settings", [{TOLERANCE: 5.0}, {TOLERANCE: 5.0, ON: 9.0}, {ON: 8.0}])
-def test_a_slow_spindle_and_coolant_behind_it_raise_no_alarm(
-    settings: dict[int, float], encoder: bool
-) -> None:
+def test_slow_spindle_followed_by_coolant_raises_no_alarm(settings: dict[int, float], encoder: bool) -> None:
     bench = slow_bench(settings, encoder=encoder)
     waiting(bench)
     bench.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
@@ -51,14 +49,14 @@ def test_a_slow_spindle_and_coolant_behind_it_raise_no_alarm(
     assert not bench.said("alarm")
 
 
-def test_coolant_that_takes_its_delay_has_not_gone_off() -> None:
+def test_coolant_during_its_switch_on_delay_is_not_reported_as_off() -> None:
     bench = slow_bench({COOLANT: 5.0})
     bench.start(PART)
     bench.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert (bench.state, bench.alarms()) == (MachineState.IDLE, "")
 
 
-def test_coolant_that_goes_off_behind_the_wait_is_still_an_alarm() -> None:
+def test_coolant_that_turns_off_after_the_wait_is_reported() -> None:
     bench = slow_bench({TOLERANCE: 5.0})
     waiting(bench)
     bench.until_true(lambda _: bench.peer.output_states.get("flood", False), 20.0)
@@ -68,7 +66,7 @@ def test_coolant_that_goes_off_behind_the_wait_is_still_an_alarm() -> None:
     assert bench.shot.stop.code == "switched-off"
 
 
-def test_a_spindle_that_stays_too_slow_is_the_firmwares_alarm() -> None:
+def test_spindle_that_remains_too_slow_raises_the_firmware_alarm() -> None:
     bench = slow_bench({TOLERANCE: 5.0, ON: 4.0})
     bench.start(PART)
     bench.until(MachineState.FAULT, limit=10.0)
@@ -79,7 +77,7 @@ def test_a_spindle_that_stays_too_slow_is_the_firmwares_alarm() -> None:
     assert bench.peer.commanded_rpm == 0.0
 
 
-def test_a_reset_in_the_wait_stops_the_spindle_at_once() -> None:
+def test_reset_during_the_spindle_wait_stops_the_spindle_immediately() -> None:
     bench = waiting(slow_bench({TOLERANCE: 5.0}))
     bench.post(Reset())
     bench.run(1.0)
@@ -105,7 +103,7 @@ def test_a_spindle_stop_does_not_wait_for_the_speed(held: bool) -> None:
     assert bench.machine.controller.fault == ""
 
 
-def test_an_answer_to_m3_that_is_lost_is_missed_behind_the_longest_wait() -> None:
+def test_lost_reply_to_m3_is_missed_after_the_longest_wait() -> None:
     bench = slow_bench({ON: 4.0})
     bench.ready()
     bench.peer.behavior.garbled_replies.append(b"")
@@ -134,7 +132,7 @@ def test_the_longest_wait_follows_the_settings(line: str, settings: dict[int, st
     assert get_max_firmware_wait(line, settings) == seconds
 
 
-def test_in_the_wait_reports_are_answered_and_no_line_is_read() -> None:
+def test_firmware_reports_during_the_spindle_wait_but_reads_no_line() -> None:
     """As the firmware's simulator did with $394=3: Idle, the programmed speed, M8 unread."""
     clock = ManualClock()
     firmware = GrblFirmware(clock, quirky(settings={ON: 3.0}))

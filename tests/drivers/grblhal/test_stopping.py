@@ -40,7 +40,7 @@ def thread(bench: GrblBench, z: float) -> None:
     raise AssertionError("never taken")
 
 
-def test_a_block_is_braked_before_the_reset_that_voids_the_rest() -> None:
+def test_block_is_braked_before_the_reset_that_discards_the_queue() -> None:
     bench = powered()
     for i in range(1, 4):
         bench.machine.block_controller.submit_block(LineOperation(50.0 * i, 0.0, 40.0))
@@ -53,7 +53,7 @@ def test_a_block_is_braked_before_the_reset_that_voids_the_rest() -> None:
     assert STOP not in sent
 
 
-def test_a_jog_is_cancelled_before_the_reset() -> None:
+def test_jog_is_canceled_before_the_reset() -> None:
     bench = powered()
     bench.machine.block_controller.start_jog("X", 40.0, 0.3, None)
     bench.alone(0.2)
@@ -65,7 +65,7 @@ def test_a_jog_is_cancelled_before_the_reset() -> None:
     assert sent.index(CANCEL) < sent.index(RESET)
 
 
-def test_out_of_a_hold_nothing_moves_again() -> None:
+def test_stop_during_a_hold_starts_no_motion() -> None:
     bench = powered()
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)
@@ -78,7 +78,7 @@ def test_out_of_a_hold_nothing_moves_again() -> None:
 
 
 @pytest.mark.parametrize("mute", [True, False])
-def test_a_thread_that_waits_for_its_index_is_given_up_without_a_lost_position(mute: bool) -> None:
+def test_thread_waiting_for_its_index_is_canceled_with_position_retained(mute: bool) -> None:
     """At 30 rpm the second index comes after 2 to 4 s. In that wait the firmware answers nothing.
 
     Where its wire is read meanwhile 0x19 ends the wait. Where it is not, as in the simulator, hold and stop
@@ -98,7 +98,7 @@ def test_a_thread_that_waits_for_its_index_is_given_up_without_a_lost_position(m
     ends_well(bench)
 
 
-def test_an_index_that_is_slow_to_come_is_no_silence() -> None:
+def test_slow_index_is_not_reported_as_silence() -> None:
     bench = powered()
     bench.machine.spindle.set_speed(25.0)
     bench.alone(1.0)
@@ -108,7 +108,7 @@ def test_an_index_that_is_slow_to_come_is_no_silence() -> None:
     assert bench.peer.motion.position[1] == -2.0
 
 
-def test_in_a_hold_the_spindle_stops_by_its_toggle_and_stays_off() -> None:
+def test_spindle_is_stopped_by_its_toggle_in_a_hold_and_stays_off() -> None:
     bench = powered()
     bench.machine.spindle.set_speed(600.0)
     bench.alone(1.0)
@@ -128,7 +128,7 @@ def test_in_a_hold_the_spindle_stops_by_its_toggle_and_stays_off() -> None:
     assert "M5" in bench.peer.program.executed_lines
 
 
-def test_a_spindle_that_does_not_stop_in_a_hold_is_told() -> None:
+def test_spindle_that_does_not_stop_in_a_hold_is_reported() -> None:
     bench = powered(toggle_broken=True)
     bench.machine.spindle.set_speed(600.0)
     bench.alone(1.0)
@@ -141,7 +141,7 @@ def test_a_spindle_that_does_not_stop_in_a_hold_is_told() -> None:
     assert get_fault_code(bench.machine.controller.fault, "driver") == "ignores-stop"
 
 
-def test_in_a_jog_functions_wait_for_its_end() -> None:
+def test_outputs_are_switched_after_the_end_of_a_jog() -> None:
     """Sent at once they would be refused, and the refusal would stick."""
     bench = powered()
     bench.machine.spindle.set_speed(600.0)
@@ -157,7 +157,7 @@ def test_in_a_jog_functions_wait_for_its_end() -> None:
     assert bench.peer.output_states["flood"] is False
 
 
-def test_a_full_buffer_never_shuts_out_the_word_to_go_on() -> None:
+def test_full_buffer_never_prevents_the_resume_command() -> None:
     """Hundreds of short blocks, a hold in their middle, and on: with too little free nothing is heard."""
     bench = powered()
     sent = 0
@@ -184,7 +184,7 @@ def test_a_full_buffer_never_shuts_out_the_word_to_go_on() -> None:
     assert bench.machine.controller.fault == ""
 
 
-def test_a_reset_that_is_never_told_is_a_fault_and_no_waiting_for_ever() -> None:
+def test_reset_that_is_not_confirmed_is_a_fault_after_a_timeout() -> None:
     bench = powered()
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)

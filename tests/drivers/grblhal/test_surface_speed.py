@@ -20,7 +20,7 @@ def wanted(radius: float) -> float:
     return min(60.0 * 300 * 304.8 / 60.0 / (2.0 * math.pi * radius), 2000.0)
 
 
-def test_the_spindle_follows_the_radius_without_a_standstill() -> None:
+def test_spindle_speed_follows_the_radius_without_stopping() -> None:
     bench = GrblBench()
     bench.start(FACE)
     bench.until_true(lambda shot: shot.line == 7)
@@ -39,14 +39,14 @@ def test_the_spindle_follows_the_radius_without_a_standstill() -> None:
     assert not bench.alarms()
 
 
-def test_nothing_is_cut_before_it_turns_as_fast_as_it_ought_to() -> None:
+def test_cut_waits_for_the_required_surface_speed() -> None:
     bench = GrblBench()
     bench.start(FACE)
     bench.until_true(lambda _: bench.peer.motion.position[0] < 25.39 and bench.shot.line >= 7)
     assert abs(bench.peer.spindle.speed) == pytest.approx(wanted(25.4), rel=0.05)
 
 
-def test_it_never_turns_faster_than_the_program_allows_at_100_percent_neither() -> None:
+def test_spindle_never_exceeds_programmed_maximum_even_at_100_percent() -> None:
     """A pendant puts the override back: 1000 rpm at most, which are less than G77."""
     bench = GrblBench()
     bench.start(FACE)
@@ -61,7 +61,7 @@ def test_it_never_turns_faster_than_the_program_allows_at_100_percent_neither() 
     assert not bench.alarms()
 
 
-def test_a_feed_a_turn_is_that_of_the_speed_which_it_can_have() -> None:
+def test_feed_per_rev_uses_the_limited_spindle_speed() -> None:
     """.004 in a turn: at X .2 in 2000 rpm, 203.2 mm/min, and never more."""
     bench = GrblBench()
     bench.start(FACE)
@@ -71,7 +71,7 @@ def test_a_feed_a_turn_is_that_of_the_speed_which_it_can_have() -> None:
     assert min(feeds) == pytest.approx(wanted(25.0) * 0.004 * 25.4, rel=0.03)
 
 
-def test_behind_it_a_constant_speed_is_an_s_again() -> None:
+def test_constant_speed_after_surface_speed_is_set_by_s() -> None:
     bench = GrblBench()
     bench.start(FACE.replace("M30", "G01X1F.01\nM30"))
     bench.until(MachineState.IDLE)
@@ -79,7 +79,7 @@ def test_behind_it_a_constant_speed_is_an_s_again() -> None:
     assert not bench.alarms()
 
 
-def test_a_spindle_of_one_speed_is_refused_before_the_start() -> None:
+def test_spindle_without_variable_speed_is_refused_before_the_start() -> None:
     bench = GrblBench(quirks=quirky(build="NML+"))
     bench.start(FACE)
     assert bench.state is MachineState.IDLE
@@ -88,7 +88,7 @@ def test_a_spindle_of_one_speed_is_refused_before_the_start() -> None:
     )
 
 
-def test_a_speed_that_the_controller_limits_in_silence_is_told() -> None:
+def test_speed_limited_by_the_controller_is_reported() -> None:
     """The firmware's simulator turns 1000 rpm whatever $30 was set to, until it is started anew."""
     bench = GrblBench()
     bench.ready()
@@ -101,7 +101,7 @@ def test_a_speed_that_the_controller_limits_in_silence_is_told() -> None:
         assert value in alarm.detail
 
 
-def test_a_limit_is_reached_and_no_more() -> None:
+def test_program_may_reach_but_not_exceed_the_speed_limit() -> None:
     """A program that stays below it is nobody's business."""
     bench = GrblBench(quirks=quirky(settings={30: 3500.0}))
     bench.start("G90G94F300\nM03S2000\nX.5\nG01F10X.45\nM30\n")

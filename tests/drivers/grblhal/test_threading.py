@@ -16,7 +16,7 @@ from tests.drivers.grblhal.test_faults import THREAD, clear
 TAPERED = THREAD.replace("K.05", "K.05A.07")
 
 
-def test_a_thread_is_the_controllers_own() -> None:
+def test_thread_is_cut_by_the_controller() -> None:
     bench = GrblBench()
     bench.start(THREAD)
     bench.until(MachineState.IDLE)
@@ -28,7 +28,7 @@ def test_a_thread_is_the_controllers_own() -> None:
     assert not bench.said("alarm")
 
 
-def test_a_thread_without_an_index_is_waited_for_and_then_an_alarm() -> None:
+def test_missing_index_in_a_thread_raises_an_alarm_after_a_wait() -> None:
     bench = GrblBench(quirks=quirky(index_missing=True))
     bench.start(THREAD)
     bench.until(MachineState.FAULT, limit=20.0)
@@ -47,7 +47,7 @@ def test_without_an_encoder_threads_are_refused_before_the_start() -> None:
     assert "threads" in bench.shot.start_refusal
 
 
-def test_a_pass_is_cut_at_full_override_and_what_was_asked_comes_back_behind_it() -> None:
+def test_thread_pass_runs_at_full_override_which_is_restored_afterwards() -> None:
     """The firmware's override slows a synchronised pass, which then lags behind its lead."""
     bench = GrblBench()
     bench.start(THREAD)
@@ -65,7 +65,7 @@ def test_a_pass_is_cut_at_full_override_and_what_was_asked_comes_back_behind_it(
     assert not bench.said("alarm")
 
 
-def test_a_tapered_pass_goes_further_than_its_lead_and_tells_so() -> None:
+def test_lead_of_a_tapered_thread_is_measured_along_the_taper() -> None:
     """The controller counts K along the way: .07 in X on .7 in Z make it longer by the root of 1.01."""
     bench = GrblBench()
     bench.start(TAPERED)
@@ -91,7 +91,7 @@ def test_a_hold_waits_for_the_end_of_the_pass() -> None:
     assert bench.peer.abrupt_stop_count == 0
 
 
-def test_reset_in_a_pass_brakes_and_keeps_the_position() -> None:
+def test_reset_in_a_thread_pass_brakes_and_retains_the_position() -> None:
     bench = GrblBench()
     bench.start(THREAD)
     bench.until_true(lambda _: bench.peer.motion.is_moving and bench.peer.motion.block_queue[0].is_thread)
@@ -102,7 +102,7 @@ def test_reset_in_a_pass_brakes_and_keeps_the_position() -> None:
     assert not bench.shot.alarms
 
 
-def test_a_dot_of_an_arc_is_a_line() -> None:
+def test_very_short_arc_is_sent_as_a_line() -> None:
     """Its angle would round to nothing over there, which is a whole circle."""
     x = 10.0 * math.sin(1e-4)
     z = 10.0 * math.cos(1e-4)

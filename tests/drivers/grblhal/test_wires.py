@@ -45,7 +45,7 @@ def machine_file(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Pat
     assert not peer.is_alive()
 
 
-def test_check_and_run(
+def test_machine_check_and_run_succeed_over_the_connection(
     machine_file: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
@@ -62,7 +62,7 @@ def test_check_and_run(
     assert (outcome["final"]["x"], outcome["final"]["z"]) == pytest.approx((0.05, 0.1))
 
 
-def test_nobody_there_is_one_sentence(tmp_path: Path, capsys: Captured) -> None:
+def test_missing_controller_is_reported_in_one_line(tmp_path: Path, capsys: Captured) -> None:
     file = tmp_path / "grblhal.toml"
     file.write_text(SHIPPED.replace("/dev/ttyACM0", "/dev/nothing-here"), encoding="utf-8")
     assert main(["machine", "check", str(file)]) == 1

@@ -18,7 +18,7 @@ from tests.texts import text
 HERE = tuple((old, new.replace("speed = 60", "speed = 60, method = 37")) for old, new in UNHOMED)
 
 
-def test_home_here_needs_no_switch_and_moves_nothing() -> None:
+def test_home_at_the_present_position_needs_no_switch_and_no_motion() -> None:
     bench = GrblBench(grbl_machine(*HERE))
     assert not [told for told in bench.machine.ports.warnings if "$22" in told]
     bench.machine.axes.enable(True)
@@ -39,14 +39,14 @@ def test_home_here_needs_no_switch_and_moves_nothing() -> None:
     assert bench.peer.motion.position == pytest.approx((5.54, -1.92))
 
 
-def test_a_controller_that_homes_nothing_is_told_of_with_what_to_do() -> None:
+def test_controller_without_homing_is_reported_with_a_remedy() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED))
     (told,) = [told for told in bench.machine.ports.warnings if "$22" in told]
     assert re.search(r"\bX\b.*\bZ\b", told)
     assert "method = 37" in told
 
 
-def test_without_homing_an_absolute_axis_is_taken_at_its_word() -> None:
+def test_absolute_axis_is_accepted_as_homed_without_homing() -> None:
     bench = GrblBench()
     bench.ready()
     bench.post(HomeAxes())
@@ -55,7 +55,7 @@ def test_without_homing_an_absolute_axis_is_taken_at_its_word() -> None:
     assert not [line for line in bench.wire.lines() if line.startswith("$H")]
 
 
-def test_what_the_controller_has_homed_is_homed_for_the_next_host() -> None:
+def test_axis_homed_by_the_controller_is_homed_for_the_next_host() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=3))
     bench.ready()
     bench.post(HomeAxes())
@@ -67,7 +67,7 @@ def test_what_the_controller_has_homed_is_homed_for_the_next_host() -> None:
     assert machine.axes.sample().homed[:2] == (True, True)
 
 
-def test_an_axis_cannot_home_alone_where_the_controller_homes_all_together() -> None:
+def test_single_axis_homing_homes_all_if_controller_homes_only_together() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=1))
     bench.ready()
     bench.post(HomeAxes())
@@ -76,7 +76,7 @@ def test_an_axis_cannot_home_alone_where_the_controller_homes_all_together() -> 
     assert [line for line in bench.wire.lines() if line.startswith("$H")] == ["$H"]
 
 
-def test_one_that_insists_stays_locked_until_its_last_axis_is_homed() -> None:
+def test_controller_that_requires_homing_is_locked_until_last_axis_is_home() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=7))
     bench.machine.axes.enable(True)
     bench.alone(0.3)

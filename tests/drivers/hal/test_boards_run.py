@@ -110,7 +110,7 @@ def called(board: str) -> list[str]:
 @pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
 @pytest.mark.parametrize("board", list(MOVED))
-def test_a_program_runs_to_its_end_through_the_shipped_hal_file(board: str, tmp_path: Path) -> None:
+def test_program_completes_with_the_shipped_hal_file(board: str, tmp_path: Path) -> None:
     program = PIECE.replace("F100", "F40") if board == "parport" else PROGRAM
     with live(lathe_without_board(board, tmp_path, ON.get(board, []))) as lathe:
         lathe.ready()
@@ -121,7 +121,7 @@ def test_a_program_runs_to_its_end_through_the_shipped_hal_file(board: str, tmp_
 @pytest.mark.long
 @pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
-def test_a_card_that_has_let_go_and_a_drive_that_is_not_ready_are_faults(tmp_path: Path) -> None:
+def test_board_watchdog_and_drive_not_ready_are_faults(tmp_path: Path) -> None:
     faults = {f"{SERVO}.watchdog.has_bit": "hal-board", f"{SERVO}.inmux.00.input-10-not": "axis"}
     with live(lathe_without_board("mesa-7i97", tmp_path, ON["mesa-7i97"])) as lathe:
         for pin, code in faults.items():
@@ -135,7 +135,7 @@ def test_a_card_that_has_let_go_and_a_drive_that_is_not_ready_are_faults(tmp_pat
 @pytest.mark.long
 @pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
-def test_a_card_whose_cable_is_out_takes_the_power_at_rest_though_its_estop_input_is_frozen(
+def test_disconnected_board_removes_power_at_rest_despite_frozen_estop(
     tmp_path: Path,
 ) -> None:
     """As hm2_eth does it: inputs stay as they were, only packet-error-exceeded rises; has_bit is not read."""

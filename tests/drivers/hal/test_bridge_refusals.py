@@ -23,7 +23,7 @@ def bench() -> Iterator[Bench]:
 # --- what stops the machine -------------------------------------------------------------------------------
 
 
-def test_a_limit_switch_stops_x_on_its_path_and_takes_the_power(bench: Bench) -> None:
+def test_limit_switch_stops_x_on_its_path_and_removes_power(bench: Bench) -> None:
     bench.x_goes(5.0)
     bench.run(0.5)
     bench.wire("x-high", True)
@@ -36,7 +36,7 @@ def test_a_limit_switch_stops_x_on_its_path_and_takes_the_power(bench: Bench) ->
     assert bench.x == pytest.approx(stood, abs=1e-6)
 
 
-def test_a_limit_switch_is_no_end_for_the_axis_that_looks_for_it(bench: Bench) -> None:
+def test_limit_switch_is_ignored_by_the_axis_that_is_homing(bench: Bench) -> None:
     bench.told("homing", axis="X", on=True)
     bench.wire("x-high", True)
     bench.run(0.3)
@@ -46,7 +46,7 @@ def test_a_limit_switch_is_no_end_for_the_axis_that_looks_for_it(bench: Bench) -
     assert bench.bridge[0].startswith("X: ")
 
 
-def test_a_limit_switch_without_power_is_no_fault(bench: Bench) -> None:
+def test_limit_switch_without_power_is_not_a_fault(bench: Bench) -> None:
     """It may stand there with the drives off: only so can it be led back."""
     bench.axes.enable(False)
     bench.run(0.2)
@@ -55,7 +55,7 @@ def test_a_limit_switch_without_power_is_no_fault(bench: Bench) -> None:
     assert bench.bridge == ("", "")
 
 
-def test_setpoints_for_a_time_that_was_played_stop_it(bench: Bench) -> None:
+def test_setpoints_for_a_time_already_played_stop_the_axes(bench: Bench) -> None:
     late = MotionPiece(bench.clock.now() - 0.02, 1.0, (bench.x + 1.0, bench.z), STILL, STILL)
     bench.told("splice", tuple(flatten_pieces([late])))
     assert bench.bridge[1] == "late"
@@ -64,7 +64,7 @@ def test_setpoints_for_a_time_that_was_played_stop_it(bench: Bench) -> None:
     assert bench.x == pytest.approx(0.0, abs=1e-3)
 
 
-def test_the_same_setpoints_once_more_are_not_too_late(bench: Bench) -> None:
+def test_late_setpoints_that_match_the_played_path_are_accepted(bench: Bench) -> None:
     """A path that goes on as it was played is played anyway."""
     bench.x_goes(5.0)
     bench.run(0.5)
@@ -79,13 +79,13 @@ def test_the_same_setpoints_once_more_are_not_too_late(bench: Bench) -> None:
     assert bench.x == pytest.approx(x + 5.0 * (bench.clock.now() - begun), abs=0.05)
 
 
-def test_a_thread_for_turns_that_have_gone_by_stops_it(bench: Bench) -> None:
+def test_thread_for_revolutions_already_passed_stops_the_axes(bench: Bench) -> None:
     gone = MotionPiece(-3.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)  # three turns ago
     bench.told("mesh", tuple(flatten_pieces([gone])), zero=0.0, sign=1.0, way=1)
     assert bench.bridge[1] == "late"
 
 
-def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
+def test_mismatch_with_the_stream_played_by_hal_stops_the_axes(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(bench.far.bridge.row_streams, "finish_change", lambda _plays_b: False)
@@ -97,7 +97,7 @@ def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
 # --- what is not done -------------------------------------------------------------------------------------
 
 
-def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> None:
+def test_fault_bars_power_until_it_is_cleared(bench: Bench) -> None:
     bench.far.plant_controls.drive_fault("X")
     bench.run(0.5)
     assert bench.bridge == ("the X axis drive reports a fault", "axis")
@@ -114,7 +114,7 @@ def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> Non
     assert bench.axes.sample().enabled
 
 
-def test_with_an_open_chain_the_spindle_is_not_ordered_to_turn(bench: Bench) -> None:
+def test_spindle_command_is_not_sent_while_the_estop_chain_is_open(bench: Bench) -> None:
     bench.far.plant_controls.press_estop()
     bench.run(0.3)
     bench.far.bridge.queue_packet({"do": "spindle", "rpm": 500.0, "on": True}, ())
@@ -126,7 +126,7 @@ def test_with_an_open_chain_the_spindle_is_not_ordered_to_turn(bench: Bench) -> 
     assert bench.far.plant_controls.get_spindle_rpm() == 0.0
 
 
-def test_neither_way_nor_thread_nor_power_for_slides_that_are_off(bench: Bench) -> None:
+def test_motion_and_thread_are_ignored_while_drives_are_off(bench: Bench) -> None:
     bench.axes.enable(False)
     bench.run(0.3)
     bench.x_goes(5.0)
@@ -138,7 +138,7 @@ def test_neither_way_nor_thread_nor_power_for_slides_that_are_off(bench: Bench) 
     assert bench.far.bridge.setpoint_player.read_gear_state() is None
 
 
-def test_the_first_packet_of_a_way_in_two_moves_nothing(bench: Bench) -> None:
+def test_first_packet_of_a_two_packet_path_moves_nothing(bench: Bench) -> None:
     """Its end, where it comes to rest, is in the other one."""
     t, x, z = bench.clock.now() + 0.3, bench.x, bench.z
     out = MotionPiece(t, 0.2, (x, z), (5.0, 0.0), STILL)
@@ -147,7 +147,7 @@ def test_the_first_packet_of_a_way_in_two_moves_nothing(bench: Bench) -> None:
     assert bench.x == pytest.approx(x, abs=1e-6)
 
 
-def test_a_way_in_two_packets_is_one(bench: Bench) -> None:
+def test_path_sent_in_two_packets_is_played_as_one(bench: Bench) -> None:
     t, x, z = bench.clock.now() + 0.1, bench.x, bench.z
     out = MotionPiece(t, 0.2, (x, z), (5.0, 0.0), STILL)
     back = MotionPiece(t + 0.2, 0.2, (x + 1.0, z), (-5.0, 0.0), STILL)
@@ -160,7 +160,7 @@ def test_a_way_in_two_packets_is_one(bench: Bench) -> None:
     assert bench.bridge == ("", "")
 
 
-def test_an_order_or_an_output_that_nobody_knows_does_nothing(bench: Bench) -> None:
+def test_unknown_command_or_output_does_nothing(bench: Bench) -> None:
     """Of another version's driver: no pin comes to be by a name that was sent."""
     cells = set(bench.far.servo_thread.cells)
     bench.told("dance", n=77)
@@ -169,7 +169,7 @@ def test_an_order_or_an_output_that_nobody_knows_does_nothing(bench: Bench) -> N
     assert bench.bridge == ("", "")
 
 
-def test_a_bridge_that_is_late_at_rest_is_no_fault(bench: Bench) -> None:
+def test_late_bridge_at_rest_is_not_a_fault(bench: Bench) -> None:
     """HAL has run out of rows while nothing moved: it has stood where it stood."""
     bench.far.is_bridge_suspended = True
     bench.run(0.13)  # longer than HAL has rows, shorter than its watchdog
@@ -179,7 +179,7 @@ def test_a_bridge_that_is_late_at_rest_is_no_fault(bench: Bench) -> None:
     assert bench.axes.sample().enabled
 
 
-def test_what_nobody_takes_does_not_grow(bench: Bench) -> None:
+def test_number_of_unread_samples_is_limited(bench: Bench) -> None:
     """Samples of a driver that does not ask: the newest are kept, not hours of them."""
     for _ in range(40 * 300 // 2 + 600):
         bench.clock.advance(0.002)
@@ -189,6 +189,6 @@ def test_what_nobody_takes_does_not_grow(bench: Bench) -> None:
     assert len(bench.far.bridge._samples) <= 40 * 300 * bench.far.bridge._width
 
 
-def test_turns_that_were_never_seen_are_none() -> None:
+def test_spindle_prediction_without_readings_starts_at_zero() -> None:
     """Before the first reading of the spindle: a thread asked for then is reckoned from 0."""
     assert SetpointPlayer(2).spindle_predictor.predict_revolutions(5.0) == 0.0

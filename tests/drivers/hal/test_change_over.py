@@ -87,7 +87,7 @@ def thread() -> Thread:
     return made
 
 
-def test_a_change_that_is_heard_of_too_late_is_made_where_both_still_are_the_same(thread: Thread) -> None:
+def test_late_path_change_is_made_where_both_paths_still_match(thread: Thread) -> None:
     new = stops_at(0.030)
     thread.late(new, 0.010, past=6)
     assert thread.seen()
@@ -96,7 +96,7 @@ def test_a_change_that_is_heard_of_too_late_is_made_where_both_still_are_the_sam
     assert thread.played == [(float(n), *new(n * PERIOD)) for n in range(1, AHEAD + 1)]
 
 
-def test_it_may_be_too_late_again_and_is_asked_for_again(thread: Thread) -> None:
+def test_path_change_that_is_late_twice_is_requested_again(thread: Thread) -> None:
     new = stops_at(0.035)
     thread.late(new, 0.010, past=3)
     assert thread.seen()
@@ -108,20 +108,20 @@ def test_it_may_be_too_late_again_and_is_asked_for_again(thread: Thread) -> None
     assert thread.played == [(float(n), *new(n * PERIOD)) for n in range(1, AHEAD + 1)]
 
 
-def test_a_hold_that_is_heard_of_behind_its_first_row_is_not(thread: Thread) -> None:
+def test_path_change_received_after_the_paths_diverge_fails(thread: Thread) -> None:
     """HAL has played on where it was to brake: that is told, and who is told brakes from there."""
     thread.late(stops_at(0.012), 0.010, past=6)
     assert not thread.seen()
 
 
-def test_rows_that_the_old_stream_has_not_are_not_waited_for(thread: Thread) -> None:
+def test_path_change_beyond_the_last_row_of_the_old_stream_fails(thread: Thread) -> None:
     new = stops_at(1.0)
     thread.late(new, 0.034, past=4)  # five rows are left, and the other stream would be met behind them
     thread.rows.write_row(0.041, new(0.041))
     assert not thread.seen()
 
 
-def test_the_way_of_a_cam_is_the_same_until_it_is_said_to_part_whatever_its_rows_are(thread: Thread) -> None:
+def test_cam_rows_match_until_the_given_divergence_time(thread: Thread) -> None:
     def tangent(t: float) -> SetpointRow:
         return 0.0, SPEED * t
 
@@ -135,7 +135,7 @@ def test_the_way_of_a_cam_is_the_same_until_it_is_said_to_part_whatever_its_rows
     assert thread.played[-1] == (float(len(thread.played)), *tangent(len(thread.played) * PERIOD))
 
 
-def test_setpoints_that_hal_plays_already_are_not_too_late(thread: Thread) -> None:
+def test_setpoints_already_played_by_hal_are_accepted_if_they_match(thread: Thread) -> None:
     thread.run(10)
     thread.seen()
     assert thread.rows.find_first_recallable_row(0.012) is None

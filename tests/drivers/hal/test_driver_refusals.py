@@ -30,7 +30,7 @@ def bench() -> Iterator[Bench]:
 # --- axes -------------------------------------------------------------------------------------------------
 
 
-def test_no_axis_homes_while_another_moves(bench: Bench) -> None:
+def test_axis_cannot_home_while_another_moves(bench: Bench) -> None:
     bench.axes.home("Z")
     bench.run(0.1)
     with raises_code(DriverError, "homing", "Z") as told:
@@ -43,14 +43,14 @@ def test_no_axis_homes_while_another_moves(bench: Bench) -> None:
     assert told.value.reason == "no-axis"
 
 
-def test_an_axis_that_knows_its_place_does_not_look_for_it(bench: Bench) -> None:
+def test_axis_with_a_known_position_homes_without_motion(bench: Bench) -> None:
     bench.axes.home("X")
     bench.run(0.5)
     sample = bench.axes.sample()
     assert (sample.homed[0], sample.moving, bench.x) == (True, False, pytest.approx(0.0, abs=1e-6))
 
 
-def test_power_that_is_there_is_not_asked_for_again(bench: Bench) -> None:
+def test_enabling_enabled_drives_does_not_disturb_the_motion(bench: Bench) -> None:
     """It would forget where the queue is: what moves would jump."""
     bench.x_goes(5.0)
     bench.run(0.3)
@@ -67,7 +67,7 @@ def test_power_that_is_there_is_not_asked_for_again(bench: Bench) -> None:
 # --- spindle and outputs ----------------------------------------------------------------------------------
 
 
-def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench) -> None:
+def test_spindle_start_is_rejected_while_a_drive_has_a_fault(bench: Bench) -> None:
     bench.far.plant_controls.drive_fault("X")
     bench.run(0.5)
     with raises_code(DriverError, "spindle-off", "the X axis drive"):
@@ -77,7 +77,7 @@ def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench)
     assert bench.far.plant_controls.get_spindle_rpm() == 0.0
 
 
-def test_no_output_goes_on_behind_a_bridge_that_is_silent(bench: Bench) -> None:
+def test_outputs_are_rejected_while_the_bridge_is_silent(bench: Bench) -> None:
     bench.far.is_bridge_suspended = True
     bench.run(0.3)
     with raises_code(DriverError, "output", "coolant", "HAL", "0.30 s"):
@@ -86,7 +86,7 @@ def test_no_output_goes_on_behind_a_bridge_that_is_silent(bench: Bench) -> None:
         bench.driver.ports.io.write("laser", True)
 
 
-def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> None:
+def test_speed_without_an_encoder_is_the_commanded_speed_once_at_speed() -> None:
     at_speed = ("[hal.spindle]\n", '[hal.spindle]\nat_speed = "spindle-at-speed"\n')
     with powered(NO_TURNS, NO_INDEX, NO_SPEED, NO_PPR, at_speed) as bench:
         spindle = bench.driver.ports.spindle
@@ -98,7 +98,7 @@ def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> 
         assert spindle.speed() == 500.0
 
 
-def test_without_a_speed_the_turns_make_it() -> None:
+def test_speed_without_a_speed_signal_is_derived_from_revolutions() -> None:
     with powered(NO_SPEED) as bench:
         bench.driver.ports.spindle.set_speed(600.0)
         bench.run(3.0)
@@ -125,7 +125,7 @@ def linked(bridge: Bridge) -> tuple[HalLink, ManualClock, list[int]]:
     return HalLink(lambda: bridge, clock, BridgeConfig((), 0.001, 0.1), lambda: idle.append(1)), clock, idle
 
 
-def test_before_there_is_a_bridge_nothing_is_said_to_it() -> None:
+def test_command_is_rejected_before_the_bridge_is_connected() -> None:
     link, _, _ = linked(Bridge())
     link.process_packets()
     with raises_code(DriverError, "driver") as told:
@@ -133,7 +133,7 @@ def test_before_there_is_a_bridge_nothing_is_said_to_it() -> None:
     assert told.value.reason == "no-bridge"
 
 
-def test_a_hal_that_still_goes_down_is_waited_for_and_then_told_of() -> None:
+def test_hal_shutdown_is_awaited_then_reported() -> None:
     bridge = Leaving()
     link, clock, idle = linked(bridge)
     link.connect()
@@ -153,7 +153,7 @@ def test_a_hal_that_still_goes_down_is_waited_for_and_then_told_of() -> None:
     link.send_command("enable")
 
 
-def test_a_bridge_that_tells_nothing_when_it_begins_is_no_bridge() -> None:
+def test_bridge_that_sends_nothing_at_startup_is_reported() -> None:
     bridge = Bridge()
     bridge.silent = True
     link, clock, _ = linked(bridge)
@@ -162,7 +162,7 @@ def test_a_bridge_that_tells_nothing_when_it_begins_is_no_bridge() -> None:
     assert clock.now() == pytest.approx(3.0, abs=0.2)
 
 
-def test_a_broken_pipe_is_the_end_and_a_full_one_is_not() -> None:
+def test_broken_pipe_ends_the_link_and_a_full_pipe_does_not() -> None:
     class Full(Bridge):
         why = DriverError("the bridge to HAL takes nothing", "hal-silent")
 

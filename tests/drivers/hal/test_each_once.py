@@ -126,7 +126,7 @@ def feedback(made: LiveLathe, pin: str) -> float:
     return found
 
 
-def test_home_is_the_switch_of_one_axis_and_the_index_of_the_other(homed: LiveLathe) -> None:
+def test_x_homes_on_its_switch_and_z_on_its_index(homed: LiveLathe) -> None:
     homed.until(lambda shot: shot.actual[1] == pytest.approx(feedback(homed, "z-mm.out"), abs=1e-3))
     x, z = homed.shot.actual[0], homed.shot.actual[1]
     # X counts from where its switch goes off, to one period of the slow way; Z from its encoder's index.
@@ -134,7 +134,7 @@ def test_home_is_the_switch_of_one_axis_and_the_index_of_the_other(homed: LiveLa
     assert feedback(homed, "z-mm.out") == pytest.approx(z, abs=1e-3)
 
 
-def test_c_looks_for_its_index_positions_and_turns_again(homed: LiveLathe) -> None:
+def test_spindle_as_c_finds_its_index_positions_and_turns_again(homed: LiveLathe) -> None:
     homed.run("G90G94F100\nM19\nC90S60\nM30\n")  # it has never turned: its index is looked for
     c = homed.shot.axes.index("C")
     turns = feedback(homed, "spindle.position-fb")  # whole at its index
@@ -145,7 +145,7 @@ def test_c_looks_for_its_index_positions_and_turns_again(homed: LiveLathe) -> No
     assert homed.pin("c-or-speed.sel") == 0.0
 
 
-def test_a_limit_switch_brakes_and_takes_the_power(homed: LiveLathe) -> None:
+def test_limit_switch_brakes_and_removes_power(homed: LiveLathe) -> None:
     homed.start("G90G94F100\nG01X1.F100\nM30\n")
     homed.until(lambda shot: shot.velocity > 10.0)
     homed.set("x-high", 1)
@@ -156,7 +156,7 @@ def test_a_limit_switch_brakes_and_takes_the_power(homed: LiveLathe) -> None:
     homed.set("x-high", 0)
 
 
-def test_a_fault_of_one_drive_takes_the_power_of_all(homed: LiveLathe) -> None:
+def test_fault_of_one_drive_removes_power_from_all(homed: LiveLathe) -> None:
     homed.set("x-fault", 1)
     homed.until(lambda shot: bool(shot.alarms))
     assert homed.codes[0] == "axis"
@@ -164,7 +164,7 @@ def test_a_fault_of_one_drive_takes_the_power_of_all(homed: LiveLathe) -> None:
     homed.set("x-fault", 0)
 
 
-def test_estop_is_latched_in_hal_and_its_release_gives_nothing_back(homed: LiveLathe) -> None:
+def test_estop_is_latched_in_hal_and_its_release_restores_nothing(homed: LiveLathe) -> None:
     homed.start("G90G94F100\nM03S500\nM08\nG04F30\nM30\n")
     homed.until(lambda _: homed.is_on("out-coolant"))
     homed.set("in-estop-ok", 0)
@@ -182,7 +182,7 @@ def test_estop_is_latched_in_hal_and_its_release_gives_nothing_back(homed: LiveL
     assert homed.pin("spindle-ramp.in") == 0.0
 
 
-def test_the_handwheel_moves_its_axis_click_by_click(homed: LiveLathe) -> None:
+def test_handwheel_moves_its_axis_by_one_step_per_click(homed: LiveLathe) -> None:
     before = feedback(homed, "z-mm.out")
     wheel = SelectHandwheel("Z", 0.254, 0.25)
     for _ in range(10):
@@ -204,7 +204,7 @@ def test_the_handwheel_moves_its_axis_click_by_click(homed: LiveLathe) -> None:
     homed.state(MachineState.IDLE)
 
 
-def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None:
+def test_tool_is_touched_off_at_the_setter(homed: LiveLathe) -> None:
     homed.run("G90G94F100\nG00X-.05Z0\nM30\n")
     home = feedback(homed, "x-motor.out") - homed.shot.actual[0]
 

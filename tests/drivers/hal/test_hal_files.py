@@ -29,7 +29,7 @@ def written(name: str) -> HalFile:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_the_shipped_file_is_what_the_command_writes(name: str) -> None:
+def test_shipped_hal_file_matches_the_command_output(name: str) -> None:
     file = written(name)
     assert render_file(file) == render_file(written(name))
     assert resources.get_hal_path(f"{name}.hal").read_text(encoding="utf-8") == render_file(file)
@@ -38,7 +38,7 @@ def test_the_shipped_file_is_what_the_command_writes(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_name_of_the_machine_file_is_on_a_net(name: str) -> None:
+def test_every_terminal_of_the_machine_file_is_on_a_net(name: str) -> None:
     file = written(name)
     wired = set()
     for line in render_file(file).splitlines():
@@ -52,7 +52,7 @@ def test_every_name_of_the_machine_file_is_on_a_net(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_no_pin_is_on_two_signals_and_setpoints_come_in_once(name: str) -> None:
+def test_each_pin_is_on_one_signal_and_setpoints_are_added_once(name: str) -> None:
     on: dict[str, str] = {}
     text = render_file(written(name))
     for line in text.splitlines():
@@ -80,7 +80,7 @@ def test_no_pin_is_on_two_signals_and_setpoints_come_in_once(name: str) -> None:
         ("gt75-mesa-7i76e", "hm2_7i76e.0.7i76.0.0.spinout-scalemax", 3500),
     ],
 )
-def test_scales_in_millimetres_and_turns(name: str, pin: str, value: float) -> None:
+def test_scales_are_in_millimeters_and_revolutions(name: str, pin: str, value: float) -> None:
     found = re.search(rf"^setp {re.escape(pin)} (\S+)", render_file(written(name)), re.MULTILINE)
     assert found
     assert float(found[1]) == pytest.approx(value, rel=1e-8)
@@ -88,7 +88,7 @@ def test_scales_in_millimetres_and_turns(name: str, pin: str, value: float) -> N
 
 @pytest.mark.usefixtures("halrun")
 @pytest.mark.parametrize("name", FILES)
-def test_halrun_loads_it(name: str, tmp_path: Path) -> None:
+def test_halrun_loads_the_hal_file(name: str, tmp_path: Path) -> None:
     """Every component, parameter, pin, direction and order of the file, by HAL itself; then it is started."""
     done = load(tmp_path, name, render_file(written(name)))
     assert done.returncode == 0, done.stderr + done.stdout
@@ -97,7 +97,7 @@ def test_halrun_loads_it(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("halrun")
-def test_halrun_refuses_a_pin_that_the_board_has_not(tmp_path: Path) -> None:
+def test_halrun_rejects_a_pin_that_the_board_does_not_have(tmp_path: Path) -> None:
     """The trial can fail: one letter of one pin."""
     text = render_file(written("gt75-mesa-7i97")).replace("encoder.01.position ", "encoder.01.positron ")
     done = load(tmp_path, "gt75-mesa-7i97", text)

@@ -33,7 +33,7 @@ def sticks_before_home(rig: Hal) -> None:
     rig.until(lambda: axes.active_homing is None, limit=2.0)
 
 
-def test_behind_home_the_setpoints_are_those_that_hal_plays(rig: Hal) -> None:
+def test_demand_after_homing_is_the_setpoint_that_hal_plays(rig: Hal) -> None:
     sticks_before_home(rig)
     axes = rig.ports.axes
     sample = axes.sample()
@@ -43,7 +43,7 @@ def test_behind_home_the_setpoints_are_those_that_hal_plays(rig: Hal) -> None:
     assert axes.demand_at(rig.clock.now())[0][Z] == pytest.approx(0.0, abs=1e-6)
 
 
-def test_setpoints_from_where_the_slide_lags_are_refused(rig: Hal) -> None:
+def test_setpoints_that_start_at_the_lagging_position_are_rejected(rig: Hal) -> None:
     sticks_before_home(rig)
     axes = rig.ports.axes
     lags = axes.sample().actual

@@ -101,7 +101,7 @@ def rests(order: HalHoming, slides: Slides) -> None:
 
 
 @pytest.mark.parametrize(("method", "way"), [(19, 1.0), (21, -1.0), (18, 1.0), (17, -1.0)])
-def test_onto_its_switch_and_slowly_off_it_again(method: int, way: float) -> None:
+def test_homing_finds_the_switch_and_backs_off_slowly(method: int, way: float) -> None:
     """1.2 times its travel at the search's speed, back with a tenth; zero lies OFFSET beside the mark."""
     order, slides = homing(method)
     order.add_sample(0.0, False)
@@ -128,7 +128,7 @@ def test_onto_its_switch_and_slowly_off_it_again(method: int, way: float) -> Non
     assert slides.limits == [True, False]
 
 
-def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() -> None:
+def test_homing_that_starts_on_the_switch_backs_off_at_latch_speed() -> None:
     order, slides = homing(19, latch=3.0)
     order.add_sample(0.0, True)
     order.continue_homing(0.0)
@@ -136,7 +136,7 @@ def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() 
 
 
 @pytest.mark.parametrize("method", [35, 37])
-def test_the_present_place_is_home_at_once(method: int) -> None:
+def test_homing_at_the_present_position_is_done_immediately(method: int) -> None:
     order, slides = homing(method)
     slides.place = 7.0
     order.continue_homing(0.0)
@@ -145,7 +145,7 @@ def test_the_present_place_is_home_at_once(method: int) -> None:
     assert (slides.zero, slides.ways) == (7.0 + OFFSET, [])
 
 
-def test_behind_its_switch_the_index_is_the_mark() -> None:
+def test_home_is_the_index_after_the_switch() -> None:
     order, slides = homing(3)
     order.add_sample(0.0, True)
     order.continue_homing(0.0)
@@ -162,7 +162,7 @@ def test_behind_its_switch_the_index_is_the_mark() -> None:
 
 
 @pytest.mark.parametrize(("method", "way"), [(33, -1.0), (34, 1.0)])
-def test_the_index_alone_is_looked_for_within_thirty_millimetres(method: int, way: float) -> None:
+def test_index_only_homing_searches_thirty_millimeters_at_most(method: int, way: float) -> None:
     order, slides = homing(method)
     order.continue_homing(0.0)
     assert slides.ways == [pytest.approx((way * 30.0, 2.0))]
@@ -174,7 +174,7 @@ def test_the_index_alone_is_looked_for_within_thirty_millimetres(method: int, wa
     assert (slides.asked, slides.limits) == ([True, False], [True, False])
 
 
-def test_a_switch_that_nobody_samples_is_told_after_a_second() -> None:
+def test_switch_without_samples_is_reported_after_one_second() -> None:
     order, slides = homing(19)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:
@@ -183,7 +183,7 @@ def test_a_switch_that_nobody_samples_is_told_after_a_second() -> None:
     assert slides.ways == []
 
 
-def test_no_switch_in_the_whole_travel() -> None:
+def test_homing_without_a_switch_within_the_travel_fails() -> None:
     order, slides = homing(19)
     order.add_sample(0.0, False)
     order.continue_homing(0.0)
@@ -194,7 +194,7 @@ def test_no_switch_in_the_whole_travel() -> None:
     assert slides.limits == [True, False]
 
 
-def test_a_slide_that_ran_over_its_switch() -> None:
+def test_homing_that_overruns_its_switch_fails() -> None:
     order, slides = homing(19)
     order.add_sample(0.0, False)
     order.continue_homing(0.0)
@@ -206,7 +206,7 @@ def test_a_slide_that_ran_over_its_switch() -> None:
     assert told.value.reason == "ran-over"
 
 
-def test_a_switch_that_does_not_go_off() -> None:
+def test_homing_fails_if_the_switch_stays_on() -> None:
     order, slides = homing(19)
     order.add_sample(0.0, True)
     order.continue_homing(0.0)

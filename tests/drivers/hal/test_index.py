@@ -27,7 +27,7 @@ def angle(rig: Hal) -> tuple[float, float]:
     return found
 
 
-def test_the_angle_is_an_old_one_until_the_index_has_come_by_and_whole_there(rig: Hal) -> None:
+def test_spindle_angle_is_invalid_until_the_index_has_passed(rig: Hal) -> None:
     first = angle(rig)
     rig.ports.spindle.set_speed(300.0)
     rig.until(lambda: rig.far.plant.spindle.counted_revolutions > 0.25)
@@ -40,7 +40,7 @@ def test_the_angle_is_an_old_one_until_the_index_has_come_by_and_whole_there(rig
     assert math.remainder(turns - true, 1.0) == pytest.approx(0.0, abs=0.01)
 
 
-def test_a_spindle_whose_index_does_not_come_by_is_told_and_reset_asks_again(rig: Hal) -> None:
+def test_missing_spindle_index_is_reported_and_reset_retries(rig: Hal) -> None:
     rig.far.has_encoder_index = False
     rig.ports.spindle.set_speed(300.0)
     rig.run(0.5)

@@ -36,7 +36,7 @@ def moves_in(control: Process) -> bool:
 @pytest.mark.long
 @pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
-def test_a_killed_control_ends_at_rest_with_everything_off_and_hal_is_taken_down(tmp_path: Path) -> None:
+def test_killed_control_ends_at_rest_with_all_off_and_hal_unloaded(tmp_path: Path) -> None:
     program = tmp_path / "part.nc"
     program.write_text(PROGRAM)
     words = *RUN, str(program), "--machine", str(lathe(tmp_path, PATIENT))

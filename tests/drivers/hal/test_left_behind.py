@@ -33,7 +33,7 @@ def test_streams_that_a_killed_session_has_left_do_not_bar_the_next(tmp_path: Pa
 
 
 @pytest.mark.parametrize("name", ["halrun", "realtime"])
-def test_a_session_that_is_being_taken_down_still_counts(name: str, tmp_path: Path) -> None:
+def test_hal_session_that_is_shutting_down_counts_as_running(name: str, tmp_path: Path) -> None:
     script = tmp_path / name
     script.write_text("#!/bin/sh\necho runs\nread x\n")
     script.chmod(0o755)

@@ -21,7 +21,7 @@ def nobody_waits() -> bool:
     raise AssertionError("there was nothing to wait for")
 
 
-def test_a_folder_in_use_stays_and_a_deserted_one_goes() -> None:
+def test_used_session_folder_stays_and_abandoned_one_is_removed() -> None:
     used, lock = create_session_folder()
     deserted, its_lock = create_session_folder()
     (deserted / "session.hal").write_text("")
@@ -32,7 +32,7 @@ def test_a_folder_in_use_stays_and_a_deserted_one_goes() -> None:
     os.close(lock)
 
 
-def test_what_still_runs_is_waited_for_and_never_removed_under_it() -> None:
+def test_folder_of_a_running_process_is_removed_only_after_it_ends() -> None:
     folder, lock = create_session_folder()
     os.close(lock)
     still_runs = ["sh", "-c", "echo runs; read x; exit", str(folder)]
@@ -51,7 +51,7 @@ def test_what_still_runs_is_waited_for_and_never_removed_under_it() -> None:
     assert not folder.exists()
 
 
-def test_what_is_none_of_ours_stays(tmp_path: Path) -> None:
+def test_folders_of_other_programs_are_not_removed(tmp_path: Path) -> None:
     other, link = tmp_path / "turndesk-hal-other", tmp_path / "turndesk-hal-link"
     other.mkdir()  # without a lock: somebody else's, or just being made
     link.symlink_to(other)

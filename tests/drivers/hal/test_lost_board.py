@@ -19,7 +19,7 @@ from tests.drivers.hal.test_hal_files import written
 ERRORS = 0.02  # s, more than hm2_eth's packet errors and one report take
 
 
-def test_the_chain_opens_at_rest_though_the_frozen_estop_says_released() -> None:
+def test_lost_board_opens_the_chain_at_rest_despite_frozen_estop_input() -> None:
     with powered() as bench:
         bench.far.is_cable_disconnected = True
         bench.far.plant_controls.press_estop()  # what the board sees reaches nobody
@@ -31,7 +31,7 @@ def test_the_chain_opens_at_rest_though_the_frozen_estop_says_released() -> None
         assert get_fault_code(bench.driver.axes.fault, "driver") == "hal-board"
 
 
-def test_with_the_drives_off_it_is_a_fault_as_well() -> None:
+def test_lost_board_with_drives_off_is_also_a_fault() -> None:
     with powered() as bench:
         bench.axes.enable(False)
         bench.run(0.3)
@@ -41,7 +41,7 @@ def test_with_the_drives_off_it_is_a_fault_as_well() -> None:
         assert get_fault_code(bench.driver.axes.fault, "driver") == "hal-board"
 
 
-def test_frozen_inputs_have_no_age_that_anything_accepts() -> None:
+def test_frozen_inputs_have_infinite_age_and_are_unknown() -> None:
     with powered() as bench:
         assert bench.driver.io.read_state().age < 0.1
         assert not bench.driver.find_unknown_items()
@@ -51,7 +51,7 @@ def test_frozen_inputs_have_no_age_that_anything_accepts() -> None:
         assert bench.driver.find_unknown_items() == ALL_UNKNOWN_PARTS
 
 
-def test_a_moving_slide_loses_power_and_the_spindle_its_speed() -> None:
+def test_lost_board_removes_power_in_motion_and_stops_the_spindle() -> None:
     with powered() as bench:
         bench.driver.spindle.set_speed(500.0)
         bench.x_goes(5.0)
@@ -66,7 +66,7 @@ def test_a_moving_slide_loses_power_and_the_spindle_its_speed() -> None:
             bench.driver.spindle.set_speed(500.0)
 
 
-def test_reset_with_the_cable_out_clears_nothing_and_with_the_cable_in_loads_hal_again() -> None:
+def test_reset_reloads_hal_only_after_the_board_is_reconnected() -> None:
     with powered() as bench:
         bench.far.is_cable_disconnected = True
         bench.run(0.1)
@@ -89,7 +89,7 @@ def test_reset_with_the_cable_out_clears_nothing_and_with_the_cable_in_loads_hal
 
 
 @pytest.mark.parametrize("name", ["gt75-mesa-7i76e", "gt75-mesa-7i97", "gt75-ethercat"])
-def test_a_machine_file_without_the_link_of_its_board_is_refused(name: str) -> None:
+def test_machine_file_without_the_link_fault_of_its_board_is_rejected(name: str) -> None:
     text = resources.read_machine_file(f"{name}.toml")
     line = next(each for each in text.splitlines() if each.startswith("link_fault"))
     with pytest.raises(MachineFileError) as caught:
@@ -97,7 +97,7 @@ def test_a_machine_file_without_the_link_of_its_board_is_refused(name: str) -> N
     assert [each.path for each in caught.value.findings] == ["hal.link_fault"]
 
 
-def test_an_input_of_a_card_needs_the_link_without_a_board_table_too() -> None:
+def test_board_input_requires_the_link_fault_without_a_board_table_too() -> None:
     text = (
         resources.read_machine_file("gt75-hal.toml")
         .replace('link_fault = "link-fault"', "")
@@ -121,7 +121,7 @@ def test_an_input_of_a_card_needs_the_link_without_a_board_table_too() -> None:
         ),
     ],
 )
-def test_every_board_has_its_communication_pins_in_the_link(name: str, pins: set[str]) -> None:
+def test_communication_pins_of_every_board_are_in_the_board_link(name: str, pins: set[str]) -> None:
     nets = [
         line.split() for line in render_file(written(name)).splitlines() if line.startswith("net board-link-")
     ]

@@ -43,7 +43,7 @@ def wanted(pin: str, kind: str = "bit", *, drives: bool = False, ours: str = "ou
     return ExpectedPin("io.some", pin, kind, drives, ours)
 
 
-def test_what_halcmd_shows_is_read() -> None:
+def test_halcmd_output_is_parsed() -> None:
     assert PINS["x-motor.in"] == HalPin("float", "IN", "x-cmd", "0")
     assert PINS["x-motor.out"] == HalPin("float", "OUT", "", "1.25")
     assert PINS["index"] == HalPin("bit", "I/O", "", "FALSE")
@@ -82,20 +82,20 @@ def test_what_halcmd_shows_is_read() -> None:
         ),
     ],
 )
-def test_a_pin_that_is_not_as_the_machine_file_says_is_told(asked: ExpectedPin, why: str) -> None:
+def test_pin_that_differs_from_the_machine_file_is_reported(asked: ExpectedPin, why: str) -> None:
     told = describe_pin_error(asked, PINS, SIGNALS)
     assert told.startswith(why)
     assert bool(told) is bool(why)
 
 
-def test_whether_a_pin_or_a_signal_is_on() -> None:
+def test_state_of_pin_or_signal_is_read() -> None:
     assert is_pin_on("guard", PINS, SIGNALS)
     assert is_pin_on("guard.out", PINS, SIGNALS)
     assert not is_pin_on("by-hand", PINS, SIGNALS)
     assert not is_pin_on("lamp.in", PINS, SIGNALS)
 
 
-def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:
+def test_machine_pins_are_connected_to_signals_and_retain_their_values() -> None:
     """A loose pin comes to ours; what hangs already takes ours to it; what nobody drives keeps its value."""
     asked = [
         wanted("lamp.in", drives=True, ours="lamp"),
@@ -114,7 +114,7 @@ def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:
     ]
 
 
-def test_one_of_ours_on_two_of_theirs_is_refused() -> None:
+def test_one_terminal_on_two_pins_is_rejected() -> None:
     asked = [wanted("guard", ours="door"), wanted("by-hand", ours="door")]
     with pytest.raises(RuntimeError, match=r"io\.some: by-hand .*guard"):
         build_net_lines(asked, {}, PINS, SIGNALS)
@@ -128,7 +128,7 @@ def test_one_of_ours_on_two_of_theirs_is_refused() -> None:
         ("exit 3", "halcmd"),
     ],
 )
-def test_what_halcmd_refuses_is_told_in_its_words(
+def test_halcmd_error_is_reported_with_its_text(
     script: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     command = tmp_path / "halcmd"

@@ -70,7 +70,7 @@ def told(lathe: LiveLathe, code: str) -> None:
     assert lathe.codes[0] == code, lathe.shot.alarms
 
 
-def test_a_killed_bridge_and_reset_starts_hal_anew(running: LiveLathe) -> None:
+def test_reset_restarts_hal_after_the_bridge_was_killed(running: LiveLathe) -> None:
     running.kill(BRIDGE)
     before = place(running)
     assert abs(rests(running) - before) < SPEED * AHEAD + RAMP
@@ -86,7 +86,7 @@ def test_ctrl_c_that_reaches_the_bridge_stops_nothing(running: LiveLathe) -> Non
     assert running.codes == []
 
 
-def test_a_bridge_that_stands_and_goes_on_keeps_the_place(running: LiveLathe) -> None:
+def test_bridge_that_was_suspended_retains_the_position(running: LiveLathe) -> None:
     running.kill(BRIDGE, signal.SIGSTOP)
     before = place(running)
     stands = rests(running)
@@ -99,14 +99,14 @@ def test_a_bridge_that_stands_and_goes_on_keeps_the_place(running: LiveLathe) ->
     assert running.shot.actual[0] == pytest.approx(stands, abs=0.01)
 
 
-def test_a_real_time_thread_that_is_gone_and_one_reset_leads_back(running: LiveLathe) -> None:
+def test_one_reset_recovers_from_a_killed_real_time_thread(running: LiveLathe) -> None:
     running.kill(THREAD)
     told(running, "hal-thread")
     assert running.shot.unknown == ALL_UNKNOWN_PARTS
     running.ready()
 
 
-def test_a_control_that_is_silent_ends_on_its_path_with_spindle_and_outputs_off(running: LiveLathe) -> None:
+def test_silent_control_stops_on_its_path_with_spindle_and_outputs_off(running: LiveLathe) -> None:
     while not off(running):
         pass
     stands, powered = rests(running), running.pin("x-motor.sel")
@@ -119,7 +119,7 @@ def test_a_control_that_is_silent_ends_on_its_path_with_spindle_and_outputs_off(
     running.post(Reset())
 
 
-def test_a_killed_driver_host_ends_on_its_path_with_everything_off(running: LiveLathe) -> None:
+def test_killed_driver_host_stops_on_its_path_with_everything_off(running: LiveLathe) -> None:
     running.kill(HAS_DRIVER_HOST)
     while not off(running) or running.pin("x-motor.sel"):  # the bridge alone
         pass

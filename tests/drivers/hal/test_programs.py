@@ -27,7 +27,7 @@ M30
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
 @pytest.mark.real_time
-def test_a_program_runs_to_its_end_where_it_was_proved_to(tmp_path: Path) -> None:
+def test_program_ends_at_its_proved_position(tmp_path: Path) -> None:
     done = run(tmp_path, PIECE, lathe(tmp_path, PATIENT))
     assert "complete" in done.stdout, done.stdout + done.stderr
     assert "at X radius 0.60000  Z 0.30000 in" in done.stdout
@@ -36,7 +36,7 @@ def test_a_program_runs_to_its_end_where_it_was_proved_to(tmp_path: Path) -> Non
 
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
-def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
+def test_every_pin_of_the_machine_file_is_listed_by_machine_check() -> None:
     answers = check_machine(load_shipped_machine("gt75-hal"))
     assert not answers.faults
     pins = {row.name: row for row in answers.rows}
@@ -56,7 +56,7 @@ def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
         ('"spindle-ramp.in"', '"spindle.velocity-cmd"', "hal.spindle.speed", "spindle-rps"),
     ],
 )
-def test_a_pin_that_is_not_as_it_is_said_is_named(
+def test_pin_that_differs_from_the_machine_file_is_named_by_check(
     old: str, new: str, row: str, why: str, tmp_path: Path
 ) -> None:
     answers = check_machine(load_machine(lathe(tmp_path, ((old, new),))))

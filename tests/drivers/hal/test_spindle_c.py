@@ -116,7 +116,7 @@ class Stand:
             self.c.update()
 
 
-def test_its_way_to_its_place_is_a_motion_before_its_first_setpoint_is_played() -> None:
+def test_axes_report_motion_while_c_turns_to_its_position() -> None:
     stand = Stand()
     stand.run(0.5)
     assert not stand.axes.sample().moving
@@ -133,7 +133,7 @@ def test_its_way_to_its_place_is_a_motion_before_its_first_setpoint_is_played() 
 
 
 @pytest.mark.parametrize("orient", [False, True])
-def test_a_slide_that_lags_keeps_its_setpoint_while_c_is_taken_and_let_go(orient: bool) -> None:
+def test_lagging_axis_retains_its_setpoint_when_c_engages_and_disengages(orient: bool) -> None:
     stand = Stand()
     stand.run(0.5)
     stand.z = LAGS
@@ -150,7 +150,7 @@ def test_a_slide_that_lags_keeps_its_setpoint_while_c_is_taken_and_let_go(orient
 # --- what is refused, and what fails ------------------------------------------------------------------------
 
 
-def test_with_the_drives_off_or_the_spindle_turning_it_is_not_taken() -> None:
+def test_c_is_rejected_with_drives_off_or_the_spindle_turning() -> None:
     stand = Stand()
     stand.run(0.2)
     for ordered, rpm in ((100.0, 0.0), (0.0, 2.0), (0.0, -2.5)):
@@ -168,7 +168,7 @@ def test_with_the_drives_off_or_the_spindle_turning_it_is_not_taken() -> None:
     assert not [each for each in stand.link.said if each[0] == "c"]
 
 
-def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() -> None:
+def test_c_finds_its_index_at_60_rpm_and_brakes_before_it_engages() -> None:
     stand = Stand()
     stand.run(0.2)
     stand.turning.is_known = False
@@ -199,7 +199,7 @@ def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() 
         (True, 0.0, 2.0, "hal.spindle.in_position_mode"),
     ],
 )
-def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
+def test_c_engagement_that_times_out_is_a_fault_and_frees_the_spindle(
     known: bool, rpm: float, seconds: float, named: str
 ) -> None:
     stand = Stand(tells=True)
@@ -223,7 +223,7 @@ def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
 
 
 @pytest.mark.parametrize("lost", ["", "the bridge to HAL has ended"])
-def test_behind_a_blind_link_it_is_let_go_and_a_lost_one_is_told_nothing(lost: str) -> None:
+def test_c_is_released_on_an_unknown_state_but_not_over_a_lost_link(lost: str) -> None:
     stand = Stand()
     stand.run(0.2)
     stand.turning.is_known = False
@@ -235,7 +235,7 @@ def test_behind_a_blind_link_it_is_let_go_and_a_lost_one_is_told_nothing(lost: s
     assert (("c", False) in stand.link.said) is not bool(lost)
 
 
-def test_a_drive_that_tells_that_it_is_c_is_waited_for() -> None:
+def test_c_engagement_waits_for_the_drive_to_confirm_position_mode() -> None:
     stand = Stand(tells=True)
     stand.run(0.2)
     stand.c.set_c_mode(True)

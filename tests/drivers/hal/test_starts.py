@@ -59,7 +59,7 @@ def refused(path: Path) -> DriverError:
     return told.value
 
 
-def test_without_linuxcnc_it_says_what_to_install(path: Path) -> None:
+def test_missing_linuxcnc_reports_what_to_install(path: Path) -> None:
     error = refused(path)
     assert error.code == "hal-setup"
     assert "linuxcnc-uspace" in str(error)
@@ -77,7 +77,7 @@ def test_without_linuxcnc_it_says_what_to_install(path: Path) -> None:
         ("Note: only what is worth nothing", text("drivers.hal-mute")),
     ],
 )
-def test_a_halrun_that_ends_is_told_with_what_it_said(path: Path, said: str, told: str) -> None:
+def test_halrun_that_exits_is_reported_with_its_output(path: Path, said: str, told: str) -> None:
     halrun(path, f"#!/bin/sh\n[ $1 = -U ] || printf '%s' \"{said}\"\nexit 1\n")
     error = refused(path)
     assert told in str(error)
@@ -98,14 +98,14 @@ def test_a_halrun_that_ends_is_told_with_what_it_said(path: Path, said: str, tol
         ),
     ],
 )
-def test_what_the_bridge_refuses_is_told_in_its_words(
+def test_error_of_the_bridge_is_reported_in_its_words(
     path: Path, words: list[dict[str, object]], told: str
 ) -> None:
     halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=words))
     assert str(refused(path)) == told
 
 
-def test_only_looked_at_every_pin_is_told(path: Path) -> None:
+def test_check_only_session_returns_the_verdicts_of_all_pins(path: Path) -> None:
     """Then it is no fault of the session: who asked shows them all."""
     wrong = [["a", "b", "is written by another"], ["c", "d", ""]]
     halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=[{"verdicts": wrong}]))
@@ -115,7 +115,7 @@ def test_only_looked_at_every_pin_is_told(path: Path) -> None:
     assert list(path.glob(f"{FOLDER_PREFIX}*")) == []
 
 
-def test_a_bridge_that_ends_behind_its_start_is_gone(path: Path) -> None:
+def test_bridge_that_ends_after_startup_is_reported_as_lost(path: Path) -> None:
     ready = [{"ready": True, "pid": 1, "warnings": ["slow"]}]
     halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=ready))
     session = HalSession(config(), 0.0)

@@ -65,7 +65,7 @@ def rounds(link: HalLink, clock: ManualClock, seconds: float) -> None:
         link.process_packets()
 
 
-def test_a_bridge_that_is_silent_alone_is_told_of(link: HalLink, bridge: Bridge, clock: ManualClock) -> None:
+def test_bridge_that_alone_is_silent_is_reported(link: HalLink, bridge: Bridge, clock: ManualClock) -> None:
     bridge.silent = True
     rounds(link, clock, 0.14)
     assert not link.failure_reason
@@ -74,7 +74,7 @@ def test_a_bridge_that_is_silent_alone_is_told_of(link: HalLink, bridge: Bridge,
     assert " 0.1" in link.failure_reason
 
 
-def test_one_that_stood_still_with_everybody_else_is_not(
+def test_bridge_is_not_blamed_for_a_pause_of_the_whole_computer(
     link: HalLink, bridge: Bridge, clock: ManualClock
 ) -> None:
     bridge.silent = True
@@ -100,7 +100,7 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return took
 
 
-def test_a_driver_host_is_silent_after_so_many_looks_not_after_one_long_one(looks: list[float]) -> None:
+def test_driver_host_is_silent_after_enough_polls_not_after_one_long_one(looks: list[float]) -> None:
     ours, theirs = socket.socketpair()
     with ours, theirs:
         looks[:] = [0.6, 0.6, 0.6, *[0.05] * 7, 1e9]

@@ -86,7 +86,7 @@ def test_halrun_loads_the_spindle_as_c(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", list(AS_C))
-def test_its_place_is_the_spindles_encoder_and_its_loop_speaks_only_as_c(name: str) -> None:
+def test_c_uses_the_spindle_encoder_and_its_loop_runs_only_as_c(name: str) -> None:
     file = written(name, *AS_C[name])
     on = nets(file)
     assert "c-degrees.in" in on["spindle-turns"]
@@ -104,7 +104,7 @@ def test_its_place_is_the_spindles_encoder_and_its_loop_speaks_only_as_c(name: s
         ("gt75-ethercat", "cia402.spindle.velocity-cmd", "cia402.spindle.enable"),
     ],
 )
-def test_a_drive_that_takes_speeds_is_told_the_spindles_or_c(name: str, rpm: str, enable: str) -> None:
+def test_speed_controlled_drive_receives_spindle_or_c_speed(name: str, rpm: str, enable: str) -> None:
     file = written(name, *AS_C[name])
     on = nets(file)
     assert on["spindle-drive-rpm"] == ["c-or-speed.out", rpm]
@@ -124,7 +124,7 @@ def test_a_drive_that_takes_speeds_is_told_the_spindles_or_c(name: str, rpm: str
 @pytest.mark.parametrize(
     ("name", "pin"), [("gt75-mesa-7i76e", RELAY), ("gt75-parport", "parport.0.pin-08-out")]
 )
-def test_a_drive_that_takes_steps_is_changed_over_by_a_terminal(name: str, pin: str) -> None:
+def test_step_controlled_drive_is_switched_to_c_by_a_terminal(name: str, pin: str) -> None:
     file = written(name, *AS_C[name])
     on = nets(file)
     assert on["spindle-is-c"] == ["pid.c.enable", pin]
@@ -135,7 +135,7 @@ def test_a_drive_that_takes_steps_is_changed_over_by_a_terminal(name: str, pin: 
     assert any(wire.pin == pin and wire.names == ("hal.spindle.position_mode",) for wire in file.wiring_rows)
 
 
-def test_what_c_cannot_do_without_is_said() -> None:
+def test_settings_required_by_c_are_reported_if_missing() -> None:
     relay, board = AS_C["gt75-mesa-7i76e"]
     assert "hal.spindle.position_mode = spindle-is-c" in refused(
         "gt75-mesa-7i76e", (relay[0], relay[1].replace(RELAY, "spindle-is-c")), board
@@ -153,7 +153,7 @@ def test_what_c_cannot_do_without_is_said() -> None:
 
 
 @pytest.mark.usefixtures("halrun")
-def test_c_with_a_drive_of_its_own_is_one_more_axis(tmp_path: Path) -> None:
+def test_c_with_its_own_drive_is_an_additional_axis(tmp_path: Path) -> None:
     own = "[board.axis.C]\nchannel = 3\np = 20\nfull_rpm = 120\n\n[board.spindle]\n"
     file = written("gt75-mesa-7i97", ("[hal.spindle]\n", PINS), ("[board.spindle]\n", own), own=True)
     assert figure(file, "hm2_7i97.0.pwmgen.03.scale") == 720.0
@@ -163,7 +163,7 @@ def test_c_with_a_drive_of_its_own_is_one_more_axis(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr + done.stdout
 
 
-def test_what_a_drive_of_its_own_needs() -> None:
+def test_settings_required_by_a_separate_c_drive_are_reported() -> None:
     said = refused(
         "gt75-mesa-7i97",
         ("[hal.spindle]\n", PINS),

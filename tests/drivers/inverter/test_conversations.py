@@ -171,7 +171,7 @@ def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) 
     return one
 
 
-def test_delta() -> None:
+def test_delta_conversation_matches_byte_for_byte() -> None:
     forward = DELTA_TURNS.format(run="0012", status="0003")
     back = DELTA_TURNS.format(run="0022", status="001B")
     stop = "06 2000 0001 >\n"
@@ -179,7 +179,7 @@ def test_delta() -> None:
     assert one.warnings == ()
 
 
-def test_hitachi() -> None:
+def test_hitachi_conversation_matches_byte_for_byte() -> None:
     forward = HITACHI_TURNS.format(back="0000", coils="01", state="2500")
     back = HITACHI_TURNS.format(back="FF00", coils="03", state="2700")
     stop = "05 0000 0000 >\n"
@@ -187,7 +187,7 @@ def test_hitachi() -> None:
     assert one.warnings == ()
 
 
-def test_huanyang() -> None:
+def test_huanyang_conversation_matches_byte_for_byte() -> None:
     forward = HUANYANG_TURNS.format(word="01", state="09")
     back = HUANYANG_TURNS.format(word="11", state="2D")
     stop = "03 01 08 > 03 01 00\n"
@@ -195,7 +195,7 @@ def test_huanyang() -> None:
     assert len(one.warnings) == 1
 
 
-def test_own_file() -> None:
+def test_conversation_of_an_own_family_file_matches_byte_for_byte() -> None:
     forward = OWN_TURNS.format(command="0001", status="0005")
     back = OWN_TURNS.format(command="0002", status="0007")
     stop = "10 0001 0001 02 0000 > 10 0001 0001\n"
@@ -203,7 +203,7 @@ def test_own_file() -> None:
     assert one.warnings == ()
 
 
-def test_the_script_itself_notices_another_byte() -> None:
+def test_scripted_line_detects_a_wrong_byte() -> None:
     line = ScriptedLine(ManualClock())
     line.expect("06 2000 0001 >")
     with pytest.raises(AssertionError, match="expected 01 06 20 00 00 01 43 ca"):

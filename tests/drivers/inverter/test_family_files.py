@@ -47,13 +47,13 @@ def test_every_shipped_family_can_be_read(name: str) -> None:
     assert (table.registers is None) is (name == "huanyang")
 
 
-def test_the_documents_show_the_file_that_is_tried_here() -> None:
+def test_documented_family_file_is_the_one_tested_here() -> None:
     page = (SETUP.parent / "docs/integrator/inverters.md").read_text(encoding="utf-8")
     shown = [block.partition("```")[0] for block in page.split("```toml\n")[1:]]
     assert [block for block in shown if block.startswith("name = ")] == [MY_DRIVE]
 
 
-def test_families_are_installed_with_the_product() -> None:
+def test_family_files_are_installed_with_the_package() -> None:
     setup = configparser.ConfigParser()
     setup.read(SETUP, encoding="utf-8")
     patterns = setup["options.package_data"]["drivers.inverter"].split()
@@ -61,7 +61,7 @@ def test_families_are_installed_with_the_product() -> None:
         assert any(fnmatch(f"families/{path.name}", pattern) for pattern in patterns), path.name
 
 
-def test_a_table_says_what_its_file_says() -> None:
+def test_family_file_is_parsed_into_its_table() -> None:
     table = load_family(benches.OWN, benches.FOLDER)
     assert (table.line.baud, table.line.write_multiple) == ((1200.0, 38400.0), True)
     assert (table.max_hz, table.setpoint_step_hz) == (400.0, 0.01)
@@ -80,9 +80,7 @@ def test_a_table_says_what_its_file_says() -> None:
         (FrequencyKeys(register=4, counts_per_hz=10_000.0, words=2, signed=True), -1.0, (0xFFFF, 0xD8F0)),
     ],
 )
-def test_a_frequency_goes_into_its_registers_and_back(
-    keys: FrequencyKeys, hz: float, words: tuple[int, ...]
-) -> None:
+def test_frequency_is_encoded_and_decoded(keys: FrequencyKeys, hz: float, words: tuple[int, ...]) -> None:
     assert keys.encode_hz(hz) == words
     assert keys.decode_hz(dict(enumerate(words, 4))) == abs(hz)
 
@@ -90,12 +88,12 @@ def test_a_frequency_goes_into_its_registers_and_back(
 @pytest.mark.parametrize(
     ("words", "signed", "highest"), [(1, False, 655.35), (1, True, 327.67), (2, False, 42949672.95)]
 )
-def test_a_register_has_a_highest_frequency(words: int, signed: bool, highest: float) -> None:
+def test_register_limits_the_maximum_frequency(words: int, signed: bool, highest: float) -> None:
     keys = FrequencyKeys(register=0, counts_per_hz=100.0, words=words, signed=signed)
     assert keys.max_hz == pytest.approx(highest)
 
 
-def test_a_state_is_on_for_each_of_its_values_and_for_no_other() -> None:
+def test_state_is_active_only_for_its_values() -> None:
     state = StateKeys(register=7, mask=0x18, values=(8.0, 24.0))
     assert [state.is_active({7: word}, {}) for word in (0x08, 0x1F, 0x10, 0x00)] == [True, True, False, False]
     assert StateKeys(coil=3).is_active({}, {3: True})
@@ -147,7 +145,9 @@ def test_a_state_is_on_for_each_of_its_values_and_for_no_other() -> None:
         ("max_hz = 400", "min_hz = 10", "limits.min_hz"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_told_with_its_key(tmp_path: Path, old: str, new: str, key: str) -> None:
+def test_mistake_in_a_family_file_is_reported_with_its_key(
+    tmp_path: Path, old: str, new: str, key: str
+) -> None:
     why = refused(tmp_path, changed(MY_DRIVE, old, new))
     assert any(re.match(rf"\d+: {re.escape(key)}[: ]", each) for each in why.split("my.toml, line ")), why
 
@@ -168,13 +168,15 @@ def test_what_is_wrong_is_told_with_its_key(tmp_path: Path, old: str, new: str, 
         ("max_hz = 400", "max_hz = nan", "max_hz = nan"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_line(tmp_path: Path, old: str, new: str, line: str) -> None:
+def test_mistake_in_a_family_file_is_reported_with_its_line(
+    tmp_path: Path, old: str, new: str, line: str
+) -> None:
     text = changed(MY_DRIVE, old, new)
     assert refused(tmp_path, text).startswith(f"my.toml, line {line_of(text, line)}: ")
 
 
 @pytest.mark.parametrize("table", ["line", "frequency", "command", "report"])
-def test_a_table_that_is_missing_is_told(tmp_path: Path, table: str) -> None:
+def test_missing_table_is_reported(tmp_path: Path, table: str) -> None:
     text = changed(MY_DRIVE, f"[{table}]", f"[not_{table}]")
     assert f": {table}: " in refused(tmp_path, text)
 
@@ -182,20 +184,20 @@ def test_a_table_that_is_missing_is_told(tmp_path: Path, table: str) -> None:
 @pytest.mark.parametrize(
     "name", ["output", "setpoint", "current", "run", "reverse", "asked_reverse", "fault_code"]
 )
-def test_a_value_that_is_not_reported_is_told(tmp_path: Path, name: str) -> None:
+def test_missing_report_value_is_reported(tmp_path: Path, name: str) -> None:
     head, report, rest = MY_DRIVE.partition("[report]")
     text = head + report + changed(rest, f"\n{name} = ", f"\nno_{name} = ")
     assert f": report.{name}: " in refused(tmp_path, text)
 
 
 @pytest.mark.parametrize("text", ["command = 1", "report = 1", "read = 1", "faults = 1", "parameter = [1]"])
-def test_what_is_no_table_is_told(tmp_path: Path, text: str) -> None:
+def test_value_in_place_of_a_table_is_reported(tmp_path: Path, text: str) -> None:
     head, _, _ = MY_DRIVE.partition("[line]")
     key = text.split(" ", maxsplit=1)[0]
     assert f"line {head.count(chr(10)) + 1}: {key}" in refused(tmp_path, f"{head}{text}\n")
 
 
-def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_in_a_family_file_are_reported_at_once(tmp_path: Path) -> None:
     text = changed(changed(MY_DRIVE, "count = 7", "count = 700"), "max_hz = 400", "max_hz = 4e9")
     assert refused(tmp_path, text).count("my.toml, line ") == 2
 
@@ -210,16 +212,16 @@ def test_a_fault_code_outside_the_reads_needs_a_fault_state(tmp_path: Path) -> N
     assert read_family_file(tmp_path / "my.toml").registers is not None
 
 
-def test_registers_are_refused_where_the_frames_are_those_of_code(tmp_path: Path) -> None:
+def test_registers_are_rejected_for_a_family_with_coded_frames(tmp_path: Path) -> None:
     text = f"{HUANYANG}\n[frequency]\nregister = 1\ncounts_per_hz = 100\n"
     assert refused(tmp_path, text).startswith(f"my.toml, line {line_of(text, '[frequency]')}: frequency:")
 
 
-def test_what_is_no_toml_is_told_with_its_line(tmp_path: Path) -> None:
+def test_invalid_toml_is_reported_with_its_line(tmp_path: Path) -> None:
     assert "line 2" in refused(tmp_path, 'name = "A"\nmanual = \n')
 
 
-def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_unreadable_family_file_is_reported(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b'name = "\xd8"\n')
     (tmp_path / "huge.toml").write_bytes(b"#" * (1024 * 1024 + 1))
     (tmp_path / "folder.toml").mkdir()

@@ -36,7 +36,7 @@ from tests.drivers.inverter.wires import BenchWire
         ("01 08 00 00 A5 37", "DA 8D"),
     ],
 )
-def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:
+def test_crc_matches_frames_in_manuals(body: str, crc: str) -> None:
     assert modbus_rtu.append_crc(bytes.fromhex(body)) == bytes.fromhex(body + crc)
     assert modbus_rtu.has_valid_crc(bytes.fromhex(body + crc))
 
@@ -52,11 +52,11 @@ def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:
         (modbus_rtu.encode_loopback(0xA537), "08 00 00 A5 37"),
     ],
 )  # fmt: skip
-def test_requests(pdu: bytes, expected: str) -> None:
+def test_modbus_requests_are_encoded(pdu: bytes, expected: str) -> None:
     assert pdu == bytes.fromhex(expected)
 
 
-def test_an_answer_is_found_between_noise() -> None:
+def test_response_is_found_between_noise_bytes() -> None:
     frame = modbus_rtu.append_crc(bytes.fromhex("01 03 02 00 10"))
     assert modbus_rtu.find_response(b"\x01\x03" + frame + b"\xff", 1, 3) == frame
     assert modbus_rtu.find_response(frame[:-1], 1, 3) is None
@@ -85,7 +85,7 @@ def test_every_function_reads_and_writes() -> None:
     assert modbus.read_coils(0, 2) == [False, True]
 
 
-def test_a_refusal_is_told_by_its_name_and_not_repeated() -> None:
+def test_modbus_exception_is_reported_by_number_and_not_retried() -> None:
     modbus, wire, _ = line_to(delta())
     with raises_code(RequestRejectedError, "driver", "03") as told:
         modbus.read_registers(0x7777)
@@ -96,7 +96,7 @@ def test_a_refusal_is_told_by_its_name_and_not_repeated() -> None:
     assert len(wire.sent) == 2
 
 
-def test_silence_takes_three_tries() -> None:
+def test_silent_device_is_tried_three_times() -> None:
     modbus, wire, clock = line_to(delta())
     wire.silent = True
     with raises_code(NoResponseError, "driver") as told:
@@ -106,7 +106,7 @@ def test_silence_takes_three_tries() -> None:
     assert clock.now() == pytest.approx(0.6, abs=0.05)  # three answers of .2 s at most
 
 
-def test_noise_alone_is_told_apart_from_silence() -> None:
+def test_noise_is_distinguished_from_silence() -> None:
     modbus, wire, _ = line_to(delta())
     wire.noise, wire.spoils = b"\x55\x55", True
     with raises_code(NoResponseError, "driver", "10 bytes") as told:
@@ -114,7 +114,7 @@ def test_noise_alone_is_told_apart_from_silence() -> None:
     assert told.value.reason == "garbled"
 
 
-def test_a_stop_that_waits_ends_the_tries() -> None:
+def test_pending_stop_ends_the_retries() -> None:
     modbus, wire, _ = line_to(delta())
     wire.silent, modbus.is_stop_pending = True, lambda: True
     with pytest.raises(NoResponseError):
@@ -122,7 +122,7 @@ def test_a_stop_that_waits_ends_the_tries() -> None:
     assert len(wire.sent) == 1
 
 
-def test_an_old_answer_is_never_taken_for_a_new_one() -> None:
+def test_late_response_is_not_used_for_the_next_request() -> None:
     """The answer to the first question comes after the second has been sent."""
     slave = delta()
     modbus, wire, _ = line_to(slave)
@@ -134,14 +134,14 @@ def test_an_old_answer_is_never_taken_for_a_new_one() -> None:
     assert modbus.read_registers(0x2102) == [3333]
 
 
-def test_requests_keep_their_pace() -> None:
+def test_requests_are_spaced_by_the_minimum_interval() -> None:
     modbus, _, clock = line_to(delta())
     for _ in range(10):
         modbus.read_registers(0x2103)
     assert clock.now() >= 9 * 0.03
 
 
-def test_a_reset_is_said_once_even_when_nobody_answers() -> None:
+def test_reset_is_sent_once_even_without_a_response() -> None:
     modbus, wire, _ = line_to(delta())
     wire.silent = True
     with pytest.raises(NoResponseError):
@@ -164,7 +164,7 @@ def on_bench(name: str) -> tuple[RegisterInverter, BenchWire, ManualClock]:
     ("name", "first", "next_speed", "other_way"),
     [("delta-vfdb", 2, 1, 2), ("hitachi-wj200", 3, 3, 3), (OWN, 2, 2, 2)],
 )
-def test_a_run_command_is_repeated_where_the_family_wants_it(
+def test_run_command_is_repeated_as_the_family_requires(
     name: str, first: int, next_speed: int, other_way: int
 ) -> None:
     family, wire, _ = on_bench(name)
@@ -177,7 +177,7 @@ def test_a_run_command_is_repeated_where_the_family_wants_it(
 
 
 @pytest.mark.parametrize(("name", "tries"), [("delta-vfdb", 1), ("hitachi-wj200", 3), (OWN, 3)])
-def test_a_reset_is_tried_as_often_as_the_family_says(name: str, tries: int) -> None:
+def test_reset_is_retried_as_often_as_the_family_specifies(name: str, tries: int) -> None:
     family, wire, _ = on_bench(name)
     wire.silent = True
     with pytest.raises(NoResponseError):
@@ -185,7 +185,7 @@ def test_a_reset_is_tried_as_often_as_the_family_says(name: str, tries: int) -> 
     assert len(wire.sent) == tries
 
 
-def test_after_a_reset_the_family_says_how_long_to_wait() -> None:
+def test_family_specifies_the_delay_after_a_reset() -> None:
     waits = {}
     for name in ("delta-vfdb", "hitachi-wj200"):
         family, _, clock = on_bench(name)

@@ -87,9 +87,7 @@ class Interrupted:
 
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("rpm", [1200.0, -1200.0])
-def test_a_stop_while_the_first_frequency_is_sent_holds_the_run_command_back(
-    stand: Bench, end: End, rpm: float
-) -> None:
+def test_stop_during_the_first_frequency_prevents_the_run_command(stand: Bench, end: End, rpm: float) -> None:
     seen = Interrupted(stand, is_setpoint, end)
     stand.spindle.set_speed(rpm)
     stand.run(2.0)
@@ -98,7 +96,7 @@ def test_a_stop_while_the_first_frequency_is_sent_holds_the_run_command_back(
 
 
 @pytest.mark.parametrize("end", ENDS)
-def test_a_stop_in_the_pause_before_a_run_command_holds_it_back(stand: Bench, end: End) -> None:
+def test_stop_in_the_pause_before_a_run_command_prevents_it(stand: Bench, end: End) -> None:
     """The line keeps its pace: between the answer to the frequency and the run command it is silent."""
     sleep, come = stand.clock.sleep_until, False
 
@@ -118,7 +116,7 @@ def test_a_stop_in_the_pause_before_a_run_command_holds_it_back(stand: Bench, en
 
 
 @pytest.mark.parametrize("end", ENDS)
-def test_a_run_command_that_is_not_answered_is_not_repeated_after_a_stop(stand: Bench, end: End) -> None:
+def test_unanswered_run_command_is_not_repeated_after_a_stop(stand: Bench, end: End) -> None:
     def unanswered(one: Bench) -> None:
         one.wire.loses = 1
         end(one)
@@ -132,9 +130,7 @@ def test_a_run_command_that_is_not_answered_is_not_repeated_after_a_stop(stand: 
 
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("number", range(8))
-def test_a_stop_that_comes_with_any_frame_while_it_turns_is_followed_by_no_run_command(
-    turning: Bench, end: End, number: int
-) -> None:
+def test_no_run_command_follows_a_stop_during_any_frame(turning: Bench, end: End, number: int) -> None:
     count = iter(range(1000))
     seen = Interrupted(turning, lambda _: next(count) == number, end)
     turning.spindle.set_speed(900.0)
@@ -145,7 +141,7 @@ def test_a_stop_that_comes_with_any_frame_while_it_turns_is_followed_by_no_run_c
     assert turning.rpm == 0.0
 
 
-def test_what_was_held_back_is_followed_by_a_stop_and_can_be_started_again(stand: Bench) -> None:
+def test_prevented_start_is_followed_by_a_stop_and_can_be_repeated(stand: Bench) -> None:
     stops = stand.inverter.stops
     seen = Interrupted(stand, is_setpoint, stop)
     stand.spindle.set_speed(1200.0)
@@ -158,7 +154,7 @@ def test_what_was_held_back_is_followed_by_a_stop_and_can_be_started_again(stand
     assert stand.spindle.read_fault() == ""
 
 
-def test_a_direction_that_may_have_been_heard_is_said_again() -> None:
+def test_direction_that_may_have_been_received_is_sent_again() -> None:
     """A Delta is not told what it was told last; here nobody knows what that was."""
     one = bench("delta-vfdb")
     one.spindle.set_speed(1200.0)
@@ -198,7 +194,7 @@ def test_a_stop_before_a_start_is_sent_first(turning: Bench, rpm: float) -> None
 
 
 @pytest.mark.parametrize("pairs", [2, 5])
-def test_many_stops_before_one_frame_are_one_stop(turning: Bench, pairs: int) -> None:
+def test_several_stops_before_a_frequency_are_sent_as_one(turning: Bench, pairs: int) -> None:
     stops = turning.inverter.stops
     for _ in range(pairs):
         turning.spindle.set_speed(0.0)
@@ -208,7 +204,7 @@ def test_many_stops_before_one_frame_are_one_stop(turning: Bench, pairs: int) ->
     assert turning.rpm == pytest.approx(1200.0, abs=1.0)
 
 
-def test_a_stop_that_is_not_answered_is_sent_again_before_the_start(turning: Bench) -> None:
+def test_unanswered_stop_is_sent_again_before_the_start(turning: Bench) -> None:
     turning.spindle.set_speed(0.0)
     turning.spindle.set_speed(1200.0)
     turning.wire.loses = 1
@@ -219,7 +215,7 @@ def test_a_stop_that_is_not_answered_is_sent_again_before_the_start(turning: Ben
     assert turning.rpm == pytest.approx(1200.0, abs=1.0)
 
 
-def test_a_run_command_of_before_a_stop_is_held_back_although_a_start_follows(stand: Bench) -> None:
+def test_run_command_before_a_stop_is_prevented_despite_a_later_start(stand: Bench) -> None:
     def stop_and_reverse(one: Bench) -> None:
         one.spindle.set_speed(0.0)
         one.spindle.set_speed(-600.0)
@@ -233,7 +229,7 @@ def test_a_run_command_of_before_a_stop_is_held_back_although_a_start_follows(st
     assert stand.rpm == pytest.approx(-600.0, abs=1.0)
 
 
-def test_a_change_of_speed_is_no_stop(turning: Bench) -> None:
+def test_change_of_speed_sends_no_stop(turning: Bench) -> None:
     stops = turning.inverter.stops
     turning.spindle.set_speed(600.0)
     turning.run(2.0)

@@ -77,7 +77,9 @@ def connected(wired: Wired) -> Iterator[ConnectedMachine]:
     made.close()
 
 
-def test_turns_back_and_stops_over_the_line(connected: ConnectedMachine, wired: Wired) -> None:
+def test_spindle_turns_reverses_and_stops_over_a_serial_line(
+    connected: ConnectedMachine, wired: Wired
+) -> None:
     spindle = connected.ports.spindle
     spindle.set_speed(-600.0)
     until(lambda: abs(spindle.speed() + 600.0) < 2.0, "600 rpm back")
@@ -87,7 +89,7 @@ def test_turns_back_and_stops_over_the_line(connected: ConnectedMachine, wired: 
     assert spindle.read_fault() == ""
 
 
-def test_ignoring_a_stop_asks_for_the_estop(connected: ConnectedMachine, wired: Wired) -> None:
+def test_ignored_stop_asks_the_operator_for_the_estop(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
     spindle.set_speed(900.0)
     until(lambda: spindle.speed() > 800.0, "900 rpm")
@@ -98,7 +100,9 @@ def test_ignoring_a_stop_asks_for_the_estop(connected: ConnectedMachine, wired: 
     assert PRESS_ESTOP_TEXT in spindle.read_fault()
 
 
-def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: ConnectedMachine, wired: Wired) -> None:
+def test_disconnected_cable_is_a_fault_again_after_clearing(
+    connected: ConnectedMachine, wired: Wired
+) -> None:
     spindle = connected.ports.spindle
     spindle.set_speed(900.0)
     until(lambda: spindle.speed() > 800.0, "900 rpm")
@@ -110,7 +114,9 @@ def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: ConnectedMa
     until(lambda: spindle.read_fault() != "", "the fault again")
 
 
-def test_silence_then_life_and_a_clear_word(connected: ConnectedMachine, wired: Wired) -> None:
+def test_spindle_starts_after_silence_ends_and_the_fault_is_cleared(
+    connected: ConnectedMachine, wired: Wired
+) -> None:
     spindle = connected.ports.spindle
     wired.cable.silent = True
     until(lambda: spindle.read_fault() != "", "a fault")
@@ -128,7 +134,7 @@ def test_silence_then_life_and_a_clear_word(connected: ConnectedMachine, wired: 
     until(lambda: abs(spindle.speed() - 300.0) < 2.0, "300 rpm")
 
 
-def test_estop_keeps_it_off(connected: ConnectedMachine) -> None:
+def test_estop_prevents_a_spindle_start(connected: ConnectedMachine) -> None:
     assert connected.on_screen_station is not None
     connected.on_screen_station.press_estop()
     with raises_code(DriverError, "spindle-off", "E-stop"):
@@ -136,7 +142,9 @@ def test_estop_keeps_it_off(connected: ConnectedMachine) -> None:
     connected.ports.spindle.set_speed(0.0)
 
 
-def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]) -> None:
+def test_machine_check_reads_the_inverter_and_leaves_it_stopped(
+    wired: Wired, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["machine", "check", str(wired.path), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     ports = {port["name"]: port for port in report["ports"]}
@@ -150,7 +158,7 @@ def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]
     assert not wired.inverter.running
 
 
-def test_through_the_driver_host(wired: Wired) -> None:
+def test_driver_host_stops_the_inverter_when_the_control_is_gone(wired: Wired) -> None:
     """The process that owns the drivers owns the inverter too: it stops it when the control is gone."""
     path = wired.path
     path.write_text(path.read_text().replace('backend = "sim"', 'backend = "sim"\nfeeder = true'))
@@ -164,7 +172,7 @@ def test_through_the_driver_host(wired: Wired) -> None:
     until(lambda: not wired.inverter.running, "stopped by the driver host")
 
 
-def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
+def test_missing_port_is_reported_in_one_line(tmp_path: Path) -> None:
     path = machine_file(tmp_path, "huanyang", "/dev/ttyNONE7")
     answers = check_machine(load_machine(path))
     assert [(row.name, row.state) for row in answers.rows] == [("spindle", text("shopfloor.no-answer"))]
@@ -173,7 +181,7 @@ def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
     assert "/dev/ttyNONE7" in told
 
 
-def test_a_clock_moved_by_hand_is_refused(tmp_path: Path) -> None:
+def test_manual_clock_is_rejected(tmp_path: Path) -> None:
     machine = load_machine(machine_file(tmp_path, "huanyang", "/dev/ttyNONE7"))
     with raises_code(DriverError, "driver", "real time"):
         connect_machine(machine, ManualClock())

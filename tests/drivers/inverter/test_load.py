@@ -30,7 +30,7 @@ def draws(made: Bench, amps: float) -> None:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_the_current_is_told_as_a_share_of_the_plate(family: str) -> None:
+def test_spindle_load_is_current_divided_by_rated_current(family: str) -> None:
     made, spindle = rated(family, 8.0)
     draws(made, 2.0)
     assert spindle.load_percent == 25.0
@@ -38,13 +38,13 @@ def test_the_current_is_told_as_a_share_of_the_plate(family: str) -> None:
     assert spindle.load_percent == 125.0  # an overload is told as one
 
 
-def test_without_the_plate_no_load_is_told() -> None:
+def test_no_load_is_reported_without_a_rated_current() -> None:
     made, spindle = rated("delta-vfdb", 0.0)
     draws(made, 2.0)
     assert math.isnan(spindle.load_percent)
 
 
-def test_of_an_inverter_that_is_not_heard_no_load_is_told() -> None:
+def test_silent_inverter_reports_no_load() -> None:
     made, spindle = rated("delta-vfdb", 8.0)
     draws(made, 2.0)
     made.clock.advance(5.0)
@@ -60,7 +60,7 @@ class Rows:
         return np.arange(22.0).reshape(2, 11)[:max_rows]
 
 
-def test_the_samples_of_the_slides_get_the_load_of_the_inverter() -> None:
+def test_axis_samples_include_the_inverter_load() -> None:
     rows = AxisOnlySamples(Rows(), 2, lambda: 40.0).take()
     assert np.isnan(rows[:, 7:9]).all()  # speed and turns
     assert list(rows[:, 9]) == [40.0, 40.0]

@@ -48,18 +48,16 @@ def judged(
         (20.0, look(35.0), text("drivers.inverter-other-output", asked="20.0", output="35.0")),
     ],
 )
-def test_what_is_not_as_it_was_told_is_told_behind_a_second(
-    asked: float, seen: InverterState, why: str
-) -> None:
+def test_disobeyed_command_is_reported_after_one_second(asked: float, seen: InverterState, why: str) -> None:
     assert judged(asked, seen) == ("", f"{why}: {PRESS_ESTOP_TEXT}")
 
 
 @pytest.mark.parametrize("output", [0.0, 3.0, 20.0])
-def test_on_its_way_up_nothing_is_wrong(output: float) -> None:
+def test_ramping_up_is_not_a_fault(output: float) -> None:
     assert judged(20.0, look(output)) == ("", "")
 
 
-def test_told_to_stop_it_has_to_fall_and_to_stop() -> None:
+def test_output_must_fall_and_stop_after_a_stop_command() -> None:
     turning = look(20.0)
     assert judged(0.0, turning, before=turning, first=20.0)[1] == (
         f"{text('drivers.inverter-still-outputs', output='20.0')}: {PRESS_ESTOP_TEXT}"
@@ -76,7 +74,7 @@ def test_told_to_stop_it_has_to_fall_and_to_stop() -> None:
         assert falling.check_poll(2.0 + 0.1 * n, look(20.0 - 0.6 * n, 0.0, run=False)) == ""
 
 
-def test_the_same_command_again_does_not_begin_the_second_anew() -> None:
+def test_repeated_command_does_not_restart_the_timeout() -> None:
     obedience = CommandMonitor()
     obedience.record_command(0.0, 20.0, STOOD)
     obedience.record_command(0.9, 20.0, STOOD)
@@ -84,7 +82,7 @@ def test_the_same_command_again_does_not_begin_the_second_anew() -> None:
     assert obedience.check_poll(1.1, look(0.0, run=False)).startswith(why)
 
 
-def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
+def test_obeyed_command_restarts_the_timeout_of_the_next_fault() -> None:
     obedience = CommandMonitor()
     obedience.record_command(0.0, 20.0, STOOD)
     assert obedience.check_poll(0.9, look(0.0, run=False)) == ""
@@ -93,7 +91,7 @@ def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
     assert obedience.check_poll(2.6, look(0.0, run=False)) != ""
 
 
-def test_a_stop_while_it_gets_faster_is_compared_with_the_next_look() -> None:
+def test_stop_during_acceleration_is_compared_with_the_next_poll() -> None:
     """On a slow line the look before the stop is old: 10 Hz there, 30 Hz when the stop came."""
     obedience = CommandMonitor()
     obedience.record_command(-1.0, 50.0, STOOD)

@@ -120,7 +120,7 @@ def own(**more: object) -> InverterTable:
     return dataclasses.replace(config("tenths.toml"), **more)  # type: ignore[arg-type]
 
 
-def test_the_file_alone_makes_it_turn_both_ways(tmp_path: Path) -> None:
+def test_own_family_file_turns_the_spindle_in_both_directions(tmp_path: Path) -> None:
     one, memory, run = tenths(tmp_path)
     assert (one.warnings, memory.timeout) == ((), 1500)
     for hz in (20.04, -33.36, 0.0):  # tenths that no register can hold
@@ -141,7 +141,7 @@ def test_a_setpoint_that_is_off_by_two_steps_is_still_a_fault(tmp_path: Path) ->
     assert get_fault_code(one.failure, "driver") == "ignores-stop"
 
 
-def test_a_code_without_a_text_is_told_by_its_number(tmp_path: Path) -> None:
+def test_fault_code_without_a_text_is_reported_by_number(tmp_path: Path) -> None:
     one, memory, run = tenths(tmp_path)
     memory.inverter.trip_with(0x12)
     run(1.0)
@@ -161,7 +161,7 @@ def test_a_code_without_a_text_is_told_by_its_number(tmp_path: Path) -> None:
         ({"rpm_max": 200_000.0}, "max-hz"),  # 3333 Hz, of 3276.7
     ],
 )
-def test_what_the_inverter_does_not_support_is_refused(
+def test_function_not_supported_by_the_inverter_is_rejected(
     tmp_path: Path, wrong: dict[str, object], reason: str
 ) -> None:
     (tmp_path / "tenths.toml").write_text(DECIHERTZ)
@@ -174,7 +174,7 @@ def test_what_the_inverter_does_not_support_is_refused(
 
 
 @pytest.mark.parametrize("family", ["", "delta", "Delta-VFDB", "my-drive.tml", "../my-drive"])
-def test_a_family_that_is_neither_shipped_nor_a_file_is_refused(tmp_path: Path, family: str) -> None:
+def test_family_neither_shipped_nor_a_file_is_rejected(tmp_path: Path, family: str) -> None:
     text = machine_file(tmp_path, family, "/dev/ttyUSB1").read_text()
     with pytest.raises(MachineFileError) as told:
         parse_machine(text, "own.toml")
@@ -197,7 +197,7 @@ class Rejects(RtuSlave):
         return super()._body(function, data)
 
 
-def test_reads_that_the_inverter_rejects_are_no_look() -> None:
+def test_rejected_reads_are_reported_as_a_silent_inverter() -> None:
     one = bench(OWN)
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Rejects(one.memory, 0x0020)
@@ -206,7 +206,7 @@ def test_reads_that_the_inverter_rejects_are_no_look() -> None:
 
 
 @pytest.mark.parametrize("count", [0, 6, 8])
-def test_an_answer_with_another_number_of_registers_makes_no_look(count: int) -> None:
+def test_response_with_wrong_register_count_is_not_a_valid_poll(count: int) -> None:
     one = bench(OWN)
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Shortened(one.memory, count)
@@ -227,7 +227,7 @@ class Shortened(RtuSlave):
         return super()._body(function, data)
 
 
-def test_a_write_that_is_answered_for_another_register_is_sent_again() -> None:
+def test_write_confirmed_for_another_register_is_sent_again() -> None:
     one = bench(OWN)
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Elsewhere(one.memory)
@@ -247,7 +247,7 @@ class Elsewhere(RtuSlave):
         return body[:2] + bytes((body[2] + 1,)) + body[3:] if function == 16 else body
 
 
-def test_a_trip_whose_code_cannot_be_read_is_still_a_fault() -> None:
+def test_trip_with_an_unreadable_code_is_still_a_fault() -> None:
     one = bench(OWN)
     one.spindle.set_speed(600.0)
     one.run(1.5)

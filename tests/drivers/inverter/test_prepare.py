@@ -20,7 +20,7 @@ from tests.drivers.inverter.inverter_simulators import (
 from tests.texts import begins
 
 
-def test_delta_gets_its_time_out_and_is_written_once() -> None:
+def test_delta_timeout_is_written_once() -> None:
     one = bench("delta-vfdb")
     assert isinstance(one.memory, DeltaMemory)
     assert (one.memory.settings[0x0902], one.memory.settings[0x0903]) == (1, 15)  # ramp, 1.5 s in tenths
@@ -31,14 +31,14 @@ def test_delta_gets_its_time_out_and_is_written_once() -> None:
     assert [address for address, _ in one.memory.written if address < 0x2000] == []
 
 
-def test_hitachi_gets_its_time_out() -> None:
+def test_hitachi_timeout_is_written() -> None:
     one = bench("hitachi-wj200")
     assert isinstance(one.memory, HitachiMemory)
     assert (one.memory.settings[0x113C], one.memory.settings[0x113D]) == (4, 150)  # ramp, hundredths
     assert one.attendant.warnings == ()
 
 
-def test_huanyang_has_none_and_says_so() -> None:
+def test_huanyang_has_no_timeout_and_reports_it() -> None:
     warnings = bench("huanyang").attendant.warnings
     assert len(warnings) == 1
     assert begins(warnings[0], "drivers.inverter-no-timeout", name="Huanyang HY")
@@ -56,7 +56,7 @@ def test_huanyang_has_none_and_says_so() -> None:
         (OWN, 0x0303, 500, ["P2-04", "50 Hz"]),
     ],
 )
-def test_settings_of_others_are_told_and_left(
+def test_differing_user_settings_are_reported_and_not_changed(
     family: str, register: int, value: int, named: list[str]
 ) -> None:
     one = bench(family, connect=False)
@@ -68,7 +68,7 @@ def test_settings_of_others_are_told_and_left(
     assert one.memory.settings[register] == value
 
 
-def test_settings_that_an_inverter_does_not_know_are_told() -> None:
+def test_settings_unknown_to_the_inverter_are_reported() -> None:
     one = bench("delta-vfdb", connect=False)
     assert isinstance(one.memory, DeltaMemory)
     del one.memory.settings[0x0903]
@@ -77,7 +77,7 @@ def test_settings_that_an_inverter_does_not_know_are_told() -> None:
     assert "Pr.09-03" in one.attendant.warnings[0]
 
 
-def test_a_highest_frequency_that_cannot_be_read_is_told() -> None:
+def test_unreadable_maximum_frequency_is_reported() -> None:
     one = bench(OWN, connect=False)
     assert isinstance(one.memory, MyDriveMemory)
     del one.memory.settings[0x0303]
@@ -86,7 +86,7 @@ def test_a_highest_frequency_that_cannot_be_read_is_told() -> None:
     assert warning.startswith("P2-04 ")
 
 
-def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
+def test_huanyang_controlled_by_its_keypad_is_reported() -> None:
     one = bench("huanyang", connect=False)
     assert isinstance(one.memory, HuanyangSlave)
     one.memory.parameters[1] = 0
@@ -94,7 +94,7 @@ def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
     assert any(re.search(r"PD001 .*\b0\b.*\b2\b", warning) for warning in one.attendant.warnings)
 
 
-def test_huanyang_is_trusted_after_ten_good_answers() -> None:
+def test_huanyang_start_after_a_lost_response_needs_ten_valid_ones() -> None:
     one = bench("huanyang")
     assert one.attendant.is_trusted
     one.wire.loses = 1
@@ -109,7 +109,7 @@ def test_huanyang_is_trusted_after_ten_good_answers() -> None:
 
 @pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize(("fault", "kind"), [("silent", NoResponseError), ("out", SerialLineError)])
-def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[DriverError]) -> None:
+def test_missing_inverter_is_reported_in_one_line(family: str, fault: str, kind: type[DriverError]) -> None:
     one = bench(family, connect=False)
     setattr(one.wire, fault, True)
     with pytest.raises(kind):
@@ -117,7 +117,7 @@ def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[Driver
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_a_spindle_that_turns_when_the_control_comes_is_stopped(family: str) -> None:
+def test_spindle_turning_at_connection_is_stopped(family: str) -> None:
     one = bench(family, connect=False)
     one.inverter.hz, one.inverter.running = 30.0, True
     one.inverter.obey(run=True)

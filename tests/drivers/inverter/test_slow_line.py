@@ -29,7 +29,7 @@ def slow() -> Iterator[Control]:
 
 
 @pytest.mark.parametrize("late", [0.0, 0.2, 0.4, 0.6, 0.8])
-def test_speeds_that_change_on_a_slow_line_are_no_fault(slow: Control, late: float) -> None:
+def test_changing_speeds_on_a_slow_line_cause_no_fault(slow: Control, late: float) -> None:
     slow.run(late)  # the commands come at any moment of an exchange
     slow.start(CHANGES + "M05\nG04F2\nM04S2000\nG04F2\nM05\nG04F4\nM30\n")
     slow.until(MachineState.IDLE, MachineState.FAULT, limit=90.0)
@@ -37,7 +37,7 @@ def test_speeds_that_change_on_a_slow_line_are_no_fault(slow: Control, late: flo
     assert slow.world.rpm() == 0.0
 
 
-def test_a_slow_line_is_neither_silent_nor_unknown(slow: Control) -> None:
+def test_slow_line_is_neither_silent_nor_unknown(slow: Control) -> None:
     spindle, unknown = slow.rig.ports.spindle, slow.rig.ports.unknown
     for n in range(40):  # each stop breaks a look off
         spindle.set_speed(0.0 if n % 2 else 1500.0)
@@ -46,7 +46,7 @@ def test_a_slow_line_is_neither_silent_nor_unknown(slow: Control) -> None:
             assert (spindle.read_fault(), unknown()) == ("", frozenset())
 
 
-def test_one_that_ignores_its_stop_on_a_slow_line_is_reported(slow: Control) -> None:
+def test_ignored_stop_on_a_slow_line_is_reported(slow: Control) -> None:
     slow.start("G90G94F300\nM03S2000\nG04F5\nM05\nG04F9\nM30\n")
     slow.run(4.0)
     slow.world.spindle_ignores_stop()

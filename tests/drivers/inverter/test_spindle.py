@@ -8,7 +8,7 @@ from core.faults import get_fault_code
 from tests.drivers.inverter.benches import FAMILIES, OWN, Bench, bench
 
 
-def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
+def test_constant_surface_speed_changes_the_setpoint_continuously(turning: Bench) -> None:
     for step in range(60):
         turning.spindle.set_speed(1200.0 + 30.0 * step if step < 40 else 2400.0 - 20.0 * (step - 40))
         turning.run(0.05)
@@ -17,11 +17,11 @@ def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> No
     assert turning.rpm == pytest.approx(2400.0 - 20.0 * 19, abs=1.0)
 
 
-def test_without_an_encoder_there_is_no_angle(turning: Bench) -> None:
+def test_spindle_without_an_encoder_has_no_angle(turning: Bench) -> None:
     assert turning.spindle.read_angle() is None
 
 
-def test_a_stop_goes_before_everything(turning: Bench) -> None:
+def test_stop_is_sent_before_all_waiting_setpoints(turning: Bench) -> None:
     """At most the request under way comes before it, however many setpoints are waiting."""
     turning.spindle.set_speed(2000.0)
     turning.spindle.set_speed(0.0)
@@ -33,7 +33,7 @@ def test_a_stop_goes_before_everything(turning: Bench) -> None:
     assert turning.rpm == 0.0
 
 
-def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
+def test_stop_waits_for_one_response_at_most(turning: Bench) -> None:
     """A line that has gone silent: the stop is sent although nothing comes back."""
     turning.wire.silent = True
     turning.attendant.run_exchange()
@@ -45,7 +45,7 @@ def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
     assert first[-3] in (0x08, 0x01, 0x00)  # stop of each family
 
 
-def test_a_stop_that_comes_after_the_frequency_keeps_the_run_command_back(turning: Bench) -> None:
+def test_stop_after_the_frequency_prevents_the_run_command(turning: Bench) -> None:
     send, back = turning.wire.send, set[bool]()
 
     def overtaken(data: bytes) -> None:
@@ -61,14 +61,14 @@ def test_a_stop_that_comes_after_the_frequency_keeps_the_run_command_back(turnin
     assert turning.rpm == 0.0
 
 
-def test_an_answer_lost_now_and_then_does_no_harm(turning: Bench) -> None:
+def test_occasional_lost_response_has_no_effect(turning: Bench) -> None:
     for _ in range(5):
         turning.wire.loses = 1
         turning.run(1.0)
         assert turning.spindle.read_fault() == ""
 
 
-def test_nor_while_a_surface_speed_changes_at_every_tick(turning: Bench) -> None:
+def test_lost_responses_do_not_stop_a_spindle_at_changing_speed(turning: Bench) -> None:
     """Who has answered too seldom is given no start; a cut that turns already is not broken off for it."""
     for step in range(1, 41):
         turning.wire.loses = int(step % 10 == 0)
@@ -79,7 +79,7 @@ def test_nor_while_a_surface_speed_changes_at_every_tick(turning: Bench) -> None
     assert turning.rpm == pytest.approx(1600.0, abs=1.0)
 
 
-def test_the_wrong_direction_is_told(stand: Bench) -> None:
+def test_wrong_direction_is_reported(stand: Bench) -> None:
     """The inverter's own "at speed" would be true."""
     stand.inverter.backwards = True
     stand.spindle.set_speed(1200.0)
@@ -87,7 +87,7 @@ def test_the_wrong_direction_is_told(stand: Bench) -> None:
     assert get_fault_code(stand.spindle.read_fault(), "driver") == "ignores-stop"
 
 
-def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
+def test_fault_cancels_the_commanded_speed(turning: Bench) -> None:
     turning.inverter.deaf = True
     turning.spindle.set_speed(600.0)
     turning.run(1.0)
@@ -100,7 +100,7 @@ def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
 
 
 @pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", OWN])
-def test_a_trip_is_told_and_reset_once(family: str) -> None:
+def test_trip_is_reported_and_reset_once(family: str) -> None:
     one = bench(family)
     one.spindle.set_speed(1000.0)
     one.run(1.5)
@@ -119,13 +119,13 @@ def test_a_trip_is_told_and_reset_once(family: str) -> None:
     assert one.rpm == pytest.approx(400.0, abs=1.0)
 
 
-def test_the_end_of_whoever_attends_is_a_fault(turning: Bench) -> None:
+def test_inverter_that_is_no_longer_polled_is_a_fault(turning: Bench) -> None:
     """Nobody calls the rounds: what is not looked at is not well."""
     turning.clock.advance(1.6)
     assert get_fault_code(turning.spindle.read_fault(), "driver") == "inverter-silent"
 
 
-def test_closing_says_stop(turning: Bench) -> None:
+def test_closing_sends_a_stop(turning: Bench) -> None:
     turning.attendant.close()
     turning.clock.advance(2.0)
     assert turning.rpm == 0.0
@@ -133,7 +133,7 @@ def test_closing_says_stop(turning: Bench) -> None:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_a_slow_line_is_no_disobedience(family: str) -> None:
+def test_slow_line_is_not_mistaken_for_disobedience(family: str) -> None:
     """150 ms an answer: a look of the Delta, five registers, is 0.75 s old when it is whole."""
     one = bench(family)
     one.wire.delay = 0.15
@@ -152,7 +152,7 @@ def test_a_slow_line_is_no_disobedience(family: str) -> None:
     assert one.rpm == 0.0
 
 
-def test_on_a_slow_line_disobedience_is_still_told() -> None:
+def test_disobedience_on_a_slow_line_is_still_reported() -> None:
     one = bench("delta-vfdb")
     one.wire.delay = 0.15
     one.spindle.set_speed(2000.0)

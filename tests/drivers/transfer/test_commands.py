@@ -14,7 +14,9 @@ from tests.drivers.inverter.lines import WAIT, Pair
 from tests.drivers.transfer.far_end import FarEnd, answer
 
 
-def test_from_one_command_to_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_send_and_receive_commands_transfer_a_program(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Two of us on the two ends of a cable."""
     source, target = tmp_path / "PIN.nc", tmp_path / "in" / "PIN.nc"
     source.write_bytes(b"%\nG90G72\nG00X1.Z.1\nM30\n%\n")
@@ -42,7 +44,7 @@ SETTINGS = (
 
 
 @pytest.mark.parametrize("settings", SETTINGS)
-def test_every_setting_of_a_line(settings: str, tmp_path: Path) -> None:
+def test_program_is_transferred_with_every_line_setting(settings: str, tmp_path: Path) -> None:
     """Both ends set to the same; twice, because a port is left as it was set."""
     source = tmp_path / "PIN.nc"
     source.write_bytes(b"G90G72\nG00X1.Z.1\nM30\n")
@@ -57,7 +59,7 @@ def test_every_setting_of_a_line(settings: str, tmp_path: Path) -> None:
             assert out.read_bytes() == source.read_bytes()
 
 
-def test_a_received_program_overwrites_nothing(
+def test_receive_rejects_an_existing_file_before_waiting(
     far: FarEnd, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is refused before anything is waited for: nobody has to send it twice."""
@@ -69,7 +71,7 @@ def test_a_received_program_overwrites_nothing(
     assert far.hear() == b""
 
 
-def test_a_file_that_comes_while_it_is_received_is_not_replaced(
+def test_file_created_during_reception_is_not_replaced(
     far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor
 ) -> None:
     target = tmp_path / "OLD.nc"
@@ -85,7 +87,7 @@ def _asked(far: FarEnd) -> bool:
     return any(b"\x11" in far.hear(0.2) for _ in range(int(WAIT / 0.2)))
 
 
-def test_what_is_heard_and_is_no_program_is_said(
+def test_received_data_before_the_program_is_reported(
     far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor, capsys: pytest.CaptureFixture[str]
 ) -> None:
     future = pool.submit(main, ["serial", "receive", "--port", far.port, "--out", str(tmp_path / "N.nc")])
@@ -103,7 +105,7 @@ def test_what_is_heard_and_is_no_program_is_said(
     assert future.result(WAIT) == 0
 
 
-def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
+def test_incomplete_program_leaves_no_file(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
     target = tmp_path / "NEW.nc"
     arguments = [
         "serial",
@@ -123,7 +125,7 @@ def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: Thr
     assert list(tmp_path.iterdir()) == []
 
 
-def test_commands_that_cannot_be(
+def test_invalid_serial_commands_are_rejected(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     refusals = recorded_refusals(monkeypatch)
@@ -146,7 +148,7 @@ def test_commands_that_cannot_be(
 
 
 @pytest.mark.parametrize("action", ["send", "receive"])
-def test_the_help_is_readable(action: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_is_specific_to_send_or_receive(action: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["serial", action, "--help"])
     told = capsys.readouterr().out

@@ -69,31 +69,31 @@ def test_every_line_end_gives_the_same_program(eol: bytes, chunk: int) -> None:
     ],
     ids=["NULs", "garbage", "DC2 DC4", "XON XOFF", "no last end", "behind", "rubout"],
 )
-def test_what_is_around_a_program_does_not_matter(stream: bytes) -> None:
+def test_data_around_a_program_is_ignored(stream: bytes) -> None:
     assert taken(stream).program_bytes == BODY
 
 
-def test_seven_bits_with_even_parity_through_a_port_of_eight_are_found() -> None:
+def test_seven_bits_with_even_parity_are_detected_on_an_8n1_port() -> None:
     program = taken(even(framed(b"\r\n")))
     assert program.program_bytes == BODY
     assert program.is_seven_bit
 
 
 @pytest.mark.parametrize(("settings", "code"), [(SEVEN, even), (ODD, odd)])
-def test_seven_bits_by_the_settings(settings: TransferSettings, code: object) -> None:
+def test_seven_bits_are_decoded_according_to_the_settings(settings: TransferSettings, code: object) -> None:
     assert callable(code)
     program = taken(bytes(20) + code(framed(b"\n")) + bytes(20), settings)
     assert program.program_bytes == BODY
     assert not program.is_seven_bit  # that is no discovery
 
 
-def test_letters_of_eight_bits_stay() -> None:
+def test_eight_bit_characters_are_retained() -> None:
     """cp437: 94 is an ö, 84 an ä, 9A an Ü; with the top bit off they would be DC4, EOT and ^Z."""
     stream = b"%\n(\x94l, h\x84ngt \x9abel)\nM30\n%\n"
     assert taken(stream).program_bytes == b"(\x94l, h\x84ngt \x9abel)\nM30\n"
 
 
-def test_a_false_percent_in_the_noise_before_it() -> None:
+def test_false_percent_in_noise_before_the_program_is_ignored() -> None:
     """A5 is a % with even parity; here it is noise before an eight-bit program."""
     assert taken(b"\xa5" + framed(b"\n")).program_bytes == BODY
 
@@ -109,7 +109,7 @@ def test_a_false_percent_in_the_noise_before_it() -> None:
         (b"%", b"G90 O5", ""),
     ],
 )
-def test_names(head: bytes, first: bytes, name: str) -> None:
+def test_program_name_is_found_in_the_header(head: bytes, first: bytes, name: str) -> None:
     assert taken(head + b"\n" + first + b"\nM30\n%\n").name == name
 
 
@@ -132,7 +132,7 @@ def test_names(head: bytes, first: bytes, name: str) -> None:
     ids=["nothing", "no %", "lost %", "DC4 before %", "stopped", "empty", "blank", "control", "two", "parity",
          "parity found", "wrong parity"],
 )  # fmt: skip
-def test_what_is_not_whole_is_refused(
+def test_incomplete_program_is_rejected(
     stream: bytes, settings: TransferSettings, reason: str, values: list[str]
 ) -> None:
     with raises_code(IncompleteError, "driver", *values) as told:
@@ -140,7 +140,7 @@ def test_what_is_not_whole_is_refused(
     assert told.value.reason == reason
 
 
-def test_every_cut_of_a_program_is_noticed() -> None:
+def test_truncation_of_a_program_is_always_detected() -> None:
     """Wherever the line is cut: no part of a program passes for a whole one."""
     stream = framed(b"\r\n")
     for length in range(len(stream) - 2):
@@ -148,7 +148,7 @@ def test_every_cut_of_a_program_is_noticed() -> None:
             taken(stream[:length], chunk=7)
 
 
-def test_every_spoilt_bit_is_noticed_with_parity() -> None:
+def test_every_flipped_bit_is_detected_with_parity() -> None:
     stream = even(framed(b"\n"))
     for at in range(1, len(stream)):
         for bit in range(8):
@@ -159,7 +159,7 @@ def test_every_spoilt_bit_is_noticed_with_parity() -> None:
                 taken(spoilt, SEVEN)
 
 
-def test_without_percents_silence_is_the_end() -> None:
+def test_program_without_percents_ends_with_silence() -> None:
     bare = TransferSettings(LineSettings("bench"), delimiter="")
     assert taken(bytes(9) + BODY, bare).program_bytes == BODY
     assert taken(even(BODY), bare).program_bytes == BODY

@@ -29,7 +29,7 @@ def sent(
     return job, data, pool.submit(job.send_program)
 
 
-def test_xoff_in_the_middle_of_a_line_stops_it_and_xon_goes_on(far: FarEnd, pool: ThreadPoolExecutor) -> None:
+def test_xoff_stops_sending_within_a_line_and_xon_resumes(far: FarEnd, pool: ThreadPoolExecutor) -> None:
     _, data, future = sent(far.port, pool)
     until(lambda: far.hear() != b"" and len(far.heard) > 200, "the beginning")
     far.say(b"\x13")
@@ -44,7 +44,7 @@ def test_xoff_in_the_middle_of_a_line_stops_it_and_xon_goes_on(far: FarEnd, pool
     assert bytes(far.heard) == data
 
 
-def test_a_port_without_seven_bits_is_given_parity_and_obeys_codes_that_have_it(
+def test_port_without_seven_bits_uses_software_parity_and_flow_control(
     far: FarEnd, pool: ThreadPoolExecutor
 ) -> None:
     """DC3 has three ones: with even parity it is 93 on the line, DC1 stays 11."""
@@ -67,7 +67,7 @@ def test_a_port_without_seven_bits_is_given_parity_and_obeys_codes_that_have_it(
     assert bytes(c & 0x7F for c in far.heard) == encode_program(LONG[:40_000], settings)
 
 
-def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPoolExecutor) -> None:
+def test_canceling_during_xoff_releases_the_port(far: FarEnd, pool: ThreadPoolExecutor) -> None:
     job, _, future = sent(far.port, pool)
     until(lambda: far.hear() != b"", "the beginning")
     far.say(b"\x13")
@@ -78,7 +78,7 @@ def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPo
     SerialPort(LineSettings(far.port)).close()
 
 
-def test_a_port_has_one_owner(far: FarEnd) -> None:
+def test_port_has_only_one_owner(far: FarEnd) -> None:
     first = SerialPort(LineSettings(far.port))
     with raises_code(SerialLineError, "driver", far.port) as told:
         SerialPort(LineSettings(far.port))
@@ -86,7 +86,7 @@ def test_a_port_has_one_owner(far: FarEnd) -> None:
     first.close()
 
 
-def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
+def test_disconnected_cable_ends_reception_with_an_error(pool: ThreadPoolExecutor) -> None:
     with Pair() as cable:
         settings = TransferSettings(LineSettings(cable.near))
         job = ReceiveTransfer(
@@ -100,7 +100,7 @@ def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
 
 
 @pytest.mark.parametrize("bits", [7, 8])
-def test_seven_bits_and_even_parity_arrive(far: FarEnd, pool: ThreadPoolExecutor, bits: int) -> None:
+def test_seven_bits_and_even_parity_are_received(far: FarEnd, pool: ThreadPoolExecutor, bits: int) -> None:
     """Set to 7E1, and found out by a port that is set to 8N1."""
     settings = TransferSettings(LineSettings(far.port, data_bits=bits, parity="E" if bits == 7 else "N"))
     job = ReceiveTransfer(SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings)
@@ -112,7 +112,9 @@ def test_seven_bits_and_even_parity_arrive(far: FarEnd, pool: ThreadPoolExecutor
     assert program.is_seven_bit == (bits == 8)
 
 
-def test_letters_of_eight_bits_and_the_byte_that_marks_damage(far: FarEnd, pool: ThreadPoolExecutor) -> None:
+def test_eight_bit_characters_and_the_damage_marker_byte_are_received(
+    far: FarEnd, pool: ThreadPoolExecutor
+) -> None:
     settings = TransferSettings(LineSettings(far.port))
     job = ReceiveTransfer(SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings)
     future: Future[ReceivedText] = pool.submit(job.receive_program)
@@ -120,7 +122,7 @@ def test_letters_of_eight_bits_and_the_byte_that_marks_damage(far: FarEnd, pool:
     assert future.result(WAIT).program_bytes == b"(\xff\xfe\x94)\nM30\n"
 
 
-def test_the_end_of_what_was_sent_is_not_dropped_with_the_port(far: FarEnd) -> None:
+def test_closing_the_port_does_not_discard_unsent_data(far: FarEnd) -> None:
     """Closing at once after the last byte, a hundred times: the far end has all of it each time."""
     for _ in range(100):
         wire = SerialPort(LineSettings(far.port))

@@ -24,7 +24,7 @@ LINE = LineSettings("bench")
     ],
 )
 @pytest.mark.parametrize("text", [b"G90\nM30\n", b"G90\r\nM30", b"%\nG90\nM30\n%\n", b"G90\rM30\r\x1a"])
-def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: bytes, text: bytes) -> None:
+def test_program_is_framed_exactly_once(settings: TransferSettings, expected: bytes, text: bytes) -> None:
     assert encode_program(text, settings) == expected
 
 
@@ -38,22 +38,24 @@ def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: by
         ("(öl)\n".encode(), 7, "eighth-bit", ["line 1 ", "7 bits"]),
     ],
 )
-def test_what_would_not_arrive_is_not_sent(text: bytes, bits: int, reason: str, values: list[str]) -> None:
+def test_program_that_cannot_be_transferred_is_not_sent(
+    text: bytes, bits: int, reason: str, values: list[str]
+) -> None:
     with raises_code(DriverError, "driver", *values) as told:
         encode_program(text, TransferSettings(LineSettings("bench", data_bits=bits)))
     assert told.value.reason == reason
 
 
-def test_without_a_frame_the_text_goes_out_alone() -> None:
+def test_program_without_a_delimiter_is_sent_unframed() -> None:
     assert encode_program(b"G90\nM30\n", TransferSettings(LINE, line_end="\r", delimiter="")) == b"G90\rM30\r"
 
 
-def test_letters_go_out_by_eight_bits() -> None:
+def test_eight_bit_characters_are_sent() -> None:
     text = "(öl)\n".encode()
     assert encode_program(text, TransferSettings(LINE, line_end="\n")) == b"%\n" + text + b"%\n"
 
 
-def test_marks_are_taken_out_and_counted() -> None:
+def test_parity_marks_are_removed_and_counted() -> None:
     one = ParityMarkDecoder()
     assert one.decode(b"AB") == b"AB"
     assert one.decode(b"\xff\xffC") == b"\xffC"

@@ -32,7 +32,7 @@ def receiving(side: OtherSide, settings: TransferSettings = SETTINGS) -> Receive
     return ReceiveTransfer(side, side.clock, settings)
 
 
-def test_it_goes_out_whole_in_small_pieces() -> None:
+def test_program_is_sent_completely_in_small_pieces() -> None:
     side = OtherSide(ManualClock())
     job = sending(side)
     assert job.send_program() == len(DATA)
@@ -43,7 +43,7 @@ def test_it_goes_out_whole_in_small_pieces() -> None:
     assert side.clock.now() == pytest.approx(len(DATA) / 960.0, rel=0.3)
 
 
-def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
+def test_xoff_within_a_line_is_awaited_and_reported() -> None:
     side = OtherSide(ManualClock(), holds=(0.5, 30.0))
     job = sending(side)
     told: set[str] = set()
@@ -58,7 +58,7 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
     assert side.clock.now() > 30.0
 
 
-def test_a_hold_that_does_not_end_is_a_sentence() -> None:
+def test_endless_xoff_is_an_error() -> None:
     side = OtherSide(ManualClock(), holds=(0.5, 1e9))
     with raises_code(DriverError, "driver", "512 bytes") as told:
         sending(side).send_program()
@@ -81,7 +81,7 @@ class Satisfied(OtherSide):
 
 
 @pytest.mark.parametrize("obeyed", [True, False])
-def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
+def test_xoff_after_the_final_percent_ends_the_transfer(obeyed: bool) -> None:
     settings = dataclasses.replace(SETTINGS, sends_dc_codes=True, leader_nul_count=200)
     data = encode_program(TEXT, settings)
     side = Satisfied(ManualClock())
@@ -93,7 +93,7 @@ def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
     assert side.clock.now() < 10.0
 
 
-def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
+def test_sender_waits_for_dc1_and_then_obeys_flow_control() -> None:
     side = OtherSide(ManualClock(), [(3.0, b"\x91")])  # DC1 with its parity bit
     settings = dataclasses.replace(SETTINGS, needs_dc1=True)
     assert settings.sending_settings.flow_control == "none"
@@ -103,7 +103,7 @@ def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
     assert side.clock.now() > 3.0
 
 
-def test_nobody_asks_for_it() -> None:
+def test_send_times_out_if_the_receiver_never_sends_dc1() -> None:
     side = OtherSide(ManualClock())
     with raises_code(DriverError, "driver", "DC1") as told:
         sending(side, dataclasses.replace(SETTINGS, needs_dc1=True)).send_program()
@@ -112,14 +112,14 @@ def test_nobody_asks_for_it() -> None:
 
 
 @pytest.mark.parametrize("at", [0.0, 0.3, 1.0, 2.0])
-def test_cable_out_while_sending(at: float) -> None:
+def test_disconnected_cable_ends_sending_with_an_error(at: float) -> None:
     side = OtherSide(ManualClock(), cut_at=at)
     with pytest.raises(SerialLineError):
         sending(side).send_program()
     assert side.closed
 
 
-def test_giving_up_while_it_is_held() -> None:
+def test_sending_can_be_canceled_during_xoff() -> None:
     side = OtherSide(ManualClock(), [(20.0, b"")], holds=(0.2, 1e9))
     job = sending(side)
 
@@ -134,7 +134,7 @@ def test_giving_up_while_it_is_held() -> None:
     assert side.closed
 
 
-def test_a_program_comes_in() -> None:
+def test_program_is_received_between_dc1_and_dc3() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:100]), (1.5, DATA[100:150]), (9.0, DATA[150:])])
     program = receiving(side).receive_program()
     assert program.program_bytes == TEXT
@@ -143,13 +143,13 @@ def test_a_program_comes_in() -> None:
     assert bytes(side.taken) == b"\x11\x13"  # come on; enough
 
 
-def test_dc1_is_said_again_while_nothing_comes() -> None:
+def test_dc1_is_repeated_while_nothing_arrives() -> None:
     side = OtherSide(ManualClock(), [(11.0, DATA)])
     receiving(side).receive_program()
     assert bytes(side.taken) == b"\x11\x11\x11\x13"  # at 0, 5 and 10 s
 
 
-def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
+def test_noise_before_the_program_does_not_stop_repeating_dc1() -> None:
     """One stray character at 1 s: DC1 is said at 0, and 5 s after each last word, at 6 and 11."""
     side = OtherSide(ManualClock(), [(1.0, b"?"), (12.0, DATA)])
     assert receiving(side).receive_program().program_bytes == TEXT
@@ -165,7 +165,7 @@ def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
         (b"\x9e\x01\x1c\xe6", "<9E><01><1C><E6>", "noise"),  # another rate
     ],
 )
-def test_what_is_heard_before_a_program_is_told(come: bytes, heard: str, what: str) -> None:
+def test_data_received_before_a_program_is_reported(come: bytes, heard: str, what: str) -> None:
     side = OtherSide(ManualClock(), [(1.0, come), (4.0, DATA)])
     told: list[tuple[str, str]] = []
     job = receiving(side)
@@ -179,25 +179,25 @@ def test_what_is_heard_before_a_program_is_told(come: bytes, heard: str, what: s
     assert told == [(heard, what)]
 
 
-def test_nothing_is_said_where_no_codes_are_used() -> None:
+def test_no_control_codes_are_sent_without_flow_control() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA)])
     receiving(side, dataclasses.replace(SETTINGS, line_settings=LineSettings("bench"))).receive_program()
     assert side.taken == b""
 
 
-def test_a_last_percent_without_a_line_end_ends_it_soon() -> None:
+def test_final_percent_without_a_line_ending_ends_reception_quickly() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:-1])])
     assert receiving(side).receive_program().program_bytes == TEXT
     assert side.clock.now() < 2.0
 
 
-def test_a_pause_behind_a_line_is_no_end() -> None:
+def test_pause_after_a_line_does_not_end_the_program() -> None:
     """The sender reads from a slow disk: five seconds in the middle."""
     side = OtherSide(ManualClock(), [(1.0, DATA[:500]), (6.0, DATA[500:])])
     assert receiving(side).receive_program().program_bytes == TEXT
 
 
-def test_a_lost_last_percent_is_refused() -> None:
+def test_program_without_a_final_percent_is_rejected() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:-2])])
     with raises_code(IncompleteError, "driver", "%", "201 lines") as told:
         receiving(side).receive_program()
@@ -206,7 +206,7 @@ def test_a_lost_last_percent_is_refused() -> None:
     assert side.closed
 
 
-def test_a_damaged_character_ends_it_at_once() -> None:
+def test_damaged_character_ends_reception_immediately() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:100]), (1.2, DATA[100:])])
     job = receiving(side)
 
@@ -220,7 +220,7 @@ def test_a_damaged_character_ends_it_at_once() -> None:
 
 
 @pytest.mark.parametrize("at", [0.0, 1.02, 1.1, 9.0])
-def test_cable_out_while_receiving(at: float) -> None:
+def test_disconnected_cable_ends_reception_with_an_error(at: float) -> None:
     script = [(1.0 + n / 100, DATA[10 * n : 10 * n + 10]) for n in range(len(DATA) // 10 + 1)]
     side = OtherSide(ManualClock(), script, cut_at=at)
     if at > 8.0:
@@ -231,7 +231,7 @@ def test_cable_out_while_receiving(at: float) -> None:
     assert side.closed
 
 
-def test_giving_up_while_receiving() -> None:
+def test_reception_can_be_canceled() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:100])])
     job = receiving(side)
 

@@ -30,7 +30,7 @@ def people(say: Say) -> None:
     assert entered == (0, "BEN entered: SETUP\n")
 
 
-def test_without_levels_commands_are_as_they_were(say: Say, home: Path) -> None:
+def test_commands_are_unrestricted_without_access_levels(say: Say, home: Path) -> None:
     assert say("access", "list") == (0, "levels are off: everybody may change everything\n")
     assert say("offsets", "set", "T3", "x=1", "z=-1")[0] == 0
     assert say("offsets", "set", "T3", "x=1.01", "--as", "dora")[0] == 0
@@ -38,7 +38,7 @@ def test_without_levels_commands_are_as_they_were(say: Say, home: Path) -> None:
         assert [row.who for row in store.offsets.read_history()] == ["dora", "command line"]
 
 
-def test_a_change_needs_level_and_pin_and_keeps_the_name(
+def test_change_needs_level_and_pin_and_records_the_name(
     say: Say, people: None, home: Path, refusals: list[CodedError]
 ) -> None:
     status, told = say("offsets", "set", "T3", "x=1", "z=-1")
@@ -51,7 +51,7 @@ def test_a_change_needs_level_and_pin_and_keeps_the_name(
         assert [(row.number, row.who) for row in store.offsets.read_history()] == [(4, "shop"), (3, "BEN")]
 
 
-def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
+def test_wrong_pin_changes_nothing_is_logged_and_adds_a_delay(
     say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch, refusals: list[CodedError]
 ) -> None:
     waited: list[float] = []
@@ -66,7 +66,7 @@ def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
         assert store.events.read_events("wrong PIN")[0].text == wording("cli.wrong-pin", name="BEN", count=4)
 
 
-def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
+def test_aborted_pin_check_counts_as_a_wrong_pin(
     say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A script that ends it before the answer is written would guess as often as it likes."""
@@ -92,7 +92,7 @@ def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
     ["machine", "accept", "{machine}"], ["access", "remove", "anna"], ["access", "pin", "anna"],
     ["access", "add", "carl"],
 ])  # fmt: skip
-def test_what_is_of_service_is_refused_below(
+def test_service_changes_are_rejected_below_service_level(
     words: list[str], say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     (tmp_path / "own.toml").write_text(resources.read_machine_file("gt75.toml"))
@@ -105,7 +105,7 @@ def test_what_is_of_service_is_refused_below(
         assert value in told
 
 
-def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
+def test_restore_is_logged_with_the_user_name(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     assert say("store", "restore", tmp_path / "b.db", "--as", "anna", typed="4711")[0] == 0
     (tmp_path / "own.toml").write_text(resources.read_machine_file("gt75.toml"))
@@ -119,9 +119,7 @@ def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, t
         assert "accepted by ANNA" in store.events.read_events("machine file")[0].text
 
 
-def test_a_store_that_cannot_be_read_can_be_replaced(
-    say: Say, people: None, home: Path, tmp_path: Path
-) -> None:
+def test_unreadable_store_can_be_replaced(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     (home / "turndesk.db").write_bytes(b"no store any more")
     assert say("store", "restore", tmp_path / "b.db", typed="RESET", terminal=True)[0] == 0
@@ -135,7 +133,7 @@ def damage_people(home: Path, change: str) -> None:
         connection.execute(change)
 
 
-def test_a_row_of_people_that_is_missing_is_no_way_out(
+def test_missing_people_row_does_not_bypass_access_levels(
     say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     """The list said that levels are off."""
@@ -156,7 +154,7 @@ def hashes(path: Path) -> list[bytes]:
         return [bytes(row[0]) for row in connection.execute("SELECT hash FROM people WHERE hash <> x''")]
 
 
-def test_no_backup_has_hashes_and_a_restore_leaves_the_people(
+def test_backup_contains_no_hashes_and_restore_leaves_the_users(
     say: Say, people: None, home: Path, tmp_path: Path
 ) -> None:
     stored, copy = hashes(home / "turndesk.db"), tmp_path / "b.db"
@@ -176,7 +174,7 @@ def test_no_backup_has_hashes_and_a_restore_leaves_the_people(
     assert say("store", "verify")[0] == 0
 
 
-def test_a_new_machine_has_the_names_of_a_backup_and_no_pin(
+def test_backup_gives_a_new_machine_the_names_without_pins(
     say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
@@ -188,7 +186,7 @@ def test_a_new_machine_has_the_names_of_a_backup_and_no_pin(
     assert say("access", "reset", typed="RESET", terminal=True)[0] == 0
 
 
-def test_an_old_hash_is_made_anew_on_the_command_line(
+def test_old_hash_is_upgraded_on_the_command_line(
     say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pins, "DEFAULT_COST", pins.ScryptCost(5, 8, 1))
@@ -196,7 +194,7 @@ def test_an_old_hash_is_made_anew_on_the_command_line(
     assert [each[0] for each in hashes(home / "turndesk.db")] == [4, 5]
 
 
-def test_stock_is_kept_from_setup_on(
+def test_stock_is_stored_only_from_setup_level_up(
     say: Say, people: None, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     (tmp_path / "part.nc").write_text("G90G94F200\nT1\nX.5Z0\nM30\n")
@@ -209,7 +207,7 @@ def test_stock_is_kept_from_setup_on(
     assert "STOCK" not in say("prove", tmp_path / "part.nc")[1]
 
 
-def test_the_first_one_is_of_service(say: Say, refusals: list[CodedError]) -> None:
+def test_first_user_must_have_service_level(say: Say, refusals: list[CodedError]) -> None:
     status, told = say("access", "add", "ben", "--level", "setup", typed="2580 2580")
     assert (status, codes(refusals), "SERVICE" in told) == (2, ["last-service-person"], True)
 
@@ -218,13 +216,13 @@ def test_the_first_one_is_of_service(say: Say, refusals: list[CodedError]) -> No
     ("123 123", "pin-length"), ("1111 1111", "pin-too-simple"), ("4711 4712", "pins-differ"),
     ("", "pin-length"),
 ])  # fmt: skip
-def test_what_is_no_pin_is_refused(typed: str, code: str, say: Say, refusals: list[CodedError]) -> None:
+def test_invalid_pin_is_rejected(typed: str, code: str, say: Say, refusals: list[CodedError]) -> None:
     status, _ = say("access", "add", "anna", typed=typed)
     assert (status, codes(refusals)) == (2, [code])
     assert say("access", "list")[1].startswith("levels are off")
 
 
-def test_another_pin_and_a_removed_person(say: Say, people: None, refusals: list[CodedError]) -> None:
+def test_pin_can_be_changed_and_a_user_removed(say: Say, people: None, refusals: list[CodedError]) -> None:
     assert say("access", "pin", "ben", "--as", "anna", typed="4711 3698 3698")[0] == 0
     assert say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="3698")[0] == 0
     assert say("access", "remove", "ben", "--as", "anna", typed="4711") == (0, "BEN is taken away\n")
@@ -240,7 +238,7 @@ def test_the_table_is_printed(say: Say) -> None:
     assert json.loads(say("access", "table", "--json")[1])["ZERO OFFSETS"]["level"] == "SETUP"
 
 
-def test_the_reset_is_typed_at_the_machine(
+def test_service_reset_requires_typing_at_the_machine(
     say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch, refusals: list[CodedError]
 ) -> None:
     say("access", "reset", typed="RESET")
@@ -259,6 +257,6 @@ def test_the_reset_is_typed_at_the_machine(
     assert (row.who, "2 users and their PINs" in row.text) == ("shop", True)
 
 
-def test_access(turndesk: Turndesk, filled: Path) -> None:
+def test_access_json_output_matches_its_declared_keys(turndesk: Turndesk, filled: Path) -> None:
     declared_alone([whole(turndesk("access", "list", "--json"))], access_command.ACCESS_LIST_OUTPUT.keys)
     declared_alone([whole(turndesk("access", "table", "--json"))], access_command.ACCESS_TABLE_OUTPUT.keys)

@@ -45,7 +45,7 @@ OPERATORS = {
 # --- signing in ------------------------------------------------------------------------------------------
 
 
-def test_the_header_says_who_is_in_force(room: PinRoom) -> None:
+def test_header_shows_the_current_user_level(room: PinRoom) -> None:
     room.enter_people()
     assert room.access.header_text == "OPERATOR"
     room.sign_in("BEN")
@@ -58,7 +58,7 @@ def test_the_header_says_who_is_in_force(room: PinRoom) -> None:
     ]
 
 
-def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: PinRoom) -> None:
+def test_repeated_wrong_pins_increase_the_delay_and_are_logged(room: PinRoom) -> None:
     room.enter_people()
     for _ in range(3):
         room.sign_in("BEN", "0815")
@@ -72,7 +72,7 @@ def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: PinRoom) -> None
     assert room.log("access")[2] == (wording("log.wrong-pin", name="BEN", count=3), "operator")
 
 
-def test_a_new_start_does_not_forget_how_many_were_wrong(room: PinRoom) -> None:
+def test_wrong_pin_count_survives_a_restart(room: PinRoom) -> None:
     room.enter_people()
     for _ in range(3):
         room.sign_in("BEN", "0815")
@@ -81,7 +81,7 @@ def test_a_new_start_does_not_forget_how_many_were_wrong(room: PinRoom) -> None:
     assert PinSignIn(again).wrong_pins.get_remaining_delay(7.0) == 5.0
 
 
-def test_the_waits_are_bounded() -> None:
+def test_wrong_pin_delays_are_limited() -> None:
     assert [calculate_delay(count) for count in range(12)] == [0, 0, 0, 5, 10, 20, 40, 80, 160, 300, 300, 300]
     wrong = WrongPinCounter()
     for moment in (0.0, 1.0, 2.0):
@@ -92,12 +92,12 @@ def test_the_waits_are_bounded() -> None:
 
 
 @pytest.mark.parametrize("pin", ["", "123", "1234567890123", "12a4", "1111", "12 34", "١٢٣٤"])
-def test_what_is_no_pin_is_refused(pin: str) -> None:
+def test_invalid_pin_is_rejected(pin: str) -> None:
     with pytest.raises(PinError):
         check_pin(pin)
 
 
-def test_what_is_kept_of_a_pin_is_scrypt() -> None:
+def test_stored_pin_hash_uses_scrypt() -> None:
     """RFC 7914, chapter 12: the third vector has the N, r and p of older hashes, and our length in front."""
     old = "7023bdcb3afd7348461c06cd81fd38ebfda8fbba904f8e3ea9b543f6545da1f2"
     for kept in (
@@ -110,20 +110,18 @@ def test_what_is_kept_of_a_pin_is_scrypt() -> None:
     assert hash_pin("4711") != hash_pin("4711")  # each has a salt of its own
 
 
-def test_a_try_costs_what_half_a_second_holds() -> None:
+def test_pin_check_has_the_required_scrypt_cost() -> None:
     """Older hashes took 0.03 s of an idle core: 32 times the work is 0.9 s."""
     work = TODAY.block_size * TODAY.parallelism << TODAY.log2_n
     assert work >= 32 * (8 * 1 << 14)
 
 
 @pytest.mark.parametrize("damage", [b"", b"\x04\x08", bytes(31), bytes(34), bytes(40)])
-def test_no_pin_fits_a_hash_of_another_length(damage: bytes) -> None:
+def test_hash_of_another_length_matches_no_pin(damage: bytes) -> None:
     assert not matches_hash("4711", PinHash(b"salt", damage))
 
 
-def test_an_old_hash_is_made_anew_when_its_pin_is_entered(
-    room: PinRoom, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_old_hash_is_upgraded_when_its_pin_is_entered(room: PinRoom, monkeypatch: pytest.MonkeyPatch) -> None:
     room.enter_people()
     old = room.access.users.rows
     monkeypatch.setattr(pins, "DEFAULT_COST", pins.ScryptCost(5, 8, 1))
@@ -139,7 +137,7 @@ def test_an_old_hash_is_made_anew_when_its_pin_is_entered(
     assert {row for row in old if row.name != "BEN"} < set(room.store.people.read_users().rows)
 
 
-def test_who_has_no_pin_is_let_in_by_none(room: PinRoom) -> None:
+def test_user_without_a_pin_cannot_sign_in(room: PinRoom) -> None:
     room.journal.require_store().people.save_user(UserRow("DORA", AccessLevel.SERVICE, b"", b"")).result()
     room.access.reload()
     room.sign_in("DORA", "4711")
@@ -159,7 +157,7 @@ def test_the_store_does_not_hold_the_pin(room: PinRoom, tmp_path: Path) -> None:
 # --- time ------------------------------------------------------------------------------------------------
 
 
-def test_a_level_falls_back_and_says_so_before(room: PinRoom) -> None:
+def test_level_times_out_after_a_warning(room: PinRoom) -> None:
     room.enter_people()
     room.sign_in("ANNA")
     room.at += 569.0
@@ -183,7 +181,7 @@ def test_a_level_falls_back_and_says_so_before(room: PinRoom) -> None:
     )
 
 
-def test_levels_come_back_with_a_store_that_was_away_at_the_start(room: PinRoom, tmp_path: Path) -> None:
+def test_levels_return_with_a_store_that_was_missing_at_startup(room: PinRoom, tmp_path: Path) -> None:
     """Else whoever was there then could enter himself as the first one, beside those of the store."""
     room.enter_people()
     store, room.journal._store = room.journal._store, None
@@ -208,7 +206,7 @@ def damaged_home(tmp_path: Path) -> Path:
     return folder
 
 
-def test_people_that_cannot_be_read_leave_the_strictest_level(room: PinRoom, tmp_path: Path) -> None:
+def test_unreadable_users_leave_the_strictest_level(room: PinRoom, tmp_path: Path) -> None:
     room.journal._store, store = None, room.journal._store
     room.journal._folder = damaged_home(tmp_path)
     room.access.reload()
@@ -234,7 +232,7 @@ def typed(levels: AccessLevelsFunction, *texts: str) -> None:
         levels.handle_key("Enter")
 
 
-def test_the_first_one_is_of_service_and_switches_levels_on(room: PinRoom) -> None:
+def test_first_user_has_service_level_and_enables_access_levels(room: PinRoom) -> None:
     levels = room.find(AccessLevelsFunction)
     levels.make_function_keys()["F3"].action()
     typed(levels, "anna", "4711")
@@ -253,7 +251,7 @@ def test_the_first_one_is_of_service_and_switches_levels_on(room: PinRoom) -> No
     assert room.log("access")[-1] == (wording("log.entered", name="BEN", level="SETUP"), "ANNA")
 
 
-def test_two_different_pins_keep_nothing(room: PinRoom) -> None:
+def test_different_pins_are_not_stored(room: PinRoom) -> None:
     levels = room.find(AccessLevelsFunction)
     levels.make_function_keys()["F3"].action()
     typed(levels, "anna", "4711", "4712")
@@ -288,7 +286,7 @@ def pressed(room: PinRoom) -> Callable[[], None]:
     return levels.service_reset.start
 
 
-def test_ten_minutes_of_estop_take_all_pins_away(room: PinRoom) -> None:
+def test_ten_minutes_of_estop_reset_all_pins(room: PinRoom) -> None:
     pressed(room)
     room.at += RESET_DELAY_S - 1.0
     room.run(1)
@@ -304,7 +302,7 @@ def test_ten_minutes_of_estop_take_all_pins_away(room: PinRoom) -> None:
     assert told[-1] == wording("desk.reset-done")
 
 
-def test_the_reset_needs_the_estop_and_ends_with_it(room: PinRoom) -> None:
+def test_pin_reset_requires_estop_and_ends_with_it(room: PinRoom) -> None:
     room.enter_people()
     room.find(AccessLevelsFunction).ask_pin_reset()
     assert begins(room.desk.prompt_notice, "desk.e-stop-for-reset")
@@ -320,7 +318,7 @@ def test_the_reset_needs_the_estop_and_ends_with_it(room: PinRoom) -> None:
     assert room.log("access")[-1][0] == wording("desk.reset-given-up")
 
 
-def test_a_pin_ends_the_reset(room: PinRoom) -> None:
+def test_pin_entry_cancels_the_reset(room: PinRoom) -> None:
     pressed(room)
     room.sign_in("ANNA")
     room.run(1)
@@ -330,7 +328,7 @@ def test_a_pin_ends_the_reset(room: PinRoom) -> None:
     assert room.access.users.is_access_restricted
 
 
-def test_who_has_gone_away_finishes_nothing_by_other_hands(room: PinRoom) -> None:
+def test_change_begun_at_a_level_is_not_completed_after_sign_out(room: PinRoom) -> None:
     """What was begun in a level is not ended by whoever finds it open when that level has fallen back."""
     room.enter_people()
     room.sign_in("ANNA")

@@ -25,7 +25,7 @@ def turned_arc() -> object:
     return record_of(times, X_demand=x, X_actual=x - play, Z_demand=z, Z_actual=z, line=line)
 
 
-def test_a_ball_bar_of_the_arc_of_a_record() -> None:
+def test_ball_bar_analysis_finds_the_arc_of_a_record() -> None:
     found = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball_bar is not None
     assert found.selected_arc == (0, 1, 4)
@@ -33,7 +33,7 @@ def test_a_ball_bar_of_the_arc_of_a_record() -> None:
     assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
 
 
-def test_the_path_error_of_its_line() -> None:
+def test_path_error_is_assigned_to_its_program_line() -> None:
     found = analyze(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert [each.line for each in found.worst_deviations] == [4]
     assert abs(found.worst_deviations[0].distance_mm) == pytest.approx(
@@ -41,7 +41,7 @@ def test_the_path_error_of_its_line() -> None:
     )  # the play where X goes radially
 
 
-def test_the_table_of_the_path_error_says_where_the_slides_stood() -> None:
+def test_path_error_table_shows_the_axis_positions() -> None:
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
     page.result = analyze(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
     sheet = page.make_table()
@@ -73,7 +73,7 @@ def milled_arc() -> object:
     )
 
 
-def test_a_mill_finds_its_arc_in_the_plane_of_x_and_y() -> None:
+def test_mill_arc_is_found_in_the_xy_plane() -> None:
     found = analyze(AnalysisKind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball_bar is not None
     assert (found.axis_names, found.selected_arc) == (("X", "Y"), (0, 1, 4))
@@ -81,7 +81,7 @@ def test_a_mill_finds_its_arc_in_the_plane_of_x_and_y() -> None:
     assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)
 
 
-def test_the_path_error_of_a_mill_is_one_in_space() -> None:
+def test_mill_path_error_is_spatial() -> None:
     """Where Y goes radially its play of .01 and the .004 of Z are at right angles: √(.01² + .004²)."""
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
     page.result = found = analyze(AnalysisKind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
@@ -97,7 +97,7 @@ def test_the_path_error_of_a_mill_is_one_in_space() -> None:
     page.close()
 
 
-def test_a_drawing_names_its_axes_with_the_unit_that_is_shown() -> None:
+def test_drawing_labels_its_axes_with_the_displayed_unit() -> None:
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
     page.result = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     drawing = page.make_drawing()
@@ -107,7 +107,7 @@ def test_a_drawing_names_its_axes_with_the_unit_that_is_shown() -> None:
     page.close()
 
 
-def test_what_is_not_there_is_told() -> None:
+def test_missing_data_is_reported() -> None:
     record = record_of(seconds(0.0, 3.0))
     assert analyze(AnalysisKind.BALL_BAR, record, 0, {}).missing_reason == text("scope.no-arc")
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
@@ -121,7 +121,7 @@ def test_what_is_not_there_is_told() -> None:
     assert "no spindle encoder count" in analyze(AnalysisKind.THREAD, deaf, 0, {}).missing_reason
 
 
-def test_of_live_samples_the_last_run_is_taken() -> None:
+def test_live_samples_are_reduced_to_the_last_run() -> None:
     times = seconds(0.0, 20.0)
     line = np.where((times > 2.0) & (times < 5.0), 3.0, 0.0) + np.where(
         (times > 9.0) & (times < 15.0), 4.0, 0.0
@@ -130,7 +130,7 @@ def test_of_live_samples_the_last_run_is_taken() -> None:
     assert (found.times_s[0], found.times_s[-1]) == pytest.approx((9.001, 14.999))
 
 
-def test_without_a_run_all_of_it_is() -> None:
+def test_record_without_a_run_is_used_in_full() -> None:
     record = record_of(seconds(0.0, 2.0), line=np.zeros(2001))
     assert len(find_last_run(record).times_s) == 2001
     without = replace(record, values_by_channel={})

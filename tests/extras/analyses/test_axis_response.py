@@ -52,21 +52,21 @@ def test_the_last_move_is_found_with_its_lag() -> None:
     assert found.step_response.settling_time_s == pytest.approx(TAU * np.log(20.0 * TAU / band), abs=0.002)
 
 
-def test_at_twice_the_speed_it_is_twice_as_far_behind() -> None:
+def test_predicted_error_doubles_at_twice_the_speed() -> None:
     found = find_last_move(moved(), DRIVES)  # type: ignore[arg-type]
     assert np.abs(found.predict_error(2.0)).max() == pytest.approx(
         2.0 * np.abs(found.following_error).max(), rel=0.05
     )
 
 
-def test_what_would_trip_is_said() -> None:
+def test_limit_that_would_trip_is_reported() -> None:
     """A lag of a tenth of a second: far outside a quarter of any window."""
     words, reduced = figures_of(moved(tau=0.1, way=8.0)), text("scope.limit-reduced", share="25 %")
     assert words[reduced].startswith("trips at")
     assert figures_of(moved(tau=1e-5))[reduced] == "no trip"
 
 
-def test_without_a_move_there_is_nothing() -> None:
+def test_record_without_a_move_raises_an_error() -> None:
     times = seconds(0.0, 3.0)
     still = np.full(len(times), 3.0)
     record = record_of(times, X_demand=still, Z_demand=still)
@@ -75,7 +75,7 @@ def test_without_a_move_there_is_nothing() -> None:
     assert "Jog page" in analyze(AnalysisKind.AXIS_RESPONSE, record, 0, DRIVES).missing_reason
 
 
-def test_a_move_that_still_goes_on_is_no_response() -> None:
+def test_unfinished_move_is_not_a_step_response() -> None:
     times = seconds(0.0, 3.0)
     record = record_of(times, X_demand=np.full(len(times), 3.0), Z_demand=5.0 * times)
     with raises_code(AnalysisError, "no-step"):

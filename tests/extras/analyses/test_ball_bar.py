@@ -26,12 +26,12 @@ def with_play(demand: np.ndarray, bu: float, bv: float) -> np.ndarray:
     return actual
 
 
-def test_a_circle_through_points() -> None:
+def test_circle_is_fitted_through_points() -> None:
     u, v, r = fit_circle(arc(np.array([0.1, 0.9, 2.0, 2.1])))
     assert (u, v, r) == pytest.approx((40.0, -60.0, R))
 
 
-def test_a_perfect_arc() -> None:
+def test_perfect_arc_has_zero_errors() -> None:
     found = analyze_ball_bar(arc(T), arc(T))
     assert found.radius_mm == pytest.approx(R)
     assert found.circularity_mm == pytest.approx(0.0, abs=1e-9)
@@ -39,14 +39,14 @@ def test_a_perfect_arc() -> None:
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_backlash_of_each_axis_is_told_apart(way: float) -> None:
+def test_backlash_is_separated_by_axis(way: float) -> None:
     found = analyze_ball_bar(arc(way * T), with_play(arc(way * T), 0.012, 0.005))
     assert found.backlash_mm == pytest.approx((0.012, 0.005), abs=1e-4)
     assert found.squareness_error_mm_m == pytest.approx(0.0, abs=0.02)
     assert found.scale_error_mm_m == pytest.approx(0.0, abs=0.02)
 
 
-def test_squareness_and_scale() -> None:
+def test_squareness_and_scale_errors_are_measured() -> None:
     """v leans by 80 µm a metre towards u; u is 60 µm a metre longer than v."""
     at = arc(T) - (40.0, -60.0)
     lean = np.array([[1.0 + 60e-6, 80e-6], [0.0, 1.0]])
@@ -58,13 +58,13 @@ def test_squareness_and_scale() -> None:
     assert found.backlash_mm == pytest.approx((0.0, 0.0), abs=1e-5)
 
 
-def test_a_lag_makes_it_smaller_and_not_out_of_round() -> None:
+def test_lag_reduces_the_size_but_not_the_roundness() -> None:
     found = analyze_ball_bar(arc(T), arc(T - 0.01, R * 0.999))
     assert found.size_error_mm == pytest.approx(-0.001 * R, abs=1e-6)
     assert found.circularity_mm == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_spike_behind_the_reversal_of_one_axis() -> None:
+def test_reversal_spike_is_assigned_to_its_axis() -> None:
     """v reverses at 90° and 270°, u at 0° and 180°: a bump of 8 µm half a degree behind 90°."""
     bump = 0.008 * np.exp(-(((np.degrees(T) - 90.5) / 0.4) ** 2))
     seen = arc(T) + bump[:, None] * np.column_stack([np.cos(T), np.sin(T)])
@@ -73,7 +73,7 @@ def test_a_spike_behind_the_reversal_of_one_axis() -> None:
     assert found.reversal_spike_mm[0] < 0.001
 
 
-def test_a_short_arc_tells_only_its_size() -> None:
+def test_short_arc_gives_only_its_size() -> None:
     part = np.radians(np.linspace(10.0, 80.0, 2000))
     found = analyze_ball_bar(arc(part), with_play(arc(part), 0.01, 0.01))
     assert math.isnan(found.backlash_mm[0])
@@ -91,7 +91,7 @@ def test_a_short_arc_tells_only_its_size() -> None:
         (arc(T) + np.column_stack([0 * T, 0.1 * np.sin(5 * T)]), "no-arc"),
     ],
 )
-def test_what_is_no_arc_is_refused(demand: np.ndarray, code: str) -> None:
+def test_invalid_arc_is_rejected(demand: np.ndarray, code: str) -> None:
     with raises_code(AnalysisError, code):
         analyze_ball_bar(demand, demand)
 

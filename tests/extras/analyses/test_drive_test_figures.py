@@ -64,7 +64,7 @@ def played(path: DriveTestMotion, tau: float = TAU, lasts: float = 1.0) -> Scope
     return dataclasses.replace(record, about={**record.about, TEST_PATH_KEY: encode_test_path(path)})
 
 
-def test_what_was_played_is_read_back_from_a_record() -> None:
+def test_played_test_path_is_read_back_from_its_record() -> None:
     for path in (STEP, RAMP, SINE):
         assert find_test_path(played(path)) == path
 
@@ -72,12 +72,12 @@ def test_what_was_played_is_read_back_from_a_record() -> None:
 @pytest.mark.parametrize(
     "told", ["", "no test", "[1]", '["Z", "jump", 1, 0, []]', '["Z", "step", null, 0, []]', "{}"]
 )
-def test_other_records_are_none_of_a_test(told: str) -> None:
+def test_other_records_have_no_test_path(told: str) -> None:
     record = record_of(seconds(0.0, 1.0))
     assert find_test_path(dataclasses.replace(record, about={TEST_PATH_KEY: told})) is None
 
 
-def test_the_step_out_and_back_of_a_first_order_drive() -> None:
+def test_first_order_drive_step_matches_the_formula() -> None:
     """Braking by a until T leaves an error e, which goes with exp(−t/τ): in position after τ·ln(e/band)."""
     found = calculate_results(played(STEP), STEP, DRIVES)
     assert [each.step_size_mm for each in found.step_responses] == pytest.approx([0.5, -0.5])
@@ -106,7 +106,7 @@ def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
     assert ("SPEED / LAG (GAIN)", "250 /s", "250 /s") in cells  # Kv = 1/τ
 
 
-def test_sines_have_gain_and_lag_of_the_formula_and_so_the_bandwidth() -> None:
+def test_sine_gain_phase_and_bandwidth_match_the_formula() -> None:
     """1/√(1+ω²τ²), arctan ωτ; 3 dB down at 1/2πτ = 39.8 Hz; never 90° late."""
     found = calculate_results(played(SINE), SINE, DRIVES)
     for each in found.sine_responses:
@@ -120,7 +120,7 @@ def test_sines_have_gain_and_lag_of_the_formula_and_so_the_bandwidth() -> None:
     assert words["90° PHASE LAG"] == text("scope.not-reached", most=80)
 
 
-def test_the_analyses_page_knows_a_record_of_a_test() -> None:
+def test_analyses_page_recognizes_a_drive_test_record() -> None:
     found = analyze(AnalysisKind.AXIS_RESPONSE, played(RAMP), 0, DRIVES)
     assert found.drive_test is not None
     assert found.drive_test.test_path == RAMP
@@ -128,7 +128,7 @@ def test_the_analyses_page_knows_a_record_of_a_test() -> None:
     assert describe_test_path(SINE, True) == "Z+  SINE  0.5000 mm, 2, 10, 40, 80 Hz"
 
 
-def test_response_and_window_are_parts_of_the_whole() -> None:
+def test_response_and_limit_parts_make_up_the_whole_table() -> None:
     found = calculate_results(played(STEP), STEP, DRIVES)
     whole, *parts = (
         make_results_table("", found, True, part).rows for part in (ResultsPart.ALL, *ResultsPart) if part
@@ -140,24 +140,24 @@ def test_response_and_window_are_parts_of_the_whole() -> None:
 
 
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
-def test_a_test_that_was_let_go_has_no_figures(path: DriveTestMotion) -> None:
+def test_released_drive_test_has_no_results(path: DriveTestMotion) -> None:
     with raises_code(AnalysisError, "test-broken-off"):
         calculate_results(played(path, lasts=0.3), path, DRIVES)
 
 
-def test_a_record_of_another_machine() -> None:
+def test_record_of_another_machine_is_rejected() -> None:
     path = dataclasses.replace(STEP, axis="Y")
     with raises_code(AnalysisError, "no-axis", "Y"):
         calculate_results(played(STEP), path, DRIVES)
 
 
-def test_a_step_within_its_own_window_is_told() -> None:
+def test_step_within_the_in_position_band_is_rejected() -> None:
     path = dataclasses.replace(STEP, travel_mm=DRIVES["Z"].in_position_tolerance)
     with raises_code(AnalysisError, "step-too-small"):
         calculate_results(played(path), path, DRIVES)
 
 
-def test_a_drive_that_tells_no_place() -> None:
+def test_record_without_positions_is_rejected() -> None:
     record = played(STEP)
     none = np.full(len(record.times_s), np.nan)
     record = dataclasses.replace(record, values_by_channel={**record.values_by_channel, "Z actual": none})
@@ -168,7 +168,7 @@ def test_a_drive_that_tells_no_place() -> None:
 # --- windows and speeds -------------------------------------------------------------------------------------
 
 
-def test_the_narrowest_window_is_what_lasts_too_long_within() -> None:
+def test_narrowest_limit_is_exceeded_just_for_the_trip_time() -> None:
     """A triangle of 1 mm that rises and falls 10 ms each is above w for 20·(1−w) ms: 5 ms at w = .75."""
     times = seconds(0.0, 1.0)
     error = np.maximum(0.0, 1.0 - np.abs(times - 0.5) / 0.010)
@@ -177,14 +177,14 @@ def test_the_narrowest_window_is_what_lasts_too_long_within() -> None:
     assert find_narrowest_limit(times, 0.0 * error, 0.005) == 0.0
 
 
-def test_the_speed_at_which_a_lag_meets_a_growing_window() -> None:
+def test_lag_meets_the_growing_limit_at_the_calculated_speed() -> None:
     """.2 + .01 v = .02 v gives 20 mm/s; a window that grows as fast as the lag is never met."""
     assert find_speed_at_limit(0.02, 0.2, 1.2, 100.0) == pytest.approx(20.0)
     assert find_speed_at_limit(0.01, 0.2, 1.2, 100.0) is None
     assert find_speed_at_limit(0.011, 0.2, 1.2, 100.0) is None  # at 200 mm/s, faster than the axis is
 
 
-def test_no_bandwidth_is_told_that_was_not_seen() -> None:
+def test_unmeasured_bandwidth_is_not_reported() -> None:
     t = seconds(0.0, 2.0)
     wave = np.sin(2.0 * math.pi * 5.0 * t)
     seen = calculate_bandwidth([analyze_sine(t, wave, wave, 5.0)])

@@ -14,7 +14,7 @@ from core.records.record import AnalysisError
 from tests.coded import raises_code
 
 
-def test_a_slide_that_is_late_is_still_on_its_path() -> None:
+def test_late_axis_is_still_on_its_path() -> None:
     t = np.arange(1000) / 1000.0
     demand = np.column_stack([20.0 * t, 30.0 * t])
     actual = np.column_stack([20.0 * (t - 0.01), 30.0 * (t - 0.01)])
@@ -23,7 +23,7 @@ def test_a_slide_that_is_late_is_still_on_its_path() -> None:
     assert error.path_positions_mm[20:] == pytest.approx(np.hypot(20.0, 30.0) * (t[20:] - 0.01))
 
 
-def test_one_axis_late_beside_the_other() -> None:
+def test_lag_of_one_axis_deviates_from_the_path() -> None:
     """x late by d on a line at 45°: the distance is d/√2, to the left of a way to the right above."""
     t = np.arange(1000) / 1000.0
     demand = np.column_stack([10.0 * t, 10.0 * t])
@@ -32,7 +32,7 @@ def test_one_axis_late_beside_the_other() -> None:
     assert error.distances_mm[10:-10] == pytest.approx(0.02 / np.sqrt(2.0), abs=1e-9)
 
 
-def test_a_circle_that_lags_shrinks() -> None:
+def test_lagging_circle_shrinks() -> None:
     """Of a first order lag τ at ω both sines shrink to 1/√(1+ω²τ²) of the radius."""
     t = np.arange(4000) / 1000.0
     omega, tau, r = 2.0 * np.pi * 0.5, 0.02, 10.0
@@ -59,7 +59,7 @@ def test_the_worst_lines_come_first() -> None:
     assert worst[1].distance_mm == pytest.approx(0.01)
 
 
-def test_magnified_it_lies_so_much_farther_off() -> None:
+def test_magnified_deviation_is_scaled_by_the_factor() -> None:
     path = np.array([[0.0, 0.0], [10.0, 0.0]])
     measured = np.column_stack([np.linspace(1, 9, 10), np.full(10, 0.01)])
     error = calculate_path_error(path, np.array([1, 1]), measured, np.zeros(10, dtype=np.int64), 1)
@@ -67,7 +67,7 @@ def test_magnified_it_lies_so_much_farther_off() -> None:
     assert error.magnify_deviation(100.0)[:, 0] == pytest.approx(measured[:, 0])
 
 
-def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
+def test_samples_of_a_self_crossing_path_match_their_own_branch() -> None:
     """Up and back a hair's breadth apart: a sample of the way back belongs to that."""
     t = np.arange(500) / 1000.0
     up, back = np.column_stack([10 * t, 0 * t]), np.column_stack([10 * t[::-1], 0 * t + 0.01])
@@ -88,12 +88,12 @@ def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
         (np.full((50, 2), np.nan), "no-positions"),
     ],
 )
-def test_what_is_no_path_is_refused(demand: np.ndarray, code: str) -> None:
+def test_invalid_path_is_rejected(demand: np.ndarray, code: str) -> None:
     with raises_code(AnalysisError, code):
         calculate_path_error_from_samples(demand, demand, np.ones(len(demand)), 1000.0)
 
 
-def test_what_does_not_belong_together_is_refused() -> None:
+def test_mismatched_arrays_are_rejected() -> None:
     path, measured = np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros((10, 2))
     with raises_code(AnalysisError, "lengths-differ"):
         calculate_path_error(path, np.array([1]), measured, np.zeros(10, dtype=np.int64), 1)

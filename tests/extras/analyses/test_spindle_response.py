@@ -39,7 +39,7 @@ def found(record: ScopeRecord) -> SpindleResponse:
     return find_last_run_up(record, MODEL)
 
 
-def test_a_lag_of_first_order_by_its_formula() -> None:
+def test_first_order_lag_matches_the_formula() -> None:
     response = found(turned((1.0, 1000.0)))
     assert MODEL.at_speed == pytest.approx(0.05)
     step = response.step_responses[0]
@@ -51,25 +51,25 @@ def test_a_lag_of_first_order_by_its_formula() -> None:
     assert [each.settling_time_s for each in response.step_responses] == pytest.approx(within, abs=0.002)
 
 
-def test_how_evenly_it_turns() -> None:
+def test_speed_variation_is_measured() -> None:
     response = found(turned((1.0, 1000.0), swing=4.0))
     assert response.variation_rpm == pytest.approx(8.0, abs=0.4)
     assert response.mean_error_rpm == pytest.approx(0.0, abs=0.2)
 
 
-def test_a_swing_wider_than_a_window_never_settles_in_it() -> None:
+def test_speed_swing_wider_than_the_band_never_settles() -> None:
     settling = [each.settling_time_s for each in found(turned((1.0, 1000.0), swing=15.0)).step_responses]
     assert math.isfinite(settling[1])  # 20 rpm
     assert math.isnan(settling[2])  # 10 rpm
 
 
-def test_of_several_the_last_run_up_and_no_stop() -> None:
+def test_last_acceleration_of_several_is_used_and_stops_are_ignored() -> None:
     response = found(turned((1.0, 1000.0), (4.0, 2000.0), (8.0, 0.0)))
     assert (response.commanded_rpm[0], response.commanded_rpm[-1]) == (1000.0, 2000.0)
     assert response.step_responses[0].step_size_mm == 1000.0
 
 
-def test_backward_is_a_speed_too() -> None:
+def test_reverse_speed_is_also_analyzed() -> None:
     response = found(turned((1.0, -500.0)))
     assert response.step_responses[0].step_size_mm == -500.0
     assert response.step_responses[0].rise_time_s == pytest.approx(TAU * math.log(9.0), abs=0.002)
@@ -80,19 +80,19 @@ def test_backward_is_a_speed_too() -> None:
     [turned(), turned((0.0, 800.0)), turned((0.0, 800.0), (5.0, 0.0)), turned((0.0, 800.0), (5.0, 830.0))],
     ids=["stood", "even", "stopped", "within the window"],
 )
-def test_without_a_run_up_it_says_what_to_do(record: ScopeRecord) -> None:
+def test_record_without_an_acceleration_raises_no_step(record: ScopeRecord) -> None:
     with raises_code(AnalysisError, "no-step"):
         found(record)
 
 
-def test_a_speed_that_nobody_tells_is_none() -> None:
+def test_missing_spindle_speed_is_reported() -> None:
     nothing: FloatArray = np.full(12001, np.nan)
     with raises_code(AnalysisError, "no-measured-speed"):
         found(record_of(seconds(0.0, 12.0), spindle_speed=nothing))
     assert "no spindle" in analyze(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 500.0)), 0, {}).missing_reason
 
 
-def test_its_sheet_and_drawing() -> None:
+def test_spindle_response_has_a_table_and_a_drawing() -> None:
     page = AnalysesModel(SimpleNamespace(metric=False), spindle=MODEL, kind=AnalysisKind.SPINDLE_RESPONSE)  # type: ignore[arg-type]
     page.result = analyze(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 1000.0)), 0, {}, MODEL)
     rows = {row.cells[0]: row.cells[1] for row in page.make_table().rows}

@@ -21,7 +21,7 @@ T = np.arange(4001) / 1000.0 - 0.5
 STEP = np.where(T >= 0.0, 0.1, 0.0)
 
 
-def test_a_first_order_lag() -> None:
+def test_first_order_lag_matches_the_formula() -> None:
     """τ: 10 to 90 % take τ·ln 9, half is done after τ·ln 2, it is within .1 % after τ·ln 1000."""
     tau = 0.05
     response = np.where(T >= 0.0, 0.1 * (1.0 - np.exp(-np.maximum(T, 0.0) / tau)), 0.0)
@@ -34,7 +34,7 @@ def test_a_first_order_lag() -> None:
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_the_overshoot_of_a_second_order(sign: float) -> None:
+def test_second_order_overshoot_matches_the_formula(sign: float) -> None:
     """Damping d overshoots by exp(−πd/√(1−d²)): 25.4 % at d = .4."""
     d, w = 0.4, 60.0
     wd = w * math.sqrt(1.0 - d * d)
@@ -47,13 +47,13 @@ def test_the_overshoot_of_a_second_order(sign: float) -> None:
     assert found.step_size_mm == pytest.approx(sign * 0.1)
 
 
-def test_what_does_not_settle_is_not_said_to() -> None:
+def test_unsettled_response_has_no_settling_time() -> None:
     assert math.isnan(analyze_step(T, STEP, 0.9 * STEP, 0.001).settling_time_s)
     assert analyze_step(T, STEP, 0.9 * STEP, 0.001).final_error_mm == pytest.approx(-0.01)
 
 
 @pytest.mark.parametrize("frequency", [1.0, 5.0, 20.0])
-def test_a_sine_of_known_following_error(frequency: float) -> None:
+def test_sine_following_error_matches_the_formula(frequency: float) -> None:
     """First order: gain 1/√(1+ω²τ²), lag arctan ωτ, error ωτ/√(1+ω²τ²) of the amplitude."""
     tau, omega, a = 0.01, 2.0 * math.pi * frequency, 0.2
     gain, phase = 1.0 / math.hypot(1.0, omega * tau), math.atan(omega * tau)
@@ -86,12 +86,12 @@ def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
         (lambda: analyze_ramp(T, 0 * T, 0 * T), "no-ramp"),
     ],
 )
-def test_what_is_no_response_is_refused(call: object, code: str) -> None:
+def test_invalid_response_is_rejected(call: object, code: str) -> None:
     with raises_code(AnalysisError, code):
         call()  # type: ignore[operator]
 
 
-def test_a_window_trips_only_when_it_lasts() -> None:
+def test_limit_trips_only_if_the_error_lasts() -> None:
     error = np.where((T > 0.1) & (T < 0.2), 0.05, 0.0)
     assert find_trip_time(T, error, 0.04, 0.05) == pytest.approx(0.101 + 0.05)
     assert find_trip_time(T, -error, 0.04, 0.05) == pytest.approx(0.101 + 0.05)
@@ -99,7 +99,7 @@ def test_a_window_trips_only_when_it_lasts() -> None:
     assert find_trip_time(T, error, 0.06, 0.0) is None
 
 
-def test_what_goes_with_the_speed_grows_with_it() -> None:
+def test_error_proportional_to_speed_scales_with_speed() -> None:
     velocity = np.sin(T)
     found = scale_error_to_speed(velocity, 0.002 * velocity, 3.0)
     assert found == pytest.approx(0.006 * velocity)

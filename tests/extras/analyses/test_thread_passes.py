@@ -41,7 +41,7 @@ def found(**how: object) -> ThreadAnalysis:
     return analyze_thread(*cut(**how))  # type: ignore[arg-type]
 
 
-def test_passes_that_lie_in_one_groove() -> None:
+def test_passes_in_one_groove_have_no_deviation() -> None:
     thread = found()
     assert len(thread.passes) == 3
     assert thread.reference_lead_mm == pytest.approx(-LEAD, rel=1e-6)
@@ -51,17 +51,17 @@ def test_passes_that_lie_in_one_groove() -> None:
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_a_pass_that_enters_at_another_angle(way: float) -> None:
+def test_pass_with_another_entry_angle_is_measured(way: float) -> None:
     thread = found(entries=(0.0, 0.0, 12.0), way=way)
     assert [each.entry_angle_deg for each in thread.passes] == pytest.approx([0.0, 0.0, 12.0], abs=0.05)
     assert np.mean(thread.passes[2].deviations_mm) == pytest.approx(-way * LEAD * 12.0 / 360.0, abs=1e-4)
 
 
-def test_an_entry_angle_before_the_first() -> None:
+def test_entry_angle_before_the_first_is_negative() -> None:
     assert found(entries=(0.0, -5.0)).passes[1].entry_angle_deg == pytest.approx(-5.0, abs=0.05)
 
 
-def test_a_lead_that_is_wrong() -> None:
+def test_lead_error_is_measured() -> None:
     thread = analyze_thread(*cut(leads=(LEAD, LEAD, 1.503)), lead=-LEAD)
     assert thread.passes[2].lead_mm == pytest.approx(-1.503, abs=1e-5)
     assert thread.max_lead_error_mm == pytest.approx(-0.003, abs=1e-5)
@@ -70,17 +70,17 @@ def test_a_lead_that_is_wrong() -> None:
     )  # half a turn at both ends is left out
 
 
-def test_the_spindle_gives_way_in_the_cut() -> None:
+def test_spindle_speed_drop_in_the_cut_is_measured() -> None:
     thread = found(drop=30.0)
     assert [each.min_speed_rpm for each in thread.passes] == pytest.approx([RPM - 30.0] * 3)
     assert [each.speed_drop_rpm for each in thread.passes] == pytest.approx([30.0] * 3, abs=5.0)
 
 
-def test_a_known_ripple() -> None:
+def test_speed_ripple_is_measured() -> None:
     assert [each.speed_ripple_rpm for each in found(ripple=4.0).passes] == pytest.approx([8.0] * 3, abs=0.1)
 
 
-def test_a_pass_with_a_jolt_in_it_is_one_pass() -> None:
+def test_pass_with_a_jolt_counts_as_one_pass() -> None:
     turns, along, depth, speed = cut()
     jolt = (turns > 12.0) & (turns < 12.2)
     along[jolt] += 0.05 * LEAD * np.sin(2.0 * np.pi * (turns[jolt] - 12.0) / 0.2)
@@ -89,11 +89,11 @@ def test_a_pass_with_a_jolt_in_it_is_one_pass() -> None:
     assert [np.ptp(each.spindle_revolutions) for each in thread.passes] == pytest.approx([14.0] * 3, abs=0.3)
 
 
-def test_the_speed_at_which_a_slide_can_just_follow() -> None:
+def test_maximum_thread_rpm_follows_from_the_axis_speed() -> None:
     assert calculate_max_rpm(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
 
 
-def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
+def test_constant_feed_is_one_pass_and_its_lead_is_reported() -> None:
     turns = np.arange(4000.0, dtype=np.float64) * 0.02
     thread = analyze_thread(turns, -0.2 * turns, np.zeros(4000), np.full(4000, RPM))
     assert len(thread.passes) == 1
@@ -109,12 +109,12 @@ def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
         (np.arange(500) * 0.02, "no-pass"),
     ],
 )
-def test_what_is_no_thread_is_refused(turns: np.ndarray, code: str) -> None:
+def test_invalid_thread_is_rejected(turns: np.ndarray, code: str) -> None:
     n = len(turns)
     with raises_code(AnalysisError, code):
         analyze_thread(turns, np.zeros(n), np.zeros(n), np.zeros(n))
 
 
-def test_another_lead_is_not_taken_for_this_one() -> None:
+def test_another_lead_is_not_accepted() -> None:
     with raises_code(AnalysisError, "no-pass"):
         analyze_thread(*cut(), lead=2.0)

@@ -50,7 +50,7 @@ def test_the_keys_of_json_are_declared(turndesk: Turndesk, part: Path) -> None:
     declared_alone([told], convert_command.CONVERT_OUTPUT.keys)
 
 
-def test_options_about_the_source_act(turndesk: Turndesk, part: Path) -> None:
+def test_source_options_are_applied(turndesk: Turndesk, part: Path) -> None:
     part.write_text("G99\nT0101\nG97S500M03\nG00X1000Z100\nG01X2.Z-1.F.01\nG02X3.Z-1.5I0K-.5\nM30\n")
     words = ("--from", "fanuc-b", "--to", "omniturn", "--no-point", "1", "--unit", "mm", "--x", "radius")
     told = turndesk(
@@ -80,11 +80,11 @@ def test_a_wrong_option_is_rejected(
     assert not code or told.code
 
 
-def test_a_program_that_is_not_recognized_needs_its_control(turndesk: Turndesk, part: Path) -> None:
+def test_unrecognized_program_needs_its_control_specified(turndesk: Turndesk, part: Path) -> None:
     part.write_text("G90\nX1\nM30\n")
     told = turndesk("convert", part)
     assert (told.status, told.code) == (2, "control-unknown")
 
 
-def test_a_missing_file_is_named(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_missing_file_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     assert turndesk("convert", tmp_path / "missing.nc").status == 2

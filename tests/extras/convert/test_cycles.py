@@ -11,7 +11,7 @@ from tests.extras.convert.sources import FANUC, converted, lines_after, refused
 # The tool is at X2. Z.1 before each cycle.
 
 
-def test_the_turning_cycle_and_its_modal_line() -> None:
+def test_turning_cycle_and_its_modal_line_are_converted() -> None:
     assert lines_after("G90X1.8Z-1.\nX1.6\nG00X3.") == [
         "X1.8", "G95F.01Z-1", "X2", "G00Z.1", "X1.6", "G95F.01Z-1", "X2", "G00Z.1", "X3",
     ]  # fmt: skip
@@ -21,13 +21,13 @@ def test_a_tapered_turning_cycle_starts_at_x_plus_twice_r() -> None:
     assert lines_after("G90X1.8Z-1.R-.1") == ["X1.6", "G95F.01X1.8Z-1", "X2", "G00Z.1"]
 
 
-def test_the_facing_cycle() -> None:
+def test_facing_cycle_is_converted() -> None:
     assert lines_after("G94X0Z-.05\nZ-.1") == [
         "Z-.05", "G95F.01X0", "Z.1", "G00X2", "Z-.1", "G95F.01X0", "Z.1", "G00X2",
     ]  # fmt: skip
 
 
-def test_the_single_cycles_of_system_b_have_other_codes() -> None:
+def test_system_b_single_cycles_use_other_codes() -> None:
     begin = "G20G40G90G95\nT0101\nG97S500M03\nG00X2.Z.1\nG01F.01\n"
     a = converted(f"{FANUC}G90X1.8Z-1.\nM30\n")
     b = converted(f"{begin}G77X1.8Z-1.\nM30\n", "fanuc-b")
@@ -42,7 +42,7 @@ def test_the_single_thread_cycle_has_one_g33_for_each_pass() -> None:
     ]  # fmt: skip
 
 
-def test_a_tapered_thread_grows_by_a() -> None:
+def test_tapered_thread_uses_a() -> None:
     # R -.05 is a radius: the thread starts at X1.9 - .1 and grows by .1 of the diameter.
     assert lines_after("G92X1.9Z-1.R-.05F.05") == ["X1.8997", "G33X1.8Z-1I.0001A.1K.05O"]
 
@@ -76,7 +76,7 @@ def test_g71_cuts_a_pocket_from_its_edge() -> None:
     ]  # fmt: skip
 
 
-def test_g71_of_one_line_has_the_depth_in_d() -> None:
+def test_one_line_g71_has_its_depth_in_d() -> None:
     one = "G71P10Q20U0W0D.2F.02\nN10G00X1.6\nG01Z-.5\nN20X2."
     assert lines_after(one, "haas")[:4] == ["X1.6", "G95F.02Z-.5", "X2", "G00Z.1"][:4]
 
@@ -99,7 +99,7 @@ def test_g73_repeats_the_contour_from_its_relief() -> None:
     ]  # fmt: skip
 
 
-def test_g76_cuts_by_the_square_root_of_the_pass() -> None:
+def test_g76_pass_depth_follows_the_square_root_of_the_pass_number() -> None:
     # Depth .05 per side to X1.9; first pass .03, then .03·√2, then the rest and one finishing pass.
     made = lines_after("G76P020000Q0R0\nG76X1.9Z-1.P500Q300F.05")
     depths = (0.03, 0.03 * sqrt(2), 0.05, 0.05)
@@ -124,7 +124,7 @@ def test_g74_pecks_and_g75_grooves() -> None:
     ]  # fmt: skip
 
 
-def test_drilling_and_tapping() -> None:
+def test_drilling_and_tapping_are_converted() -> None:
     assert lines_after("G00X0\nG83Z-.5R-.05Q2500F.004\nG80\nG00X2.") == [
         "X0", "Z.05", "G95F.004Z-.2", "G00Z.05", "Z-.18", "G95F.004Z-.45", "G00Z.05", "Z-.43",
         "G95F.004Z-.5", "G00Z.1", "X2",
@@ -146,7 +146,7 @@ def test_m99_of_the_main_program_ends_with_a_warning() -> None:
     assert done.lines[-1].text == "M30"
 
 
-def test_nose_compensation_changes_its_side() -> None:
+def test_nose_compensation_side_is_swapped() -> None:
     made = lines_after("G42G00X1.Z.1\nG01Z-1.\nX1.5\nG40G00X2.Z.1")
     assert made == ["G41", "X1D1", "G95F.01Z-1", "X1.5", "G00X2Z.1", "G40"]
 
@@ -166,5 +166,5 @@ def test_nose_compensation_changes_its_side() -> None:
         ("WHILE[1EQ1]DO1\n#1=1\nEND1", (2, 1, "endless")),
     ],
 )
-def test_a_cycle_that_cannot_be_converted_is_named(body: str, found: tuple[int, int, str]) -> None:
+def test_unconvertible_cycle_is_reported(body: str, found: tuple[int, int, str]) -> None:
     assert refused(body) == found

@@ -11,7 +11,7 @@ from core.language.diagnostics import Severity
 from tests.extras.convert.sources import converted, lines_after, refused
 
 
-def test_a_small_fanuc_program_line_by_line() -> None:
+def test_small_fanuc_program_is_converted_line_by_line() -> None:
     done = converted(
         "%\nO1000(PIN)\nG20G40G99\nG28U0W0\nN10T0101\nG50S2500\nG96S400M03\nG00X2.1Z.1M08\n"
         "G01Z0F.01\nX-.06F.006\nG00Z.1M09\nG28U0W0\nM30\n%\n"
@@ -55,11 +55,11 @@ def test_a_small_fanuc_program_line_by_line() -> None:
         ("G03X2.5Z-.15I0K-.25", "G95F.01G02X2.5Z-.15I0K-.25"),
     ],
 )
-def test_a_line_of_fanuc(source: str, made: str) -> None:
+def test_fanuc_line_is_converted(source: str, made: str) -> None:
     assert lines_after(source) == [made]
 
 
-def test_arcs_of_a_front_tool_post_keep_their_direction() -> None:
+def test_arcs_of_a_front_tool_post_retain_their_direction() -> None:
     assert lines_after("G02X2.5Z-.15I0K-.25", front=True) == ["G95F.01G02X2.5Z-.15I0K-.25"]
 
 
@@ -67,13 +67,13 @@ def test_linuxcnc_radius_mode_is_doubled() -> None:
     assert lines_after("G8\nG1X.5\nG7\nG1Z0", "linuxcnc") == ["G95F.01X1", "Z0"]
 
 
-def test_a_chamfer_and_a_radius_between_straight_moves() -> None:
+def test_chamfer_and_radius_are_inserted_between_straight_moves() -> None:
     # From X2. Z.1 to Z-1., then to X3.: set back .05 on both lines, then an arc of .1 about (X2.8, Z-1.1)
     made = lines_after("G01Z-1.,C.05\nX3.,R.1\nZ-2.")
     assert made == ["G95F.01Z-.95", "X2.1Z-1", "X2.8", "G02X3Z-1.1I0K-.1", "Z-2"]
 
 
-def test_metric_lengths_without_a_point_are_asked() -> None:
+def test_metric_lengths_without_a_point_need_an_option() -> None:
     text = "G21G98\nT0101\nG97S500M03\nG00X50000Z2000\nG01Z-1500F100\nM30\n"
     (error,) = converted(text).errors
     assert (error.line, error.column, error.code) == (4, 4, "no-point")
@@ -81,14 +81,14 @@ def test_metric_lengths_without_a_point_are_asked() -> None:
     assert least[3:5] == ["G00X50Z2", "G94F100Z-1.5"]
 
 
-def test_a_fine_coordinate_is_rounded_to_the_resolution_and_counted() -> None:
+def test_fine_coordinates_are_rounded_and_counted() -> None:
     done = converted("G20G99\nT0101\nG97S500M03\nG00X1.00004Z.1\nG01Z0F.01\nM30\n")
     assert not done.errors
     assert done.proof.rounded_move_count == 2  # the start of the second move has the same X
     assert done.proof.max_rounding_mm == pytest.approx(0.00002 * 25.4)
 
 
-def test_threads_in_single_passes_become_g33_with_o() -> None:
+def test_single_pass_threads_become_g33_with_o() -> None:
     made = lines_after("G00X1.2Z.2\nX.9\nG32Z-1.F.05\nG00X1.2\nZ.2\nX.88\nG32Z-1.\nG00X1.2\nZ.2")
     assert made == ["X1.2Z.2", "X1.1997", "G33X.9Z-1I.0001K.05O", "G33X.88Z-1I.0001K.05O"]
 
@@ -124,7 +124,7 @@ def test_the_first_moves_after_a_tool_are_joined_with_a_warning() -> None:
         ("G01Z0F12", (1, 6, "feed-no-point")),
     ],
 )
-def test_what_cannot_be_converted_is_named_with_its_place(source: str, found: tuple[int, int, str]) -> None:
+def test_unconvertible_word_is_reported_with_its_position(source: str, found: tuple[int, int, str]) -> None:
     assert refused(source) == found
 
 
@@ -146,7 +146,7 @@ def test_an_error_of_the_target_is_reported_at_the_source_line() -> None:
     assert [(each.line, each.code) for each in done.errors] == [(8, "target")]
 
 
-def test_a_difference_is_found() -> None:
+def test_proof_detects_a_difference() -> None:
     """The proof must not depend on the writer: with another step, it fails."""
     text = "G90G94F300G70G72\nG00X1Z.1\nM30\n"
     steps = [PathStep(StepKind.RAPID, 7, 12.7, 2.54), PathStep(StepKind.END, 8, number=30)]

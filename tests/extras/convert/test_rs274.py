@@ -136,7 +136,7 @@ def test_the_reader_moves_as_linuxcnc_does(text: str, tmp_path: Path) -> None:
     assert len(wanted) > 6
 
 
-def test_a_difference_would_be_found(tmp_path: Path) -> None:
+def test_comparison_detects_a_difference(tmp_path: Path) -> None:
     wanted = canon(CONTOUR, tmp_path)
     assert abs(ours(CONTOUR.replace("R6", "R6.01"))[2].cx - wanted[2].cx) > NEAR
     assert ours(CONTOUR.replace("G2 X62", "G3 X62"))[2].turn != wanted[2].turn

@@ -54,13 +54,13 @@ def words(space: Any) -> None:
         (tilted, "three-dimensional", ""),
     ],
 )
-def test_no_contour(tmp_path: Path, draw: Draw, code: str, value: str) -> None:
+def test_drawing_without_a_contour_is_rejected(tmp_path: Path, draw: Draw, code: str, value: str) -> None:
     error = refused(dxf(tmp_path / "x.dxf", draw))
     assert error.code == code
     assert value in str(error)
 
 
-def test_a_contour_that_crosses_itself(tmp_path: Path) -> None:
+def test_self_crossing_contour_is_rejected(tmp_path: Path) -> None:
     """The second line runs back through the first wall, 10 behind the face at a diameter of 10."""
     path = dxf(
         tmp_path / "x.dxf", chain((0, 4), (-10, 4), (-10, 8), (-14, 8), (-14, 5), (-6, 5), (-6, 9), (-20, 9))
@@ -69,32 +69,32 @@ def test_a_contour_that_crosses_itself(tmp_path: Path) -> None:
     assert (error.code, str(error).count("10.000 mm")) == ("crosses-itself", 2)
 
 
-def test_a_contour_that_crosses_the_axis(tmp_path: Path) -> None:
+def test_contour_crossing_the_axis_is_rejected(tmp_path: Path) -> None:
     """Down through the axis 10 behind the face, and up again."""
     path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-12, -4), (-16, 4), (-20, 4)))
     error = refused(path, axis="Y 0")
     assert (error.code, str(error).count("10.000 mm")) == ("crosses-axis", 1)
 
 
-def test_no_bore_where_there_is_none(tmp_path: Path) -> None:
+def test_inside_of_a_contour_without_a_bore_is_rejected(tmp_path: Path) -> None:
     path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 0)))
     assert refused(path, side=ContourSide.INSIDE).code == "no-bore"
 
 
-def test_no_such_axis(tmp_path: Path) -> None:
+def test_invalid_axis_is_rejected(tmp_path: Path) -> None:
     path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4, 1), (-8, 0)))
     axis, line, arc = (refused(path, axis=name) for name in ("Z 0", "LINE 9", "LINE 3"))
     assert [each.code for each in (axis, line, arc)] == ["no-axis", "no-line", "axis-is-arc"]
     assert [value in str(each) for each, value in ((axis, "Y 0"), (line, "9"), (arc, "3"))] == [True] * 3
 
 
-def test_a_face_alone_is_nothing_to_turn(tmp_path: Path) -> None:
+def test_face_alone_has_nothing_to_turn(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4))), axis="Y 0")
     with raises_code(DrawingError, "nothing-to-turn"):
         make_turning_contour(chosen, ToolReach())
 
 
-def test_a_tool_that_leans_into_a_shoulder(tmp_path: Path) -> None:
+def test_tool_leaning_into_a_shoulder_is_rejected(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 6), (-12, 6), (-12, 0))))
     with raises_code(DrawingError, "too-steep", "72", "90"):
         make_turning_contour(chosen, ToolReach(math.radians(70), math.radians(72.5)))
@@ -103,7 +103,7 @@ def test_a_tool_that_leans_into_a_shoulder(tmp_path: Path) -> None:
 # --- files
 
 
-def test_empty_huge_missing_and_foreign_files(tmp_path: Path) -> None:
+def test_empty_huge_missing_and_foreign_files_are_rejected(tmp_path: Path) -> None:
     empty, huge = tmp_path / "empty.dxf", tmp_path / "huge.dxf"
     empty.touch()
     with huge.open("wb") as file:
@@ -120,7 +120,7 @@ def test_empty_huge_missing_and_foreign_files(tmp_path: Path) -> None:
     assert refused(dwg).code == "dwg"
 
 
-def test_files_that_end_anywhere_or_are_spoilt_end_in_one_sentence(tmp_path: Path) -> None:
+def test_damaged_files_load_or_raise_a_drawing_error(tmp_path: Path) -> None:
     """Cut off, or with a byte that is another one: a drawing or a sentence, never anything else."""
     whole = dxf(tmp_path / "whole.dxf", chain((0, 0), (0, 4), (-8, 4, 0.3), (-8, 0))).read_bytes()
     bad = tmp_path / "bad.dxf"
@@ -133,7 +133,7 @@ def test_files_that_end_anywhere_or_are_spoilt_end_in_one_sentence(tmp_path: Pat
                 assert "bad.dxf" in str(error)  # noqa: PT017 - or it is read
 
 
-def test_a_file_that_is_cut_off_in_its_lines_is_not_taken_for_the_whole(tmp_path: Path) -> None:
+def test_file_truncated_in_its_lines_is_rejected_as_damaged(tmp_path: Path) -> None:
     whole = dxf(tmp_path / "whole.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 0))).read_text()
     bad = tmp_path / "bad.dxf"
     bad.write_text(whole[: whole.index("LWPOLYLINE") + 120])
@@ -143,7 +143,7 @@ def test_a_file_that_is_cut_off_in_its_lines_is_not_taken_for_the_whole(tmp_path
 # --- blocks
 
 
-def test_blocks_are_taken_apart(tmp_path: Path) -> None:
+def test_blocks_are_exploded(tmp_path: Path) -> None:
     def draw(space: Any) -> None:
         block = space.doc.blocks.new("PART")
         chain((0, 0), (0, 4), (-8, 4), (-8, 0))(block)
@@ -154,7 +154,7 @@ def test_blocks_are_taken_apart(tmp_path: Path) -> None:
     assert chosen.elements[0].end[0] == 8.0
 
 
-def test_blocks_in_themselves_are_refused(tmp_path: Path) -> None:
+def test_self_referencing_blocks_are_rejected(tmp_path: Path) -> None:
     def draw(space: Any) -> None:
         block = space.doc.blocks.new("PART")
         block.add_blockref("PART", (1, 0))
@@ -163,7 +163,7 @@ def test_blocks_in_themselves_are_refused(tmp_path: Path) -> None:
     refused(dxf(tmp_path / "b.dxf", draw))
 
 
-def test_what_is_hidden_or_switched_off_is_not_there(tmp_path: Path) -> None:
+def test_hidden_or_switched_off_entities_are_ignored(tmp_path: Path) -> None:
     def draw(space: Any) -> None:
         space.doc.layers.add("OFF").off()
         space.doc.layers.add("ICE").freeze()
@@ -174,7 +174,7 @@ def test_what_is_hidden_or_switched_off_is_not_there(tmp_path: Path) -> None:
     assert read_drawing(dxf(tmp_path / "b.dxf", draw)).layers == ("0",)
 
 
-def test_mirrored_arcs_and_polylines(tmp_path: Path) -> None:
+def test_mirrored_arcs_and_polylines_are_read(tmp_path: Path) -> None:
     """As CAD leaves them when a half is mirrored: the plane turned over, x from right to left."""
 
     def draw(space: Any) -> None:
@@ -201,7 +201,7 @@ def test_mirrored_arcs_and_polylines(tmp_path: Path) -> None:
         (MemoryError(), "out-of-memory"),
     ],
 )
-def test_a_disk_that_fails_is_not_called_damage(
+def test_disk_error_is_not_reported_as_a_damaged_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, reads: str, error: Exception, code: str
 ) -> None:
     def fails(*_args: object, **_named: object) -> None:
@@ -214,7 +214,7 @@ def test_a_disk_that_fails_is_not_called_damage(
         read_drawing(path)
 
 
-def test_an_entity_of_an_unknown_kind_is_left_out_and_told(tmp_path: Path) -> None:
+def test_entity_of_an_unknown_kind_is_omitted_and_counted(tmp_path: Path) -> None:
     """Programs write kinds of their own; what has not even a layer is no line of a contour."""
     path = tmp_path / "own.dxf"
     lines = "0 SECTION 2 ENTITIES 0 OWNKIND 8 PART 0 LINE 8 PART 10 0 20 0 11 0 21 5 0 ENDSEC 0 EOF"
@@ -234,7 +234,7 @@ def test_an_entity_of_an_unknown_kind_is_left_out_and_told(tmp_path: Path) -> No
         '<polyline points="0,0 inf,5"/>',
     ],
 )
-def test_a_dimension_of_svg_that_is_not_a_number(tmp_path: Path, element: str) -> None:
+def test_svg_dimension_that_is_not_a_number_is_rejected(tmp_path: Path, element: str) -> None:
     """svgelements would leave the element out, and a sound one beside it would be the whole drawing."""
     path = tmp_path / "x.svg"
     path.write_text(

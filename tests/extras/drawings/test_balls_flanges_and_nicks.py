@@ -16,7 +16,7 @@ from tests.extras.drawings.hand import BLADE, RIGHT, SLIM, chain, dxf, profile_o
 NEAR = 0.01  # mm of a radius
 
 
-def test_a_ball_is_followed_to_where_it_falls_more_steeply_than_the_tool(tmp_path: Path) -> None:
+def test_ball_is_followed_down_to_the_slope_of_the_tool(tmp_path: Path) -> None:
     """A ball of 5 on a shaft of 12: on it down to the slope of the tool's edge, then straight along that."""
 
     def draw(space: Any) -> None:
@@ -48,14 +48,14 @@ def test_a_ball_is_followed_to_where_it_falls_more_steeply_than_the_tool(tmp_pat
         (((0, 20), (0, 24), (-10, 24), (-10, 26), (-46, 26), (-46, 20), (0, 20)), "LOWEST LINE"),
     ],
 )
-def test_the_lowest_line_is_the_axis_only_where_it_closes_the_contour(
+def test_lowest_line_is_the_axis_only_if_it_closes_the_contour(
     tmp_path: Path, points: tuple[tuple[float, float], ...], first: str
 ) -> None:
     """A cylinder at the end of a side view is its lowest line, too, and no axis."""
     assert find_axes(read_drawing(dxf(tmp_path / "side.dxf", chain(*points))))[0].name == first
 
 
-def test_a_groove_with_slanted_walls_behind_a_flange(tmp_path: Path) -> None:
+def test_groove_with_slanted_walls_after_a_flange_is_recognized(tmp_path: Path) -> None:
     """Flange of 24, cone to 16, groove of 10 from -15 to -22 with walls that lean by 1 in 3 and 2 in 3."""
     path = dxf(
         tmp_path / "flange.dxf",
@@ -77,7 +77,7 @@ def test_a_groove_with_slanted_walls_behind_a_flange(tmp_path: Path) -> None:
     )
 
 
-def test_a_fillet_smaller_than_the_nose_is_turned_with_one_that_the_nose_fits_into(tmp_path: Path) -> None:
+def test_fillet_smaller_than_the_nose_is_enlarged_to_fit_it(tmp_path: Path) -> None:
     """Fillet of .2 at a shoulder, nose of .4: G41 goes on, and the corner holds what a nose of .42 leaves."""
     quarter = math.tan(math.radians(90.0) / 4.0)
     points = ((0, 0), (0, 5), (-10, 5, -quarter), (-10.2, 5.2), (-10.2, 8), (-20, 8), (-20, 0))
@@ -88,7 +88,7 @@ def test_a_fillet_smaller_than_the_nose_is_turned_with_one_that_the_nose_fits_in
     assert found == pytest.approx([5.0, 5.0, left, 8.0, 8.0], abs=NEAR)
 
 
-def test_a_contour_that_ends_falling_leaves_the_nose_a_way_out(tmp_path: Path) -> None:
+def test_falling_contour_end_leaves_room_for_the_nose_to_exit(tmp_path: Path) -> None:
     """45 degrees down to the end: compensation lets go of both lines only behind the corner between them."""
     points = ((0, 0), (0, 8), (-10, 8), (-13, 5), (-13, 0))
     made = program(profile_of(dxf(tmp_path / "end.dxf", chain(*points))), {1: SLIM})
@@ -97,7 +97,7 @@ def test_a_contour_that_ends_falling_leaves_the_nose_a_way_out(tmp_path: Path) -
     )
 
 
-def test_what_an_editor_notes_of_its_window_is_nothing_left_out(tmp_path: Path) -> None:
+def test_svg_editor_metadata_is_not_counted_as_omitted(tmp_path: Path) -> None:
     path = tmp_path / "notes.svg"
     head = (
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:e="urn:e" width="9mm" height="9mm" viewBox="0 0 9 9">'

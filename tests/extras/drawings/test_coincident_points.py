@@ -48,7 +48,7 @@ def spin(u: float) -> Point:
 
 @pytest.mark.parametrize("at", [still, shiver])
 @pytest.mark.parametrize("way", [nowhere, spin])
-def test_a_curve_that_goes_nowhere_ends_at_once(at: Any, way: Any) -> None:
+def test_zero_length_curve_is_fitted_without_subdivision(at: Any, way: Any) -> None:
     """Halving to the deepest level would evaluate 2**14 pieces."""
     curve = Counted(at, way)
     found = list(fit_arcs(curve, NEAR))
@@ -56,7 +56,7 @@ def test_a_curve_that_goes_nowhere_ends_at_once(at: Any, way: Any) -> None:
     assert curve.count < 30
 
 
-def test_a_curve_that_returns_to_its_start_is_not_lost() -> None:
+def test_closed_curve_is_fitted_at_full_length() -> None:
     """A circle of radius 5 begins and ends at the same point: 2 pi 5 = 31.416 long."""
     turn = 2.0 * math.pi
     curve = Counted(
@@ -106,7 +106,7 @@ def test_a_spline_with_coincident_points_is_part_of_the_contour(
     assert count[0] < 5_000
 
 
-def test_the_case_of_a_spline_without_length(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sample_drawing_with_a_zero_length_spline_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     path = CASES / "zero-length-spline.dxf"
     if not path.is_file():
         pytest.skip(f"no {path}")

@@ -65,7 +65,7 @@ def desk(tmp_path: Path) -> Any:
     made.shapes.close()
 
 
-def test_unit_and_layer_are_told_in_spanish_and_names_of_layers_are_not(desk: Desk, tmp_path: Path) -> None:
+def test_unit_and_layer_are_translated_to_spanish_but_layer_names_are_not(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
     unit, layer = (next(each for each in form.fields if each.word == word) for word in ("DUNIT", "LAYER"))
@@ -81,7 +81,7 @@ def test_unit_and_layer_are_told_in_spanish_and_names_of_layers_are_not(desk: De
         use_language("en")
 
 
-def test_a_drawing_becomes_pieces_that_are_opened_again(desk: Desk, tmp_path: Path) -> None:
+def test_drawing_becomes_shapes_that_can_be_reopened(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
     assert not form.errors
@@ -93,7 +93,7 @@ def test_a_drawing_becomes_pieces_that_are_opened_again(desk: Desk, tmp_path: Pa
     assert "X12\n" in desk.shapes.text
 
 
-def test_contour_and_axis_by_pointer(desk: Desk, tmp_path: Path) -> None:
+def test_contour_and_axis_are_picked_with_the_pointer(desk: Desk, tmp_path: Path) -> None:
     def draw(space: Any) -> None:
         chain(*STEP)(space)
         space.add_lwpolyline([(0, 12), (-6, 12), (-6, 15), (0, 15)], close=True)
@@ -118,7 +118,7 @@ def test_contour_and_axis_by_pointer(desk: Desk, tmp_path: Path) -> None:
     )  # 6 above Y 0
 
 
-def test_by_keys(desk: Desk, tmp_path: Path) -> None:
+def test_contour_and_side_are_picked_with_keys(desk: Desk, tmp_path: Path) -> None:
     """Down to the side of the face, Right: the face is at the left."""
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
@@ -130,13 +130,13 @@ def test_by_keys(desk: Desk, tmp_path: Path) -> None:
     assert not any("G75" in line for line in form.lines)
 
 
-def test_behind_a_program_it_writes_no_second_head(desk: Desk, tmp_path: Path) -> None:
+def test_second_program_head_is_not_written_after_a_program(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open("G90G94F7620G71G72(HEAD METRIC UNIT DIAMETER WORDS)\nM30\n")
     assert form.lines[0].startswith("T1(FACE")
 
 
-def test_what_is_wrong_is_said_at_its_field(desk: Desk, tmp_path: Path) -> None:
+def test_error_is_shown_at_its_field(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP), unit=0)
     (tmp_path / "b.dxf").write_text("no drawing")
     form = desk.open()
@@ -154,7 +154,7 @@ def test_what_is_wrong_is_said_at_its_field(desk: Desk, tmp_path: Path) -> None:
     assert desk.shapes.form is form  # nothing is written
 
 
-def test_a_drawing_whose_program_is_wrong_is_not_written(desk: Desk, tmp_path: Path) -> None:
+def test_drawing_that_gives_an_invalid_program_is_not_written(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP))
     form = desk.open()
     form.select_word("FROM")
@@ -163,7 +163,7 @@ def test_a_drawing_whose_program_is_wrong_is_not_written(desk: Desk, tmp_path: P
     assert not form.lines
 
 
-def test_without_a_drawing_it_says_where_one_goes(desk: Desk) -> None:
+def test_form_without_a_drawing_says_where_to_put_one(desk: Desk) -> None:
     assert text("shapes.no-drawing") in desk.open().current_error
 
 
@@ -209,7 +209,7 @@ def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Read
 
 
 @pytest.mark.parametrize("how", ["F6", "Esc"])
-def test_reading_is_canceled_and_begun_again(desk: Desk, reading: Reading, how: str) -> None:
+def test_reading_can_be_canceled_and_restarted(desk: Desk, reading: Reading, how: str) -> None:
     shapes = desk.shapes
     if how == "Esc":
         assert shapes.handle_escape()
@@ -230,7 +230,7 @@ def test_reading_is_canceled_and_begun_again(desk: Desk, reading: Reading, how: 
     assert shapes.function_keys().get(6) is None
 
 
-def test_a_page_that_closes_ends_the_reading(desk: Desk, reading: Reading) -> None:
+def test_closing_the_page_cancels_the_reading(desk: Desk, reading: Reading) -> None:
     desk.shapes.close()
     assert reading.canceled.wait(60.0)
 

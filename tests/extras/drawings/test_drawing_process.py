@@ -42,14 +42,14 @@ def drawing(folder: Path, what: str) -> Path:
 # --- what comes back
 
 
-def test_a_drawing_comes_back_as_it_is(tmp_path: Path) -> None:
+def test_drawing_read_in_a_process_is_identical(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     here = read_drawing(path)
     assert any(isinstance(each.element, Arc) for each in here.elements)
     assert read_in_process(path) == here
 
 
-def test_every_kind_of_line_is_the_same_on_both_sides() -> None:
+def test_every_element_kind_survives_encoding() -> None:
     drawn = (
         DrawnElement(Line((0.1, -1e7), (1.0 / 3.0, 2.0)), "PART"),
         DrawnElement(
@@ -61,7 +61,7 @@ def test_every_kind_of_line_is_the_same_on_both_sides() -> None:
     assert decode_drawing(encode_drawing(one)) == one
 
 
-def test_an_error_comes_back_with_its_code(tmp_path: Path) -> None:
+def test_error_is_passed_on_with_its_code(tmp_path: Path) -> None:
     with raises_code(DrawingError, "damaged", "part.dxf"):
         read_in_process(drawing(tmp_path, "no drawing"))
     with raises_code(DrawingError, "unreadable", "none.svg"):
@@ -70,7 +70,7 @@ def test_an_error_comes_back_with_its_code(tmp_path: Path) -> None:
         decode_drawing(encode_error(DrawingError("why", "some-code")))
 
 
-def test_the_current_folder_lends_no_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_current_folder_is_not_on_the_import_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A folder of drawings may hold a file that is named as a module of Python's."""
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     (tmp_path / "struct.py").write_text("raise SystemExit(0)\n")
@@ -82,7 +82,7 @@ def test_the_current_folder_lends_no_code(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.usefixtures("hostile")
-def test_a_drawing_that_takes_too_long_is_given_up(tmp_path: Path) -> None:
+def test_slow_drawing_process_times_out(tmp_path: Path) -> None:
     with raises_code(DrawingError, "too-slow", "part.dxf"):
         read_in_process(drawing(tmp_path, "hang"), limits=ReadingLimits(timeout_s=0.0))
 
@@ -93,19 +93,21 @@ def test_a_drawing_that_takes_too_long_is_given_up(tmp_path: Path) -> None:
     ("what", "code"),
     [("spin", "too-slow"), ("grow", "out-of-memory"), ("die", "out-of-memory"), ("half", "out-of-memory")],
 )
-def test_a_process_that_takes_too_much_is_one_error(what: str, code: str, tmp_path: Path) -> None:
+def test_excessive_resource_use_raises_one_error(what: str, code: str, tmp_path: Path) -> None:
     with raises_code(DrawingError, code, "part.dxf"):
         read_in_process(drawing(tmp_path, what), limits=ReadingLimits(processor_time_s=1))
 
 
 @linux
-def test_memory_is_limited_for_the_libraries_too(tmp_path: Path) -> None:
+def test_memory_limit_covers_imported_libraries(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     with raises_code(DrawingError, "out-of-memory", "part.dxf"):
         read_in_process(path, limits=ReadingLimits(memory_bytes=24 * 1024**2))
 
 
-def test_a_library_without_memory_is_the_same_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_memory_error_in_a_library_raises_out_of_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def hungry(*_words: object) -> Drawing:
         raise MemoryError
 
@@ -114,7 +116,7 @@ def test_a_library_without_memory_is_the_same_error(tmp_path: Path, monkeypatch:
         decode_drawing(drawing_child.read_and_encode(drawing(tmp_path, "0\n")))
 
 
-def test_where_no_process_can_be_started_it_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_process_start_failure_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_words: object, **_more: object) -> None:
         raise OSError(11, "Resource temporarily unavailable")
 
@@ -132,9 +134,7 @@ class CanceledError(Exception):
 
 @linux
 @pytest.mark.usefixtures("hostile")
-def test_whoever_waits_may_cancel_and_the_process_ends(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_caller_can_cancel_and_the_process_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     started, asked, real = list[subprocess.Popen[bytes]](), list[float](), subprocess.Popen
 
     def start(*words: object, **more: object) -> subprocess.Popen[bytes]:
@@ -157,7 +157,7 @@ def test_whoever_waits_may_cancel_and_the_process_ends(
 
 
 @pytest.mark.usefixtures("hostile")
-def test_what_a_library_prints_reaches_nobody(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_library_output_is_suppressed(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     with raises_code(DrawingError, "out-of-memory"):
         read_in_process(drawing(tmp_path, "print"))
     assert capfd.readouterr() == ("", "")
@@ -172,7 +172,7 @@ def test_what_a_library_prints_reaches_nobody(tmp_path: Path, capfd: pytest.Capt
         ("d.svg", "<svg"),
     ],
 )
-def test_the_command_has_one_line_without_a_librarys_words(name: str, text: str, tmp_path: Path) -> None:
+def test_command_error_is_one_line_without_library_text(name: str, text: str, tmp_path: Path) -> None:
     (tmp_path / name).write_text(text)
     start = "import sys; from app.cli.main import run_console; sys.exit(run_console())"
     told = subprocess.run(

@@ -80,7 +80,7 @@ def nothing_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
         (nested(5000, 2, ""), insert("B0")),  # deeper than Python's calls
     ],
 )
-def test_blocks_are_counted_before_they_are_inserted(blocks: str, entities: str, tmp_path: Path) -> None:
+def test_dxf_blocks_are_counted_before_insertion(blocks: str, entities: str, tmp_path: Path) -> None:
     assert str(MAX_ELEMENTS) in refused(dxf(tmp_path / "x.dxf", blocks, entities), "too-many-lines")
 
 
@@ -88,20 +88,20 @@ def test_blocks_are_counted_before_they_are_inserted(blocks: str, entities: str,
 @pytest.mark.parametrize(
     "blocks", [block("A", insert("A")), block("A", insert("B")) + block("B", insert("A") + LINE)]
 )
-def test_a_block_in_itself_is_refused(blocks: str, tmp_path: Path) -> None:
+def test_self_referencing_block_is_rejected(blocks: str, tmp_path: Path) -> None:
     refused(dxf(tmp_path / "x.dxf", blocks, insert("A")), "nested-blocks")
 
 
 @pytest.mark.usefixtures("nothing_is_made")
 @pytest.mark.parametrize("href", ["href", "xlink:href"])
 @pytest.mark.parametrize(("depth", "times"), [(12, 4), (2, 300), (20, 2)])
-def test_uses_are_counted_before_they_are_parsed(depth: int, times: int, href: str, tmp_path: Path) -> None:
+def test_svg_uses_are_counted_before_parsing(depth: int, times: int, href: str, tmp_path: Path) -> None:
     body = uses(depth, times, href) + f'<use {href}="#g{depth}"/>'
     assert str(MAX_ELEMENTS) in refused(svg(tmp_path / "x.svg", body), "too-many-lines")
 
 
 @pytest.mark.usefixtures("nothing_is_made")
-def test_a_group_in_itself_is_refused(tmp_path: Path) -> None:
+def test_self_referencing_group_is_rejected(tmp_path: Path) -> None:
     body = '<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g>'
     refused(svg(tmp_path / "x.svg", body), "nested-blocks")
 
@@ -113,7 +113,7 @@ def test_ordinary_blocks_and_uses_are_read(tmp_path: Path) -> None:
     # g0 draws 1 line, g1 3, g2 9, and the last use 9 again.
 
 
-def test_the_number_is_exact(tmp_path: Path) -> None:
+def test_element_limit_is_exact(tmp_path: Path) -> None:
     """1 block of 1 + 499 entities, 100 times: 50 000 are read, and one more is refused."""
 
     def content(entities: int) -> Any:
@@ -134,7 +134,7 @@ def test_the_number_is_exact(tmp_path: Path) -> None:
         ("x.svg", "<svg xmlns='http://www.w3.org/2000/svg'><path d='Q'/></svg>", ["list", "index"]),
     ],
 )
-def test_no_words_of_a_library_reach_the_user(
+def test_library_messages_do_not_reach_the_user(
     name: str, text: str, foreign: list[str], tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     path = tmp_path / name

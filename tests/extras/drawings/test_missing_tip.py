@@ -19,7 +19,9 @@ NO_TIP = replace(RIGHT, tip=0)
 
 @pytest.mark.parametrize("dialect", [Dialect.OMNITURN, Dialect.SINUMERIK])
 @pytest.mark.parametrize("tool", [NO_TIP, ToolShape(ToolKind.TURNING, insert="DNMG150404")])
-def test_a_nose_without_a_tip_is_refused(tool: ToolShape, dialect: Dialect, tmp_path: Path) -> None:
+def test_nose_radius_without_tip_quadrant_is_rejected(
+    tool: ToolShape, dialect: Dialect, tmp_path: Path
+) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", SHAFT))
     with pytest.raises(DrawingError) as told:
         program(chosen, {1: tool}, dialect=dialect)
@@ -28,5 +30,5 @@ def test_a_nose_without_a_tip_is_refused(tool: ToolShape, dialect: Dialect, tmp_
 
 
 @pytest.mark.parametrize("tool", [RIGHT, replace(RIGHT, tip=9), ToolShape(ToolKind.TURNING)])
-def test_a_tip_or_no_nose_is_accepted(tool: ToolShape, tmp_path: Path) -> None:
+def test_tip_quadrant_or_zero_nose_radius_is_accepted(tool: ToolShape, tmp_path: Path) -> None:
     assert text_of(program(profile_of(dxf(tmp_path / "x.dxf", SHAFT)), {1: tool}))

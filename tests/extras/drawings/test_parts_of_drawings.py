@@ -49,7 +49,7 @@ SEEN = (
 
 
 @pytest.mark.parametrize("metric", [True, False])
-def test_a_shaft_of_lines_and_arcs(tmp_path: Path, metric: bool) -> None:
+def test_shaft_of_lines_and_arcs_matches_the_drawing(tmp_path: Path, metric: bool) -> None:
     """Faced, roughed, finished beside the nose, grooved: to the figures of the drawing."""
     chosen = profile_of(dxf(tmp_path / "shaft.dxf", chain(*SHAFT)))
     made = program(chosen, metric=metric, STOCK=1.0 if metric else 0.04)
@@ -57,7 +57,7 @@ def test_a_shaft_of_lines_and_arcs(tmp_path: Path, metric: bool) -> None:
     assert found == pytest.approx([shaft(z) for z in SEEN], abs=NEAR)
 
 
-def test_the_program_is_that_of_a_good_programmer(tmp_path: Path) -> None:
+def test_generated_program_has_comments_drawing_values_and_nose_offset(tmp_path: Path) -> None:
     """Each piece by its comment, figures as the drawing has them, the nose to the left of the way."""
     made = program(profile_of(dxf(tmp_path / "shaft.dxf", chain(*SHAFT))), STOCK=1.0)
     lines = text_of(made).splitlines()
@@ -74,7 +74,7 @@ def test_the_program_is_that_of_a_good_programmer(tmp_path: Path) -> None:
     assert not made.uncut_ranges
 
 
-def test_a_ball_at_the_end_of_a_half_section_in_inches(tmp_path: Path) -> None:
+def test_ball_end_of_an_inch_half_section_matches_the_drawing(tmp_path: Path) -> None:
     """r = sqrt(R^2 - (z + R)^2) from the axis to a shaft; drawn above its axis, which is its lowest line."""
     up = [(5.0, 2.0), (3.0, 2.0), (3.0, 2.25), (4.75, 2.25, -QUARTER), (5.0, 2.0)]
     chosen = profile_of(dxf(tmp_path / "ball.dxf", chain(*up), unit=1))
@@ -85,7 +85,7 @@ def test_a_ball_at_the_end_of_a_half_section_in_inches(tmp_path: Path) -> None:
     assert radii(made, "bar:.5625:3", at, {1: SLIM}) == pytest.approx(expected, abs=NEAR)
 
 
-def test_an_ellipse_becomes_arcs(tmp_path: Path) -> None:
+def test_ellipse_is_converted_to_arcs(tmp_path: Path) -> None:
     """A nose of half axes 20 and 8: r = 8 sqrt(1 - ((z + 20) / 20)^2)."""
 
     def draw(space: object) -> None:
@@ -98,7 +98,7 @@ def test_an_ellipse_becomes_arcs(tmp_path: Path) -> None:
     assert radii(made, "bar:18mm:80mm", at, {1: SLIM}) == pytest.approx(expected, abs=NEAR)
 
 
-def test_a_bore_with_a_step(tmp_path: Path) -> None:
+def test_stepped_bore_matches_the_drawing(tmp_path: Path) -> None:
     """A section drawn closed: the bore of 24 with a chamfer of 1, and of 16 behind it."""
     ring = [(0, 13), (0, 20), (-40, 20), (-40, 8), (-15, 8), (-15, 12), (-1, 12), (0, 13)]
     path = dxf(tmp_path / "ring.dxf", chain(*ring))
@@ -109,7 +109,7 @@ def test_a_bore_with_a_step(tmp_path: Path) -> None:
     assert "G42" in made.lines
 
 
-def test_face_at_the_left_and_zero_at_the_origin(tmp_path: Path) -> None:
+def test_part_with_its_face_at_the_left_matches_the_drawing(tmp_path: Path) -> None:
     """Drawn with its face to the left, 5 mm from the origin: Z of the face is -5, or shifted."""
     path = dxf(tmp_path / "left.dxf", chain((5, 0), (5, 4), (15, 4), (15, 6), (25, 6), (25, 0)))
     chosen = profile_of(path, front=FaceEnd.LEFT, zero=ZeroPosition.ORIGIN)
@@ -119,13 +119,13 @@ def test_face_at_the_left_and_zero_at_the_origin(tmp_path: Path) -> None:
     assert found == pytest.approx([4.0, 4.0, 6.0, 6.0], abs=NEAR)
 
 
-def test_an_upright_axis(tmp_path: Path) -> None:
+def test_part_with_a_vertical_axis_matches_the_drawing(tmp_path: Path) -> None:
     path = dxf(tmp_path / "up.dxf", chain((0, 0), (-4, 0), (-4, -10), (-6, -10), (-6, -20), (0, -20)))
     made = program(profile_of(path, axis="X 0"))
     assert radii(made, "bar:14mm:80mm", [-1.0, -9.5, -10.1, -19.0]) == pytest.approx([4, 4, 6, 6], abs=NEAR)
 
 
-def test_a_full_view_with_shoulder_edges_and_a_title_block(tmp_path: Path) -> None:
+def test_full_view_with_shoulder_edges_and_title_block_is_traced(tmp_path: Path) -> None:
     """Both halves, edges of shoulders across the part, a frame about it all: the outer side is walked."""
 
     def draw(space: object) -> None:
@@ -141,7 +141,7 @@ def test_a_full_view_with_shoulder_edges_and_a_title_block(tmp_path: Path) -> No
     assert radii(made, "bar:14mm:80mm", [-1.0, -9.5, -10.1, -19.0]) == pytest.approx([4, 4, 6, 6], abs=NEAR)
 
 
-def test_gaps_are_closed_and_told(tmp_path: Path) -> None:
+def test_gaps_are_closed_and_reported(tmp_path: Path) -> None:
     def draw(space: object) -> None:
         for a, b in (((0, 4), (-10, 4)), ((-10.008, 4), (-10, 6)), ((-10, 6.006), (-20, 6))):
             space.add_line(a, b)  # type: ignore[attr-defined]
@@ -151,7 +151,7 @@ def test_gaps_are_closed_and_told(tmp_path: Path) -> None:
     assert len(chosen.elements) == 3
 
 
-def test_a_metric_drawing_in_an_inch_program(tmp_path: Path) -> None:
+def test_metric_drawing_is_converted_to_an_inch_program(tmp_path: Path) -> None:
     """25.4 mm long, 12.7 across: .5 and -1. in the program."""
     chosen = profile_of(dxf(tmp_path / "one.dxf", chain((0, 0), (0, 6.35), (-25.4, 6.35), (-25.4, 0))))
     lines = program(chosen, metric=False, PAST=0.0, COMP=0.0).lines
@@ -166,7 +166,7 @@ def groove(*inner: tuple[float, ...]) -> tuple[tuple[float, ...], ...]:
     return ((0, 0), (0, 10), (-8, 10), *inner, (-30, 10), (-30, 0))
 
 
-def test_chamfers_of_a_groove_are_its_own(tmp_path: Path) -> None:
+def test_groove_chamfers_are_cut_with_the_groove(tmp_path: Path) -> None:
     """45 degrees of .5 at both edges."""
     path = dxf(
         tmp_path / "g.dxf", chain(*groove((-8.5, 9.5), (-8.5, 7), (-12.5, 7), (-12.5, 9.5), (-13, 10)))
@@ -177,7 +177,7 @@ def test_chamfers_of_a_groove_are_its_own(tmp_path: Path) -> None:
     assert not made.uncut_ranges
 
 
-def test_of_a_v_groove_the_blade_cuts_what_it_can(tmp_path: Path) -> None:
+def test_v_groove_is_cut_as_deep_as_the_blade_fits(tmp_path: Path) -> None:
     """60 degrees, 2 deep: the blade of 1 goes down to where the V is 1 wide, not deeper."""
     half = 2.0 * math.tan(math.radians(30.0))
     path = dxf(tmp_path / "v.dxf", chain(*groove((-8 - half, 8), (-8 - 2 * half, 10))))
@@ -189,7 +189,7 @@ def test_of_a_v_groove_the_blade_cuts_what_it_can(tmp_path: Path) -> None:
     assert bottom == pytest.approx(10.0 - depth, abs=NEAR)
 
 
-def test_a_shallow_fall_is_turned_and_a_steep_one_followed_by_the_edge(tmp_path: Path) -> None:
+def test_shallow_fall_is_turned_and_steep_fall_limited_by_tool_clearance(tmp_path: Path) -> None:
     """20 degrees behind an insert that clears 32 is turned; 60 degrees is left at 30."""
     drop = 5.0 * math.tan(math.radians(20.0))
     made = program(
@@ -221,7 +221,7 @@ def test_a_shallow_fall_is_turned_and_a_steep_one_followed_by_the_edge(tmp_path:
 @pytest.mark.parametrize(
     "behind", [((-20, 4), (-30, 4), (-30, 0)), ((-20, 4), (-30, 4), (-30, 10), (-40, 10), (-40, 0))]
 )
-def test_a_cone_that_falls_from_the_face_is_roughed_up_the_face(
+def test_cone_falling_from_the_face_is_roughed_along_the_face(
     tmp_path: Path, behind: tuple[tuple[float, float], ...], dialect: Dialect
 ) -> None:
     """20 mm at the face, 8 mm at Z-20: G75 and CYCLE95 begin at the lowest X, so nothing crosses the cone."""
@@ -239,7 +239,7 @@ def test_a_cone_that_falls_from_the_face_is_roughed_up_the_face(
     assert contour[:3] == [(0.0, 4.0), (0.0, 10.0), (-20.0, 4.0)]
 
 
-def test_nothing_is_ever_cut_too_deep_where_the_contour_goes_back_under_itself(tmp_path: Path) -> None:
+def test_undercut_contour_is_never_cut_too_deep(tmp_path: Path) -> None:
     """A dovetail: no tool from outside gets under its wall, which is cut upright."""
     path = dxf(tmp_path / "d.dxf", chain(*groove((-6, 7), (-16, 7), (-14, 10))))
     made = program(profile_of(path))

@@ -64,7 +64,7 @@ def told(turndesk: Turndesk, *words: object) -> dict[str, Any]:
     return found
 
 
-def test_list_says_what_there_is(turndesk: Turndesk, part: Path) -> None:
+def test_list_option_shows_contours_and_axes(turndesk: Turndesk, part: Path) -> None:
     told_ = turndesk("profile", part, "--list").out
     assert "unit 1 mm" in told_
     assert "layers: 0, RING" in told_
@@ -75,7 +75,7 @@ def test_list_says_what_there_is(turndesk: Turndesk, part: Path) -> None:
     assert listed["axes"] == ["Y 0", "MIDDLE", "X 0"]
 
 
-def test_a_program_on_stdout_and_what_it_needs_beside_it(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+def test_program_goes_to_stdout_and_notes_to_stderr(turndesk: Turndesk, part: Path, sheet: Path) -> None:
     done = turndesk("profile", part, "--tools", sheet, "--metric", "--face", 1)
     assert done.status == 0, done.err
     assert done.out.startswith("G90G94F7620G71G72(HEAD METRIC")
@@ -87,7 +87,7 @@ def test_a_program_on_stdout_and_what_it_needs_beside_it(turndesk: Turndesk, par
     assert shows(done.err, "shapes.matches-elsewhere", unit="mm")
 
 
-def test_it_is_written_to_a_file_and_told_as_json(
+def test_program_is_written_to_a_file_and_reported_as_json(
     turndesk: Turndesk, part: Path, sheet: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "part.nc"
@@ -101,7 +101,7 @@ def test_it_is_written_to_a_file_and_told_as_json(
     assert found["worst_mm"] < 0.02
 
 
-def test_tools_depth_and_compensation(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+def test_tool_depth_and_compensation_options_are_applied(turndesk: Turndesk, part: Path, sheet: Path) -> None:
     made = told(turndesk, part, "--tools", sheet, "--tool", 1, "--rough", 0.03, "--comp", 7)["program"]
     assert "I.03" in made
     assert "D7" in made
@@ -111,7 +111,7 @@ def test_tools_depth_and_compensation(turndesk: Turndesk, part: Path, sheet: Pat
     assert found["left"][0]["why"] == wording("shapes.no-groove-width", tool=1)
 
 
-def test_layer_contour_and_bore(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+def test_layer_contour_and_bore_options_are_applied(turndesk: Turndesk, part: Path, sheet: Path) -> None:
     by_layer = told(turndesk, part, "--tools", sheet, "--layer", "RING")["program"]
     assert by_layer == told(turndesk, part, "--tools", sheet, "--contour", 2)["program"]
     found = told(turndesk, part, "--tools", sheet, "--contour", 2, "--side", "bore", "--hole", 0.5)
@@ -119,7 +119,7 @@ def test_layer_contour_and_bore(turndesk: Turndesk, part: Path, sheet: Path) -> 
     assert "X.7874Z0" in found["program"]  # 20 mm
 
 
-def test_front_zero_and_shift(turndesk: Turndesk, part: Path, sheet: Path) -> None:
+def test_front_zero_and_shift_options_are_applied(turndesk: Turndesk, part: Path, sheet: Path) -> None:
     """From the left the shaft of 12 is in front, and the drawing's origin lies 20 mm behind its face."""
     made = told(turndesk, part, "--tools", sheet, "--metric", "--front", "left", "--zero", "origin")[
         "program"
@@ -129,7 +129,7 @@ def test_front_zero_and_shift(turndesk: Turndesk, part: Path, sheet: Path) -> No
     assert "X8Z" in made
 
 
-def test_axis_and_gap(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
+def test_axis_and_gap_options_are_applied(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
     path = dxf(tmp_path / "up.dxf", chain((0, 0), (-4, 0), (-4, -10), (0, -10)))
     made = told(turndesk, path, "--tools", sheet, "--metric", "--axis", "X 0")["program"]
     assert "X8Z" in made
@@ -144,7 +144,9 @@ def test_axis_and_gap(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
     assert turndesk("profile", path, "--gap", 5).code == "gap"
 
 
-def test_the_unit_of_a_drawing_that_does_not_say_it(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
+def test_drawing_without_a_unit_needs_the_unit_option(
+    turndesk: Turndesk, tmp_path: Path, sheet: Path
+) -> None:
     path = dxf(tmp_path / "none.dxf", chain((0, 0), (0, 0.25), (-1, 0.25), (-1, 0)), unit=0)
     assert turndesk("profile", path).code == "no-unit"
     assert "X.5Z0" in told(turndesk, path, "--tools", sheet, "--unit", "inch")["program"]
@@ -171,14 +173,16 @@ def test_a_metric_machine_makes_a_metric_program(turndesk: Turndesk, part: Path,
         (["--out", "/nowhere/x.nc"], "no-folder", "/nowhere/x.nc"),
     ],
 )
-def test_what_cannot_be(turndesk: Turndesk, part: Path, words: list[str], code: str, value: str) -> None:
+def test_invalid_option_is_rejected_in_one_line(
+    turndesk: Turndesk, part: Path, words: list[str], code: str, value: str
+) -> None:
     done = turndesk("profile", part, *words)
     assert (done.status, done.code) == (2, code)
     assert value in done.err
     assert done.err.count("\n") == 1
 
 
-def test_a_program_that_is_there_is_never_replaced(turndesk: Turndesk, part: Path, tmp_path: Path) -> None:
+def test_existing_program_is_never_overwritten(turndesk: Turndesk, part: Path, tmp_path: Path) -> None:
     out = tmp_path / "mine.nc"
     out.write_text("M30\n")
     done = turndesk("profile", part, "--out", out)
@@ -186,7 +190,7 @@ def test_a_program_that_is_there_is_never_replaced(turndesk: Turndesk, part: Pat
     assert out.read_text() == "M30\n"
 
 
-def test_no_drawing(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_missing_or_unsupported_drawing_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     assert turndesk("profile", tmp_path / "none.dxf").code == "unreadable"
     assert turndesk("profile", tmp_path / "none.step").code == "not-a-drawing"
 

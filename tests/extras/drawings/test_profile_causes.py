@@ -15,7 +15,7 @@ SHAFT = chain((0.0, 0.0), (0.0, 6.0), (-10.0, 6.0), (-14.0, 9.0), (-20.0, 9.0), 
 LARGE = chain((0.0, 0.0), (0.0, 10.0), (-40.0, 10.0), (-40.0, 0.0))
 
 
-def test_the_command_reports_it_once_and_takes_its_own_remedy(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_wrong_unit_is_reported_once_and_its_remedy_works(turndesk: Turndesk, tmp_path: Path) -> None:
     path = dxf(tmp_path / "x.dxf", LARGE, INCH)
     told = turndesk("profile", path)
     assert (told.status, told.code, told.err.count("\n")) == (2, "wrong-unit", 1)
@@ -24,7 +24,7 @@ def test_the_command_reports_it_once_and_takes_its_own_remedy(turndesk: Turndesk
     assert turndesk("profile", path, "--unit", "mm").status == 0
 
 
-def test_the_case_of_mm_saved_as_inch(turndesk: Turndesk) -> None:
+def test_millimeter_sample_saved_as_inch_is_reported(turndesk: Turndesk) -> None:
     path = CASES / "mm-saved-as-inch.dxf"
     if not path.is_file():
         pytest.skip(f"no {path}")
@@ -34,7 +34,7 @@ def test_the_case_of_mm_saved_as_inch(turndesk: Turndesk) -> None:
     assert "use --unit mm" in told.err
 
 
-def test_the_command_names_the_cause_alone(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_command_reports_only_the_cause(turndesk: Turndesk, tmp_path: Path) -> None:
     sheet = tmp_path / "tools.toml"
     sheet.write_text('[tool.1]\nx = 0.5\nz = -3.0\nkind = "turning"\nnose_radius = 0.0157\n')
     told = turndesk("profile", dxf(tmp_path / "x.dxf", SHAFT), "--tools", sheet)

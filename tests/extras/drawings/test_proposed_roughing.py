@@ -14,7 +14,7 @@ from tests.extras.drawings.hand import chain, dxf, planned
 CNMG = ToolShape(ToolKind.TURNING, tip=3, insert="CNMG120408")
 
 
-def test_the_form_of_a_drawing_shows_the_depth_that_its_program_has(tmp_path: Path) -> None:
+def test_drawing_form_shows_the_roughing_depth_of_its_program(tmp_path: Path) -> None:
     """A shaft of 12 mm and 18 mm out of steel, a bar of 19 mm: 1.016 mm by material, rounded down to 1.0."""
     points = (0.0, 0.0), (0.0, 6.0), (-10.0, 6.0), (-14.0, 9.0), (-20.0, 9.0), (-20.0, 0.0)
     path = dxf(tmp_path / "x.dxf", chain(*points))

@@ -75,7 +75,7 @@ def test_a_bore_is_cut_left_of_its_contour(tmp_path: Path) -> None:
     assert trial.comparison.worst_deviation_mm < 0.02, trial.comparison.deviations
 
 
-def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
+def test_required_cutting_edge_data_is_reported(tmp_path: Path) -> None:
     """The nose of DNMG150404 is .4 mm; a tip at the right front is quadrant 3. D is the edge, not T."""
     chosen = profile_of(dxf(tmp_path / "shaft.dxf", chain(*SHAFT)))
     made = program(chosen, dialect=OURS)
@@ -88,7 +88,7 @@ def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
     )  # fmt: skip
 
 
-def test_without_a_nose_of_the_edge_the_proof_says_what_stays(tmp_path: Path) -> None:
+def test_proof_reports_stock_left_without_a_nose_radius(tmp_path: Path) -> None:
     """A cone of 45 degrees cut by the bare tip stands off it by R (2 - sqrt 2) along the radius: .234."""
     chosen = profile_of(dxf(tmp_path / "cone.dxf", chain((0, 0), (0, 5), (-8, 13), (-20, 13), (-20, 0))))
     made, trial = of(chosen, 27.0, COMP=0.0)
@@ -98,7 +98,7 @@ def test_without_a_nose_of_the_edge_the_proof_says_what_stays(tmp_path: Path) ->
     assert stays == pytest.approx(0.4 * (2.0 - math.sqrt(2.0)), abs=0.02)
 
 
-def test_a_fall_leaves_what_is_usual_for_the_finish(tmp_path: Path) -> None:
+def test_falling_contour_leaves_the_usual_finishing_allowance(tmp_path: Path) -> None:
     """CYCLE95 reckons with the nose, so no more has to stay than on a cylinder."""
     drop = 5.0 * math.tan(math.radians(20.0))
     points = ((0, 0), (0, 10), (-8, 10), (-13, 10 - drop), (-30, 10 - drop), (-30, 0))
@@ -109,7 +109,7 @@ def test_a_fall_leaves_what_is_usual_for_the_finish(tmp_path: Path) -> None:
     assert trial.comparison.worst_deviation_mm < 0.02
 
 
-def test_the_command_writes_the_language_of_the_name(
+def test_command_writes_the_language_of_the_file_extension(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     drawing, out = dxf(tmp_path / "shaft.dxf", chain(*SHAFT)), tmp_path / "shaft.mpf"

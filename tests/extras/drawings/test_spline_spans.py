@@ -27,7 +27,7 @@ def spline(weights: list[float] | None) -> BSpline:
 
 
 @pytest.mark.parametrize("weights", [None, WEIGHTS])
-def test_a_span_is_the_curve_and_its_direction(weights: list[float] | None) -> None:
+def test_spline_span_matches_curve_and_tangent(weights: list[float] | None) -> None:
     curve = spline(weights)
     spans = make_spans(curve.control_points, curve.weights(), curve.knots(), 3)
     assert len(spans.parameter_lengths) == 5
@@ -42,7 +42,7 @@ def test_a_span_is_the_curve_and_its_direction(weights: list[float] | None) -> N
 
 @pytest.mark.parametrize("weights", [None, WEIGHTS])
 @pytest.mark.parametrize("near", [0.002, 0.05, 0.5])
-def test_two_arcs_are_those_that_one_span_alone_would_get(weights: list[float] | None, near: float) -> None:
+def test_batch_arc_fit_matches_the_fit_of_single_spans(weights: list[float] | None, near: float) -> None:
     curve = spline(weights)
     spans = make_spans(curve.control_points, curve.weights(), curve.knots(), 3)
     for number, fit in enumerate(fit_biarcs(spans, near)):
@@ -77,7 +77,7 @@ def test_a_spline_that_a_knot_interrupts_is_refused(tmp_path: Path) -> None:
     assert caught.value.code == "damaged"
 
 
-def test_a_knot_may_be_repeated_up_to_a_corner() -> None:
+def test_repeated_knots_are_allowed_up_to_a_corner() -> None:
     knots = [0, 0, 0, 0.3, 0.3, 0.6, 1, 1, 1]
     spans = make_spans([(-float(k), 6.0 + k % 2) for k in range(6)], (), knots, 2)
     assert list(spans.parameter_lengths) == pytest.approx([0.3, 0.3, 0.4])

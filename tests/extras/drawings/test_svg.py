@@ -29,7 +29,7 @@ def svg(path: Path, body: str, size: str = 'width="60mm" height="40mm" viewBox="
     return path
 
 
-def test_a_path_of_lines_and_an_arc(tmp_path: Path) -> None:
+def test_path_of_lines_and_an_arc_matches_the_drawing(tmp_path: Path) -> None:
     """A shaft of 10 with a fillet of 2 to a shoulder of 20, moved by its group; Y points down in SVG."""
     path = svg(
         tmp_path / "a.svg",
@@ -44,7 +44,7 @@ def test_a_path_of_lines_and_an_arc(tmp_path: Path) -> None:
     )
 
 
-def test_a_bezier_becomes_arcs_on_its_curve(tmp_path: Path) -> None:
+def test_bezier_curve_is_converted_to_arcs(tmp_path: Path) -> None:
     """Every point of the arcs lies on the cubic B(t) of the four points, within .003 mm."""
     path = svg(tmp_path / "b.svg", '<path d="M50 15C40 15 40 10 30 10V20"/>')
     arcs = [each.element for each in read_drawing(path).elements if isinstance(each.element, Arc)]
@@ -65,7 +65,7 @@ def test_a_bezier_becomes_arcs_on_its_curve(tmp_path: Path) -> None:
         )  # and half the step of the curve's points
 
 
-def test_elliptical_arcs_of_svg(tmp_path: Path) -> None:
+def test_elliptical_arc_is_converted_to_arcs(tmp_path: Path) -> None:
     path = svg(tmp_path / "e.svg", '<path d="M50 20A20 8 0 0 0 30 12V20Z"/>')
     chosen = profile_of(path, axis="LOWEST LINE")
     at = [-1.0, -7.0, -19.0]
@@ -75,7 +75,7 @@ def test_elliptical_arcs_of_svg(tmp_path: Path) -> None:
     )
 
 
-def test_shapes_and_units(tmp_path: Path) -> None:
+def test_shapes_and_units_are_read(tmp_path: Path) -> None:
     drawn = read_drawing(
         svg(tmp_path / "c.svg", '<rect width="10" height="4"/><line x2="5"/><polyline points="0,0 1,1"/>')
     )
@@ -106,14 +106,14 @@ HEAD = "<svg xmlns='http://www.w3.org/2000/svg' width='40mm' height='20mm' viewB
         ("<?xml version='1.0'?><!DOCTYPE s [<!ENTITY a 'b'>]><svg>&a;</svg>", "own-entities", "x.svg"),
     ],
 )
-def test_what_is_no_drawing(tmp_path: Path, text: str, code: str, value: str) -> None:
+def test_invalid_svg_is_rejected(tmp_path: Path, text: str, code: str, value: str) -> None:
     path = tmp_path / "x.svg"
     path.write_text(text)
     with raises_code(DrawingError, code, value):
         read_drawing(path)
 
 
-def test_a_contour_that_bulges_before_all_its_ends_is_refused(tmp_path: Path) -> None:
+def test_contour_bulging_past_its_ends_is_rejected(tmp_path: Path) -> None:
     """An arc of R 5 about 20, 5 from -30 to 60 degrees: its foremost point, at 25, is none of its ends."""
     path = tmp_path / "x.svg"
     path.write_text(f"{HEAD}<path d='M0 2.5 H24.330127 A5 5 0 0 1 22.5 9.330127 H0'/></svg>")
@@ -135,7 +135,7 @@ def test_a_contour_that_bulges_before_all_its_ends_is_refused(tmp_path: Path) ->
         '<polyline points="0,0 1e999,1"/>',
     ],
 )
-def test_what_is_infinite_is_refused(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_infinite_values_are_rejected(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Before curves are halved again and again for it."""
     asked = Mock(wraps=CurvePoint)
     monkeypatch.setattr(svg_reader, "CurvePoint", asked)

@@ -36,7 +36,7 @@ def nothing(_seconds: float) -> None:
     """Nobody watches."""
 
 
-def test_contours_end_at_the_limit() -> None:
+def test_contour_search_stops_at_the_work_limit() -> None:
     drawing = beside_each_other(50)
     view = DrawingPlacement(select_axis(drawing, ""), 1.0)
     known = find_contours(drawing, view)
@@ -46,7 +46,7 @@ def test_contours_end_at_the_limit() -> None:
     assert len(known) > 40
 
 
-def test_a_profile_ends_at_the_limit(tmp_path: Path) -> None:
+def test_profile_extraction_stops_at_the_work_limit(tmp_path: Path) -> None:
     drawing = read_drawing(dxf(tmp_path / "part.dxf", chain(*STEP)))
     view = DrawingPlacement(select_axis(drawing, ""), 1.0)
     net = find_contours(drawing, view)[0]
@@ -54,7 +54,7 @@ def test_a_profile_ends_at_the_limit(tmp_path: Path) -> None:
         extract_profile(drawing, view, net, ContourSide.OUTSIDE)
 
 
-def test_a_plan_is_given_up_while_it_is_worked_out(tmp_path: Path) -> None:
+def test_outdated_plan_is_canceled_during_calculation(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*STEP))
 
     def overtaken(_seconds: float) -> None:
@@ -66,7 +66,7 @@ def test_a_plan_is_given_up_while_it_is_worked_out(tmp_path: Path) -> None:
     check_work_limit()  # it watches nothing more
 
 
-def test_of_two_crossings_the_first_along_the_contour_is_named() -> None:
+def test_first_crossing_along_the_contour_is_reported() -> None:
     """From r 8 to r 4 and back to r 6 it crosses r 5 at Z -30 + 18 * 3/4 = -16.5, and then at Z -10."""
     points = ((0.0, 0.0), (5.0, 0.0), (5.0, -30.0), (8.0, -30.0), (4.0, -12.0), (6.0, -8.0), (9.0, -40.0))
     elements = [Line(a, b) for a, b in pairwise(points)]

@@ -37,7 +37,7 @@ def trouble(path: Path, travel: tuple[float, float] = TRAVEL, **typed: str) -> s
         (FOOT, 4.0, 1.0, "1219 mm long", "choose INCH"),  # 101.6 mm
     ],
 )
-def test_a_unit_that_is_too_large_is_refused(
+def test_implausibly_large_unit_is_rejected(
     unit: int, long: float, radius: float, size: str, remedy: str, tmp_path: Path
 ) -> None:
     said = trouble(shaft(tmp_path / "x.dxf", unit, long, radius))
@@ -53,13 +53,11 @@ def test_a_unit_that_is_too_large_is_refused(
         (INCH, 400.0, 10.0),  # 400 mm would not fit either
     ],
 )
-def test_a_unit_that_is_not_the_cause_is_not_reported(
-    unit: int, long: float, radius: float, tmp_path: Path
-) -> None:
+def test_plausible_unit_is_not_reported(unit: int, long: float, radius: float, tmp_path: Path) -> None:
     assert not trouble(shaft(tmp_path / "x.dxf", unit, long, radius))
 
 
-def test_a_unit_that_is_chosen_is_used_and_no_travel_is_guessed(tmp_path: Path) -> None:
+def test_explicit_unit_is_used_without_a_travel_check(tmp_path: Path) -> None:
     path = shaft(tmp_path / "x.dxf", INCH, 40.0, 10.0)
     assert not trouble(path, DUNIT="INCH")
     assert not trouble(path, (0.0, 0.0))

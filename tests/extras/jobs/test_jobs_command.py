@@ -26,7 +26,7 @@ def programs(home: Path) -> Path:
 
 
 @pytest.mark.usefixtures("programs")
-def test_added_listed_moved_removed_cleared(turndesk: Turndesk, home: Path) -> None:
+def test_jobs_are_added_listed_moved_removed_and_cleared(turndesk: Turndesk, home: Path) -> None:
     assert turndesk("jobs", "list").out.startswith("no job waits; 'turndesk jobs add PROGRAM PARTS'")
     assert turndesk("jobs", "add", "cap", 50, "--note", "order 7").out == "cap.nc, 50 parts, is job 1\n"
     assert turndesk("jobs", "add", "RING.NC", 2).status == 0
@@ -66,7 +66,9 @@ def test_added_listed_moved_removed_cleared(turndesk: Turndesk, home: Path) -> N
     ],
 )
 @pytest.mark.usefixtures("programs")
-def test_refusals(turndesk: Turndesk, argv: tuple[object, ...], code: str, value: str) -> None:
+def test_invalid_commands_are_rejected(
+    turndesk: Turndesk, argv: tuple[object, ...], code: str, value: str
+) -> None:
     told = turndesk("jobs", *argv)
     assert (told.status, told.code) == (2, code)
     assert value in told.err
@@ -74,7 +76,7 @@ def test_refusals(turndesk: Turndesk, argv: tuple[object, ...], code: str, value
 
 
 @pytest.mark.usefixtures("programs")
-def test_a_desk_that_runs_has_the_queue_to_itself(turndesk: Turndesk, home: Path) -> None:
+def test_queue_changes_are_rejected_while_turndesk_runs(turndesk: Turndesk, home: Path) -> None:
     with Store.open(home):
         told = turndesk("jobs", "add", "cap", 5)
         assert (told.status, told.code) == (2, "in-use")
@@ -82,7 +84,7 @@ def test_a_desk_that_runs_has_the_queue_to_itself(turndesk: Turndesk, home: Path
 
 
 @pytest.mark.usefixtures("programs")
-def test_jobs_are_the_operators_and_have_the_name(
+def test_job_changes_are_logged_with_the_user_name(
     turndesk: Turndesk, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("getpass.getuser", lambda: "shop")

@@ -23,7 +23,7 @@ from tests.extras.mtconnect.bench import HEARTBEAT, Bench
 from tests.texts import shows
 
 
-def test_an_agent_gets_the_whole_state_and_then_what_changes(bench: Bench) -> None:
+def test_agent_gets_the_complete_state_and_then_the_changes(bench: Bench) -> None:
     agent = bench.agent()
     assert (agent.values["execution"], agent.values["Xabs"]) == ("READY", "1.0000")
     assert agent.values["Zabs"] == "UNAVAILABLE"
@@ -35,7 +35,7 @@ def test_an_agent_gets_the_whole_state_and_then_what_changes(bench: Bench) -> No
     assert (agent.unknown, agent.bad) == ([], [])
 
 
-def test_nothing_is_said_while_nothing_changes(bench: Bench) -> None:
+def test_unchanged_state_sends_nothing(bench: Bench) -> None:
     agent = bench.agent()
     before = len(agent.lines)
     for _ in range(50):
@@ -43,7 +43,7 @@ def test_nothing_is_said_while_nothing_changes(bench: Bench) -> None:
     assert agent.lines[before:] == []
 
 
-def test_a_quiet_machine_keeps_its_agent_by_answering_pings(bench: Bench) -> None:
+def test_ping_replies_keep_the_agent_of_an_idle_machine_connected(bench: Bench) -> None:
     agent = bench.agent()
     assert agent.interval == HEARTBEAT
     for _ in range(600):  # a minute: the agent hangs up after twice ten seconds of silence
@@ -53,7 +53,7 @@ def test_a_quiet_machine_keeps_its_agent_by_answering_pings(bench: Bench) -> Non
     assert 6 <= agent.lines.count("* PONG 10000") <= 7
 
 
-def test_conditions_come_and_go_one_by_one(bench: Bench) -> None:
+def test_conditions_are_set_and_cleared_individually(bench: Bench) -> None:
     agent = bench.agent()
     one, other = ActiveCondition("FAULT", "101", "X: over current"), ActiveCondition("FAULT", "102", "X lags")
     bench.conditions["Xservo"] = (one, other)
@@ -69,7 +69,9 @@ def test_conditions_come_and_go_one_by_one(bench: Bench) -> None:
     assert agent.active["Xservo"] == late.active["Xservo"] == {}
 
 
-def test_one_that_comes_back_gets_everything_again(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
+def test_reconnected_agent_gets_the_complete_state_again(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
     agent = bench.agent()
     bench.values["execution"] = "ACTIVE"
     bench.look()
@@ -82,7 +84,7 @@ def test_one_that_comes_back_gets_everything_again(bench: Bench, caplog: pytest.
     assert caplog.records == []  # agents come and go: nothing to write down
 
 
-def test_two_agents_hear_the_same(bench: Bench) -> None:
+def test_two_agents_receive_the_same_data(bench: Bench) -> None:
     agents = bench.agent(), bench.agent()
     bench.values["Xabs"] = -12.34567
     bench.look()
@@ -100,7 +102,7 @@ def test_two_agents_hear_the_same(bench: Bench) -> None:
         b"\n\n\r\n \n",
     ],
 )
-def test_whatever_is_no_ping_is_counted_and_changes_nothing(bench: Bench, said: bytes) -> None:
+def test_lines_other_than_pings_are_counted_and_ignored(bench: Bench, said: bytes) -> None:
     agent, other = bench.agent(), bench.agent()
     before = dict(agent.values), len(agent.lines)
     agent.send(said)
@@ -115,7 +117,7 @@ def test_whatever_is_no_ping_is_counted_and_changes_nothing(bench: Bench, said: 
     )
 
 
-def test_a_ping_may_come_in_pieces(bench: Bench) -> None:
+def test_ping_may_arrive_in_pieces(bench: Bench) -> None:
     agent = bench.agent()
     before = len(agent.lines)
     for piece in (b"* P", b"IN", b"G\r"):
@@ -127,7 +129,7 @@ def test_a_ping_may_come_in_pieces(bench: Bench) -> None:
     assert agent.lines[-1] == "* PONG 10000"
 
 
-def test_a_flood_of_lines_does_not_keep_others_waiting(bench: Bench) -> None:
+def test_flood_of_lines_does_not_delay_other_agents(bench: Bench) -> None:
     flooding, other = bench.agent(), bench.agent()
     flooding.send(b"nonsense\n" * 5000)  # 45 kB
     bench.values["execution"] = "ACTIVE"
@@ -139,7 +141,7 @@ def test_a_flood_of_lines_does_not_keep_others_waiting(bench: Bench) -> None:
     assert bench.adapter.agent_count == 2
 
 
-def test_no_more_than_a_kilobyte_is_taken_of_an_agent_at_a_time() -> None:
+def test_at_most_one_kilobyte_is_read_from_an_agent_at_a_time() -> None:
     near, far = socket.socketpair()
     with near, far:
         near.setblocking(False)
@@ -152,7 +154,7 @@ def test_no_more_than_a_kilobyte_is_taken_of_an_agent_at_a_time() -> None:
         assert link.ignored_line_count == 2000
 
 
-def test_one_that_sends_no_lines_is_given_up(bench: Bench) -> None:
+def test_agent_that_sends_no_line_ends_is_disconnected(bench: Bench) -> None:
     flooding, other = bench.agent(), bench.agent()
     flooding.send(b"x" * 8192)
     bench.until(lambda: flooding.wire is None)
@@ -161,7 +163,7 @@ def test_one_that_sends_no_lines_is_given_up(bench: Bench) -> None:
     assert (bench.adapter.agent_count, bench.adapter.counts.lost_count) == (1, 1)
 
 
-def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(
+def test_agent_that_does_not_read_is_dropped_and_the_other_gets_all(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
     slow, other = bench.agent(receive=4096), bench.agent()
@@ -179,7 +181,7 @@ def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(
     slow.hang_up()
 
 
-def test_a_computer_that_vanishes_is_noticed_by_its_silence(
+def test_vanished_computer_is_detected_by_missing_pings(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
     gone, other = bench.agent(), bench.agent()
@@ -195,7 +197,7 @@ def test_a_computer_that_vanishes_is_noticed_by_its_silence(
     gone.hang_up()
 
 
-def test_a_person_with_a_terminal_need_not_ping(bench: Bench) -> None:
+def test_terminal_client_need_not_ping(bench: Bench) -> None:
     with socket.create_connection(bench.adapter.address, 60.0) as wire:
         bench.until(lambda: bench.adapter.agent_count == 1)
         for _ in range(1000):
@@ -204,7 +206,7 @@ def test_a_person_with_a_terminal_need_not_ping(bench: Bench) -> None:
         assert b"|execution|READY|" in wire.recv(65536)
 
 
-def test_one_that_is_gone_before_it_is_let_in_costs_nothing(bench: Bench) -> None:
+def test_connection_closed_before_accept_is_harmless(bench: Bench) -> None:
     for _ in range(20):
         wire = socket.create_connection(bench.adapter.address, 60.0)
         wire.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00")
@@ -214,7 +216,7 @@ def test_one_that_is_gone_before_it_is_let_in_costs_nothing(bench: Bench) -> Non
     assert bench.agent().values["execution"] == "READY"
 
 
-def test_there_is_room_for_so_many_and_no_more(bench: Bench) -> None:
+def test_number_of_agents_is_limited(bench: Bench) -> None:
     for _ in range(MAX_AGENTS):
         bench.agent()
     with socket.create_connection(bench.adapter.address, 60.0) as wire:
@@ -230,7 +232,7 @@ def _serves(bench: Bench, count: int) -> bool:
     return bench.adapter.agent_count == count
 
 
-def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
+def test_pinging_agent_replaces_a_client_that_never_pinged(bench: Bench) -> None:
     """Half-open connections and port scanners must not lock the agents out."""
     silent = []
     for taken in range(1, MAX_AGENTS + 1):
@@ -244,7 +246,7 @@ def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
         wire.close()
 
 
-def test_who_waits_at_the_door_and_never_pings_is_sent_away(bench: Bench) -> None:
+def test_waiting_client_that_never_pings_is_disconnected(bench: Bench) -> None:
     for _ in range(MAX_AGENTS):
         bench.agent()
     with socket.create_connection(bench.adapter.address, 60.0) as wire:
@@ -255,7 +257,7 @@ def test_who_waits_at_the_door_and_never_pings_is_sent_away(bench: Bench) -> Non
     assert bench.adapter.agent_count == MAX_AGENTS
 
 
-def test_closing_hangs_up_on_everybody() -> None:
+def test_close_disconnects_all_agents() -> None:
     bench = Bench()
     agents = bench.agent(), bench.agent()
     address = bench.adapter.address
@@ -275,7 +277,7 @@ def refusing(bind: str, port: int) -> str:
     return str(caught.value)
 
 
-def test_a_port_that_somebody_has_is_told_with_what_to_do(bench: Bench) -> None:
+def test_port_in_use_is_reported_with_a_remedy(bench: Bench) -> None:
     _, port = bench.adapter.address
     told = refusing("127.0.0.1", port)
     for value in ("[mtconnect]", "127.0.0.1", str(port)):
@@ -283,5 +285,5 @@ def test_a_port_that_somebody_has_is_told_with_what_to_do(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize("bind", ["192.0.2.1", "no such host", "300.1.1.1"])
-def test_an_address_that_is_not_ours_is_told(bind: str) -> None:
+def test_bind_address_not_on_this_computer_is_reported(bind: str) -> None:
     assert bind in refusing(bind, 0)

@@ -48,7 +48,7 @@ def all_of(wire: socket.socket) -> str:
     return told.decode("utf-8")
 
 
-def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
+def test_thread_serves_until_closed_and_leaves_nothing_open() -> None:
     machine = Machine()
     one = adapter(machine)
     thread = AdapterThread(one)
@@ -65,14 +65,14 @@ def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
         socket.create_connection(address, 60.0)
 
 
-def test_closing_twice_is_closing_once() -> None:
+def test_second_close_has_no_effect() -> None:
     thread = AdapterThread(adapter(Machine()))
     thread.start()
     thread.close()
     thread.close()
 
 
-def test_a_port_that_is_taken_leaves_no_thread() -> None:
+def test_port_in_use_leaves_no_thread() -> None:
     with socket.create_server((HERE, 0)) as other:
         thread = AdapterThread(adapter(Machine(), other.getsockname()[1]))
         with raises_code(DriverError, "driver", other.getsockname()[1]):
@@ -82,7 +82,7 @@ def test_a_port_that_is_taken_leaves_no_thread() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_should_it_fail_agents_are_hung_up_on(caplog: pytest.LogCaptureFixture) -> None:
+def test_thread_failure_disconnects_the_agents(caplog: pytest.LogCaptureFixture) -> None:
     """Then they say UNAVAILABLE by themselves instead of showing what was true once."""
     machine = Machine()
     one = adapter(machine)

@@ -18,7 +18,7 @@ def told_after(*values: dict[str, ItemValue]) -> str:
     return said
 
 
-def test_before_anything_is_known_all_of_it_is_unavailable() -> None:
+def test_initial_state_is_entirely_unavailable() -> None:
     lines = SentState(tuple(lathe().iterate_items())).make_complete_state(A).splitlines()
     values, *conditions = (line.split("|") for line in lines)
     assert set(values[2::2]) == {"UNAVAILABLE"}
@@ -46,18 +46,18 @@ def test_before_anything_is_known_all_of_it_is_unavailable() -> None:
         ("block", "X1", "X1 ", ""),  # nobody could see the difference
     ],
 )
-def test_what_is_worth_a_line(key: str, before: ItemValue, now: ItemValue, said: str) -> None:
+def test_only_significant_changes_are_sent(key: str, before: ItemValue, now: ItemValue, said: str) -> None:
     line = told_after({key: before}, {key: now})
     assert line == (f"{A}|{said}\n" if said else "")
 
 
-def test_a_slow_drift_is_not_lost_in_the_band() -> None:
+def test_slow_drift_is_sent_when_it_leaves_the_band() -> None:
     """Each step is within the band of the one before, not of what was told."""
     steps: list[dict[str, ItemValue]] = [{"Xabs": 10.0 + 0.0008 * i} for i in range(5)]
     assert told_after(*steps) == f"{A}|Xabs|10.0032\n"
 
 
-def test_what_a_report_leaves_out_is_no_longer_known() -> None:
+def test_item_missing_from_a_report_becomes_unavailable() -> None:
     told = SentState(tuple(lathe().iterate_items()))
     told.report_changes(
         MachineReport({"Xabs": 1.0}, {"Xservo": (ActiveCondition("FAULT", "101", "tripped"),)}), A
@@ -66,11 +66,11 @@ def test_what_a_report_leaves_out_is_no_longer_known() -> None:
     assert lines == [f"{B}|Xabs|UNAVAILABLE", f"{B}|Xservo|UNAVAILABLE||||"]
 
 
-def test_keys_that_are_no_items_are_not_sent() -> None:
+def test_unknown_item_keys_are_not_sent() -> None:
     assert told_after({"Yabs": 1.0}) == ""
 
 
-def test_a_new_text_of_the_same_fault_replaces_it() -> None:
+def test_new_text_of_the_same_fault_replaces_the_old_text() -> None:
     told = SentState(tuple(lathe().iterate_items()))
     told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "ONE"),)}), A)
     said = told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "TWO"),)}), B)

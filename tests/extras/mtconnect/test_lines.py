@@ -44,12 +44,12 @@ PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", decima
         ("\n", ""),
     ],
 )
-def test_a_value_stays_one_value(text: str, told: str) -> None:
+def test_separators_in_a_value_are_replaced(text: str, told: str) -> None:
     assert replace_separators(text) == told
     assert tokens(f"{AT}|block|{replace_separators(text)}|line|7") == [AT, "block", told, "line", "7"]
 
 
-def test_a_program_without_line_ends_makes_no_endless_line() -> None:
+def test_value_without_line_ends_is_truncated() -> None:
     assert len(replace_separators("X" * 100_000)) == MAX_VALUE_LENGTH
 
 
@@ -65,11 +65,11 @@ def test_a_program_without_line_ends_makes_no_endless_line() -> None:
         ("CLOSED", "CLOSED"),
     ],
 )
-def test_values_as_text(value: str | float | None, told: str) -> None:
+def test_values_are_formatted_as_text(value: str | float | None, told: str) -> None:
     assert format_value(PLACE, value) == told
 
 
-def test_lines() -> None:
+def test_lines_have_the_shdr_format() -> None:
     assert make_values_line(AT, {"execution": "ACTIVE", "line": "12"}) == f"{AT}|execution|ACTIVE|line|12\n"
     fault = ActiveCondition("FAULT", "102", "X lags | 0.2\nmm")
     assert make_active_line(AT, "Xservo", fault) == f"{AT}|Xservo|FAULT|102|||X lags / 0.2 mm\n"
@@ -91,6 +91,6 @@ def test_times_are_utc_with_z() -> None:
         (1800.0, b"* PONG 1799999\n"),
     ],
 )
-def test_a_pong_has_a_time_that_the_agent_takes(seconds: float, said: bytes) -> None:
+def test_pong_interval_is_accepted_by_the_agent(seconds: float, said: bytes) -> None:
     """It refuses 0, and half an hour itself."""
     assert make_pong(seconds) == said

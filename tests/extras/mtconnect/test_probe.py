@@ -61,7 +61,7 @@ def elements(top: Element, kind: str) -> list[Element]:
     return list(top.iter(f"{{{SCHEMA_NAMESPACE}}}{kind}"))
 
 
-def test_every_item_is_what_the_standard_calls_it() -> None:
+def test_items_match_the_mtconnect_standard() -> None:
     items = elements(root(), "DataItem")
     named = {
         item.attrib["name"]: tuple(item.get(key) for key in ("category", "type", "subType", "units"))
@@ -71,7 +71,7 @@ def test_every_item_is_what_the_standard_calls_it() -> None:
     assert len(items) == len(WANTED)
 
 
-def test_nothing_is_declared_native_or_the_agent_would_multiply_it() -> None:
+def test_device_model_declares_no_native_units() -> None:
     text = make_devices_xml(lathe(), "a lathe", AT)
     assert "native" not in text
     frames = {
@@ -80,7 +80,7 @@ def test_nothing_is_declared_native_or_the_agent_would_multiply_it() -> None:
     assert frames == {"MACHINE"}
 
 
-def test_components_stand_in_the_order_of_the_schema() -> None:
+def test_components_follow_the_schema_order() -> None:
     device = elements(root(), "Device")[0]
     assert [child.tag.partition("}")[2] for child in device] == ["Description", "DataItems", "Components"]
     path = [child.attrib["name"] for child in elements(root(), "Components")[0]]
@@ -91,7 +91,7 @@ def test_components_stand_in_the_order_of_the_schema() -> None:
         assert list(part) or part.tag.endswith(("DataItem", "Description", "Header"))  # none is empty
 
 
-def test_two_lathes_of_one_agent_share_no_identifier() -> None:
+def test_two_lathes_of_one_agent_share_no_identifiers() -> None:
     ids = [
         element.attrib["id"]
         for name in ("GT75-1", "GT75-2")
@@ -103,17 +103,17 @@ def test_two_lathes_of_one_agent_share_no_identifier() -> None:
     assert len(uuids) == 2  # and each keeps its own
 
 
-def test_the_header_has_a_time() -> None:
+def test_header_has_a_creation_time() -> None:
     assert elements(root(), "Header")[0].attrib["creationTime"] == "2026-02-03T04:05:06.000Z"
 
 
 @pytest.mark.parametrize("name", ["", "GT 75", "75GT", "GT|75", "GT:75", "<GT>", "Drehmaschine Ø"])
-def test_a_name_that_no_agent_takes_is_refused(name: str) -> None:
+def test_device_name_invalid_for_agents_is_rejected(name: str) -> None:
     with raises_code(DriverError, "driver", "[mtconnect] device", repr(name)):
         make_devices_xml(lathe(name), "a lathe", AT)
 
 
-def test_words_for_people_may_be_anything() -> None:
+def test_description_accepts_any_text() -> None:
     text = make_devices_xml(lathe(), 'Tom & "Jerry" <5>', AT)
     assert elements(ElementTree.fromstring(text), "Description")[0].text == 'Tom & "Jerry" <5>'
 

@@ -30,7 +30,7 @@ TEXTS = st.one_of(
 
 
 @given(TEXTS, TEXTS)
-def test_two_values_stay_two_values(one: str, other: str) -> None:
+def test_two_values_in_a_line_remain_separate(one: str, other: str) -> None:
     line = make_values_line(
         AT, {"block": replace_separators(one), "program": replace_separators(other), "line": "7"}
     )
@@ -65,7 +65,9 @@ def values() -> st.SearchStrategy[MachineReport]:
 
 @settings(max_examples=30)
 @given(st.lists(values(), min_size=1, max_size=6), st.data())
-def test_who_comes_late_knows_what_the_others_know(reports: list[MachineReport], data: st.DataObject) -> None:
+def test_late_agent_gets_the_same_state_as_the_others(
+    reports: list[MachineReport], data: st.DataObject
+) -> None:
     comes = data.draw(st.integers(0, len(reports) - 1))
     told = SentState(ITEMS)
     early, late = (FakeAgent(MODEL, ManualClock()) for _ in range(2))

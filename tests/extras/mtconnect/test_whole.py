@@ -79,7 +79,7 @@ def floor() -> Iterator[Floor]:
     one.close()
 
 
-def test_a_program_from_power_up_to_its_end(floor: Floor) -> None:
+def test_program_is_reported_from_power_up_to_its_end(floor: Floor) -> None:
     floor.rig.start("G90G94F300\nM03S500\nX.1\nM30\n")
     floor.rig.until(MachineState.IDLE)
     assert floor.history("execution") == ["STOPPED", "READY", "ACTIVE", "PROGRAM_COMPLETED"]
@@ -95,7 +95,7 @@ def test_a_program_from_power_up_to_its_end(floor: Floor) -> None:
     ("program", "told"),
     [("M00(LOOK)", "PROGRAM_STOPPED"), ("M01(LOOK)", "OPTIONAL_STOP")],
 )
-def test_program_stop_and_optional_stop_are_two_things(floor: Floor, program: str, told: str) -> None:
+def test_program_stop_and_optional_stop_are_distinguished(floor: Floor, program: str, told: str) -> None:
     floor.rig.post(SetSwitch("optional_stop", True))
     floor.rig.start(f"G90G94F300\n{program}\nX.1\nM30\n")
     floor.rig.until(MachineState.PROGRAM_STOP)
@@ -106,7 +106,7 @@ def test_program_stop_and_optional_stop_are_two_things(floor: Floor, program: st
     assert floor.history("execution")[-3:] == [told, "ACTIVE", "PROGRAM_COMPLETED"]
 
 
-def test_hold_and_giving_up(floor: Floor) -> None:
+def test_hold_and_program_abort_are_reported(floor: Floor) -> None:
     floor.rig.start("G90G94F10\nX1\nM30\n")
     floor.rig.run(1.0)
     floor.rig.post(FeedHold())
@@ -118,7 +118,7 @@ def test_hold_and_giving_up(floor: Floor) -> None:
     assert floor.history("pcount") == ["0"]
 
 
-def test_a_jammed_slide_is_a_fault_of_that_slide_until_reset(floor: Floor) -> None:
+def test_jammed_axis_is_reported_as_an_axis_fault_until_reset(floor: Floor) -> None:
     floor.rig.start("G90G94F60\nX1\nM30\n")
     floor.rig.run(0.5)
     floor.rig.sim.machine.jam("X")
@@ -133,7 +133,7 @@ def test_a_jammed_slide_is_a_fault_of_that_slide_until_reset(floor: Floor) -> No
     assert floor.agent.active["Xservo"] == {}
 
 
-def test_estop(floor: Floor) -> None:
+def test_estop_is_reported(floor: Floor) -> None:
     floor.rig.ready()
     floor.rig.sim.machine.press_estop()
     floor.rig.run(0.1)
@@ -147,7 +147,7 @@ def test_estop(floor: Floor) -> None:
 @pytest.mark.parametrize(
     "name", sorted(p.name for p in Path(resources.__file__).parent.glob("machines/*.toml"))
 )
-def test_what_is_told_of_each_shipped_machine_is_what_its_model_declares(name: str) -> None:
+def test_reports_of_each_shipped_machine_match_its_device_model(name: str) -> None:
     """A key that the model has and nobody ever tells would stay UNAVAILABLE for ever."""
     machine = load_named_machine(str(Path(resources.__file__).parent / "machines" / name))
     kinds = kinds_of(make_device_model(with_model(machine), datetime.now(UTC)))
@@ -177,7 +177,7 @@ def threads() -> list[str]:
     return [thread.name for thread in threading.enumerate() if thread.name in {"mtconnect", "status"}]
 
 
-def test_the_screen_program_tells_from_its_start_to_its_end(home: Path, tmp_path: Path) -> None:
+def test_screen_program_serves_agents_from_start_to_end(home: Path, tmp_path: Path) -> None:
     port = free_port()
     desk = build_desk(str(machine_file(tmp_path, port)))
     try:
@@ -192,7 +192,7 @@ def test_the_screen_program_tells_from_its_start_to_its_end(home: Path, tmp_path
         socket.create_connection(("127.0.0.1", port), 60.0)
 
 
-def test_a_port_that_is_taken_is_said_and_the_machine_runs(home: Path, tmp_path: Path) -> None:
+def test_port_in_use_is_reported_and_the_machine_runs(home: Path, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         desk = build_desk(str(machine_file(tmp_path, port)))
@@ -207,9 +207,7 @@ def test_a_port_that_is_taken_is_said_and_the_machine_runs(home: Path, tmp_path:
 
 
 @pytest.mark.parametrize("enabled", ["false", None])
-def test_where_the_file_does_not_want_it_nothing_listens(
-    home: Path, tmp_path: Path, enabled: str | None
-) -> None:
+def test_disabled_adapter_does_not_listen(home: Path, tmp_path: Path, enabled: str | None) -> None:
     port = free_port()
     path = machine_file(tmp_path, port, **({"enabled": enabled} if enabled else {}))
     if enabled is None:
@@ -234,7 +232,7 @@ def run(turndesk: Turndesk, path: Path, *options: str) -> tuple[int, str]:
     return told.status, told.err
 
 
-def test_a_run_without_a_screen_in_real_time_is_told(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_real_time_run_without_a_screen_is_sent_to_agents(turndesk: Turndesk, tmp_path: Path) -> None:
     port = free_port()
     path = machine_file(tmp_path, port)
     heard: list[bytes] = []
@@ -263,15 +261,13 @@ def test_a_run_without_a_screen_in_real_time_is_told(turndesk: Turndesk, tmp_pat
     assert threads() == []
 
 
-def test_a_run_that_is_faster_than_its_time_tells_nobody_of_its_parts(
-    turndesk: Turndesk, tmp_path: Path
-) -> None:
+def test_faster_than_real_time_run_is_not_sent_to_agents(turndesk: Turndesk, tmp_path: Path) -> None:
     status, err = run(turndesk, machine_file(tmp_path, free_port()))
     assert status == 0
     assert "--realtime" in err
 
 
-def test_a_run_with_a_taken_port_says_so_and_runs(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_run_with_a_port_in_use_reports_it_and_continues(turndesk: Turndesk, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         status, err = run(turndesk, machine_file(tmp_path, port), "--realtime")
@@ -289,7 +285,7 @@ def test_the_model_is_written_to_stdout(turndesk: Turndesk, tmp_path: Path) -> N
     assert "execution" in kinds_of(told.out)
 
 
-def test_without_the_table_there_is_no_model(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_model_command_without_the_mtconnect_table_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     path.write_text(resources.read_machine_file("gt75.toml"))
     told = turndesk("machine", "mtconnect", path)
@@ -297,13 +293,13 @@ def test_without_the_table_there_is_no_model(turndesk: Turndesk, tmp_path: Path)
     assert "[mtconnect]" in told.err
 
 
-def test_a_device_name_that_no_agent_takes_is_refused(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_device_name_invalid_for_agents_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("machine", "mtconnect", machine_file(tmp_path, 7878, device='"GT 75"'))
     assert (told.status, told.out) == (2, "")
     assert "device = 'GT 75'" in told.err
 
 
-def test_a_model_of_an_adapter_that_is_off_says_so(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_model_of_a_disabled_adapter_says_so(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("machine", "mtconnect", machine_file(tmp_path, 7878, enabled="false"))
     assert told.status == 0
     assert "enabled = false" in told.err
@@ -319,7 +315,7 @@ def test_machine_check_tries_the_port(turndesk: Turndesk, tmp_path: Path) -> Non
     socket.create_server(("127.0.0.1", port)).close()  # and has let it go
 
 
-def test_machine_check_names_a_port_that_is_taken(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_machine_check_reports_a_port_in_use(turndesk: Turndesk, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         told = turndesk("machine", "check", machine_file(tmp_path, port))
@@ -327,12 +323,12 @@ def test_machine_check_names_a_port_that_is_taken(turndesk: Turndesk, tmp_path: 
     assert str(port) in told.err
 
 
-def test_machine_check_names_a_device_that_no_agent_takes(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_machine_check_reports_an_invalid_device_name(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("machine", "check", machine_file(tmp_path, free_port(), device='"GT 75"'))
     assert told.status == 1
     assert "device = 'GT 75'" in told.err
 
 
-def test_machine_check_does_not_speak_of_what_is_off(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_machine_check_omits_a_disabled_adapter(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("machine", "check", machine_file(tmp_path, free_port(), enabled="false"))
     assert (told.status, "mtconnect" in told.out) == (0, False)

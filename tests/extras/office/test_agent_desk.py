@@ -53,7 +53,7 @@ def streams(**told: str) -> bytes:
 
 
 @pytest.mark.parametrize("version", ["1.3", "2.5"])
-def test_a_machine_that_runs(version: str) -> None:
+def test_running_machine_is_parsed(version: str) -> None:
     found, trouble = parse_streams(streams(version=version))
     assert found == {"machine": "MILL4", "state": "RUNNING", "program": "O4711", "line": 88, "made": 57}
     assert trouble == ""
@@ -70,24 +70,24 @@ def test_a_machine_that_runs(version: str) -> None:
         ({"condition": FAULT.format("")}, "ALARM"),
     ],
 )
-def test_how_a_machine_stands(told: dict[str, str], state: str) -> None:
+def test_machine_state_is_parsed(told: dict[str, str], state: str) -> None:
     found, _ = parse_streams(streams(**told))
     assert found is not None
     assert found["state"] == state
 
 
-def test_an_alarm_says_why() -> None:
+def test_alarm_text_is_parsed() -> None:
     found, trouble = parse_streams(streams(condition=FAULT.format("X servo\n  excess error &lt;x&gt;")))
     assert found is not None
     assert (found["state"], trouble) == ("ALARM", "X servo excess error <x>")
 
 
-def test_of_a_machine_that_the_agent_does_not_hear_nothing_is_told() -> None:
+def test_unavailable_machine_has_no_status() -> None:
     assert parse_streams(streams(available="UNAVAILABLE")) == (None, text("shopfloor.agent-hears-nothing"))
 
 
 @pytest.mark.parametrize("count", ["UNAVAILABLE", "-3", "1e9", "", "9" * 4000, "٣"])
-def test_a_count_that_is_none_is_left_out(count: str) -> None:
+def test_invalid_count_is_omitted(count: str) -> None:
     found, _ = parse_streams(streams(count=count))
     assert found is not None
     assert "made" not in found
@@ -104,7 +104,7 @@ def test_a_count_that_is_none_is_left_out(count: str) -> None:
         b"<a>" * 100_000,
     ],
 )
-def test_what_no_agent_says(data: bytes) -> None:
+def test_invalid_agent_response_raises_value_error(data: bytes) -> None:
     with pytest.raises(ValueError, match=r".*"):
         parse_streams(data)
 
@@ -135,7 +135,7 @@ def agent(answer: Callable[[str], tuple[int, bytes]]) -> Iterator[str]:
     server.server_close()
 
 
-def test_an_agent_is_asked_for_one_machine() -> None:
+def test_agent_is_queried_for_one_machine() -> None:
     def answer(path: str) -> tuple[int, bytes]:
         return (200, streams()) if path == "/MILL4/current" else (404, b"<MTConnectError/>")
 
@@ -148,12 +148,12 @@ def test_an_agent_is_asked_for_one_machine() -> None:
     assert unknown.error_text == text("shopfloor.answers", answer="404 Not Found")
 
 
-def test_what_answers_and_is_no_agent_is_told() -> None:
+def test_server_that_is_not_an_agent_is_reported() -> None:
     with agent(lambda _path: (200, b"<html>")) as address:
         assert read_agent_status(f"{address}/MILL4").error_text == text("shopfloor.no-desk")
 
 
-def test_the_address_of_what_is_so_now() -> None:
+def test_current_state_address_is_derived_from_the_machine_address() -> None:
     assert make_current_address("http://shop-pc:5000/MILL4/") == "http://shop-pc:5000/MILL4/current"
 
 
@@ -168,13 +168,13 @@ def page_table(keys: str) -> StatusPageTable:
     return table
 
 
-def test_the_machine_file_names_machines_at_their_agents() -> None:
+def test_machine_file_lists_machines_by_agent_address() -> None:
     table = page_table('agents = ["http://shop-pc:5000/MILL4", "https://shop-pc/mtc/MILL5"]')
     assert table.agent_addresses == ("http://shop-pc:5000/MILL4", "https://shop-pc/mtc/MILL5")
 
 
 @pytest.mark.parametrize("address", ["http://shop-pc:5000", "http://shop-pc:5000/", "shop-pc:5000/MILL4"])
-def test_an_agent_without_a_machine_is_refused(address: str) -> None:
+def test_agent_address_without_a_machine_is_rejected(address: str) -> None:
     with pytest.raises(MachineFileError, match=r"status_page\.agents = "):
         page_table(f'agents = ["{address}"]')
 
@@ -183,7 +183,7 @@ def test_an_agent_without_a_machine_is_refused(address: str) -> None:
     "keys",
     ['desks = ["http://[lathe2"]', 'desks = ["http://lathe2:port"]', 'desks = ["http://"]'],
 )
-def test_an_address_that_is_none_is_refused(keys: str) -> None:
+def test_invalid_status_page_address_is_rejected(keys: str) -> None:
     """Else the desk ended with a traceback when it began to ask."""
     with pytest.raises(MachineFileError, match=r"status_page\.desks = "):
         page_table(keys)

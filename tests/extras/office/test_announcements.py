@@ -49,40 +49,40 @@ def told(before: StatusDocument, now: StatusDocument) -> list[tuple[str, str]]:
 # --- what has happened ------------------------------------------------------------------------------
 
 
-def test_the_first_look_tells_nothing() -> None:
+def test_first_status_announces_nothing() -> None:
     assert told({}, {**READY, "state": "ALARM"}) == []
 
 
-def test_a_part_is_done() -> None:
+def test_completed_part_is_announced() -> None:
     assert told(RUNNING, {**RUNNING, "made": 4, "parts": 3}) == [
         ("part", text("shopfloor.part-done", number=4, program="pin.nc"))
     ]
 
 
 @pytest.mark.parametrize("now", [{"program": "nut.nc", "made": 90}, {"made": 4}])
-def test_a_count_that_is_read_or_typed_is_no_part(now: StatusDocument) -> None:
+def test_loaded_or_typed_count_is_not_announced_as_a_part(now: StatusDocument) -> None:
     """Of another program; of the same one, told behind its loading: so after each start of the desk."""
     assert told(READY, {**READY, **now}) == []
 
 
-def test_a_count_put_back_is_no_part() -> None:
+def test_count_reset_is_not_announced_as_a_part() -> None:
     assert told(READY, {**READY, "made": 0, "parts": 0}) == []
 
 
-def test_a_stop_and_an_alarm_say_why() -> None:
+def test_stop_and_alarm_announcements_include_the_reason() -> None:
     hold: StatusDocument = {**RUNNING, "state": "FEED HOLD", "stop": "GUARD OPEN"}
     alarm: StatusDocument = {**RUNNING, "state": "ALARM", "stop": "FOLLOWING ERROR: X"}
     assert told(RUNNING, hold) == [("stop", "FEED HOLD: GUARD OPEN")]
     assert told(RUNNING, alarm) == [("alarm", "ALARM: FOLLOWING ERROR: X")]
 
 
-def test_waiting_for_the_spindle_is_no_stop() -> None:
+def test_waiting_for_the_spindle_is_not_announced_as_a_stop() -> None:
     waits: StatusDocument = {**RUNNING, "state": "WAITING", "waiting_for": "AT SPEED"}
     assert told(RUNNING, waits) == []
     assert told(waits, RUNNING) == []
 
 
-def test_a_tool_at_the_end_of_its_life() -> None:
+def test_expired_tool_life_is_announced_once() -> None:
     worn: StatusDocument = {**RUNNING, "next_barred": "T3 HAS CUT 400 PARTS"}
     assert told(RUNNING, worn) == [("tool-life", "T3 HAS CUT 400 PARTS")]
     assert told(worn, worn) == []
@@ -111,7 +111,7 @@ class Heard:
         self.events.append("closed")
 
 
-def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
+def test_state_is_sent_on_change_and_not_every_second() -> None:
     looks = iter(
         [READY, {**RUNNING, "time_left": 9.0}, {**RUNNING, "time_left": 8.0}, {**RUNNING, "parts": 3}]
     )
@@ -124,7 +124,7 @@ def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
     assert heard.events == ["runs", "part", "closed"]
 
 
-def test_a_part_that_is_made_while_the_control_is_silent_is_told_behind_it() -> None:
+def test_part_made_while_the_control_is_silent_is_announced_afterward() -> None:
     silent: StatusDocument = {**RUNNING, "state": "CONTROL SILENT", "made": None, "parts": None}
     looks = iter([RUNNING, silent, silent, {**RUNNING, "made": 4, "parts": 3}, {**RUNNING, "parts": 3}])
     heard = Heard()
@@ -173,7 +173,7 @@ def posts() -> Iterator[tuple[str, SimpleQueue[dict[str, object]]]]:
     server.server_close()
 
 
-def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, object]]]) -> None:
+def test_webhook_receives_announcements_in_order(posts: tuple[str, SimpleQueue[dict[str, object]]]) -> None:
     address, heard = posts
     hook = WebhookReceiver(address, AT_ONCE)
     for number in range(5):
@@ -190,7 +190,7 @@ def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, objec
         ("404", ["404 Not Found"]),
     ],
 )
-def test_what_a_web_hook_refuses_is_given_up_and_told_once(
+def test_announcement_rejected_by_a_webhook_is_dropped_and_logged_once(
     posts: tuple[str, SimpleQueue[dict[str, object]]],
     path: str,
     values: list[str],
@@ -208,7 +208,7 @@ def test_what_a_web_hook_refuses_is_given_up_and_told_once(
 
 
 @pytest.mark.parametrize(("path", "values"), [("503", ["503 Service Unavailable"]), ("garbage", ["HTTP"])])
-def test_a_host_with_a_fault_is_asked_again_and_told_of_once(
+def test_host_with_an_error_is_retried_and_logged_once(
     posts: tuple[str, SimpleQueue[dict[str, object]]],
     path: str,
     values: list[str],
@@ -224,7 +224,7 @@ def test_a_host_with_a_fault_is_asked_again_and_told_of_once(
     assert all(value in why for value in values)
 
 
-def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCaptureFixture) -> None:
+def test_webhook_that_was_offline_receives_everything_in_order(caplog: pytest.LogCaptureFixture) -> None:
     asked: SimpleQueue[str] = SimpleQueue()
     away = iter([True, True, True])
 
@@ -242,7 +242,7 @@ def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCap
     assert said == ("http://shop", text("shopfloor.refused"))
 
 
-def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptureFixture) -> None:
+def test_each_cause_is_logged_once_until_a_delivery_succeeds(caplog: pytest.LogCaptureFixture) -> None:
     asked: SimpleQueue[str] = SimpleQueue()
     answers = iter(["refused", "refused", "no route", "refused", "", "refused", ""])
 
@@ -261,7 +261,7 @@ def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptu
     ]  # fmt: skip
 
 
-def test_a_host_that_says_something_else_each_time_does_not_fill_the_log(
+def test_changing_error_texts_do_not_fill_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     trouble = DeliveryErrorLog(logging.getLogger("hook"), "http://shop/hook")
@@ -270,7 +270,7 @@ def test_a_host_that_says_something_else_each_time_does_not_fill_the_log(
     assert len(caplog.records) == 10
 
 
-def test_of_more_than_a_hundred_for_a_dead_hook_the_newest_are_kept() -> None:
+def test_newest_hundred_are_queued_for_an_unreachable_webhook() -> None:
     asked: SimpleQueue[int] = SimpleQueue()
     dead, queued = threading.Event(), threading.Event()
 
@@ -321,7 +321,7 @@ class Far:
         self._thread.join()
 
 
-def test_an_answer_that_comes_byte_by_byte_has_a_deadline_as_a_whole() -> None:
+def test_slow_response_has_an_overall_deadline() -> None:
     """Two seconds pass before each byte; a byte comes when the one before was read."""
     times, reads = count(0.0, 2.0), threading.Semaphore(0)
 
@@ -341,7 +341,7 @@ def test_an_answer_that_comes_byte_by_byte_has_a_deadline_as_a_whole() -> None:
         reads.release(100)
 
 
-def test_an_answer_in_time_is_taken() -> None:
+def test_response_in_time_is_accepted() -> None:
     with Far(lambda connection: connection.sendall(b"HTTP/1.1 204 No Content\r\n\r\n")) as far:
         post_json(f"http://127.0.0.1:{far.port}/", b"{}", lambda: 0.0)
 
@@ -361,7 +361,7 @@ def not_trusted() -> ssl.SSLCertVerificationError:
         (b"SSH-2.0-OpenSSH_9.2\r\n", "http", "shopfloor.no-http"),
     ],
 )
-def test_what_a_host_answers_is_the_cause(answer: bytes, scheme: str, why: str) -> None:
+def test_invalid_host_response_is_reported_as_the_cause(answer: bytes, scheme: str, why: str) -> None:
     with Far(lambda connection: connection.sendall(answer)) as far:
         with pytest.raises((OSError, HTTPException)) as raised:
             post_json(f"{scheme}://127.0.0.1:{far.port}/", b"{}")
@@ -369,7 +369,7 @@ def test_what_a_host_answers_is_the_cause(answer: bytes, scheme: str, why: str) 
     assert find_cause(raised.value) == text(why)
 
 
-def test_a_bad_certificate_is_the_cause() -> None:
+def test_invalid_certificate_is_reported_as_the_cause() -> None:
     assert find_cause(URLError(not_trusted())) == text(
         "shopfloor.bad-certificate", why="self-signed certificate"
     )
@@ -378,7 +378,7 @@ def test_a_bad_certificate_is_the_cause() -> None:
 @pytest.mark.parametrize(
     "address", ["https://hooks.shop/services/secret", "http://me:secret@shop:81/?t=secret"]
 )
-def test_the_log_has_no_token_of_an_address(address: str, caplog: pytest.LogCaptureFixture) -> None:
+def test_log_contains_no_token_from_an_address(address: str, caplog: pytest.LogCaptureFixture) -> None:
     tried = threading.Event()
 
     def post(address: str, _body: bytes) -> None:
@@ -401,7 +401,7 @@ def table(port: int) -> AnnounceTable:
     return AnnounceTable(f"127.0.0.1:{port}", "shop/gt75", "", "", "", 1.0)
 
 
-def test_a_broker_that_is_away_keeps_nobody_waiting() -> None:
+def test_unreachable_broker_does_not_block_the_caller() -> None:
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
         broker = MqttReceiver(table(nobody.getsockname()[1]))
@@ -440,7 +440,7 @@ def logged() -> Iterator[Logged]:
     logger.removeHandler(heard)
 
 
-def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None:
+def test_refused_broker_connection_is_logged(logged: Logged) -> None:
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
         port = nobody.getsockname()[1]
@@ -458,7 +458,7 @@ def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None
         (b"\x15\x03\x03\x00\x02\x02\x46", "shopfloor.mqtt-no-word"),
     ],
 )
-def test_what_a_broker_refuses_is_the_only_cause(connack: bytes, why: str, logged: Logged) -> None:
+def test_broker_rejection_is_the_only_logged_cause(connack: bytes, why: str, logged: Logged) -> None:
     with Far(lambda connection: connection.sendall(connack)) as far:
         broker = MqttReceiver(table(far.port))
         assert logged.why(far.port) == text(why)
@@ -477,7 +477,7 @@ def test_what_a_broker_refuses_is_the_only_cause(connack: bytes, why: str, logge
         (UnicodeError("label empty or too long"), "label empty or too long"),
     ],
 )
-def test_why_a_broker_cannot_be_reached(
+def test_reason_for_an_unreachable_broker_is_logged(
     cause: Exception, why: str, logged: Logged, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tries: SimpleQueue[None] = SimpleQueue()
@@ -495,9 +495,7 @@ def test_why_a_broker_cannot_be_reached(
     broker.close()
 
 
-def test_what_takes_the_connection_and_says_no_word_is_told_of(
-    logged: Logged, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_silent_server_is_logged_as_not_responding(logged: Logged, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE_S", 1)
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
@@ -506,7 +504,7 @@ def test_what_takes_the_connection_and_says_no_word_is_told_of(
         broker.close()
 
 
-def test_a_desk_closes_while_a_broker_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_close_does_not_wait_for_a_silent_broker(monkeypatch: pytest.MonkeyPatch) -> None:
     """A host that swallows everything keeps paho's thread waiting, not the desk."""
     connecting, over = threading.Event(), threading.Event()
 
@@ -573,7 +571,7 @@ def office(mosquitto: tuple[int, int]) -> Iterator[Office]:
     office.close()
 
 
-def test_a_broker_hears_state_events_and_the_end(mosquitto: tuple[int, int], office: Office) -> None:
+def test_broker_receives_state_events_and_the_end(mosquitto: tuple[int, int], office: Office) -> None:
     broker = MqttReceiver(table(mosquitto[0]))
     assert office.next() == ("shop/gt75/available", b"online", False)
     broker.send_status(RUNNING)
@@ -592,7 +590,7 @@ def test_a_broker_hears_state_events_and_the_end(mosquitto: tuple[int, int], off
     assert json.loads(late[1]) == RUNNING
 
 
-def test_a_broker_that_was_away_hears_online_state_and_the_newest_hundred(
+def test_reconnected_broker_receives_state_and_the_newest_hundred(
     mosquitto: tuple[int, int], office: Office, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     away: list[mqtt.Client] = []
@@ -615,7 +613,7 @@ def test_a_broker_that_was_away_hears_online_state_and_the_newest_hundred(
     broker.close()
 
 
-def test_a_broker_that_is_frozen_is_told_of(
+def test_frozen_broker_is_logged(
     mosquitto: tuple[int, int], office: Office, logged: Logged, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its computer takes each new connection, and nobody there says a word."""
@@ -631,7 +629,7 @@ def test_a_broker_that_is_frozen_is_told_of(
     broker.close()
 
 
-def test_a_desk_closes_beside_a_broker_that_is_frozen(mosquitto: tuple[int, int], office: Office) -> None:
+def test_close_does_not_wait_for_a_frozen_broker(mosquitto: tuple[int, int], office: Office) -> None:
     port, process = mosquitto
     broker = MqttReceiver(table(port))
     assert office.next()[1] == b"online"

@@ -86,7 +86,7 @@ def get(
 
 
 @pytest.mark.skipif(not hasattr(time, "tzset"), reason="no change of the time zone here")
-def test_times_are_those_of_the_clock_in_the_shop(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_times_are_shown_in_local_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """Three hours behind UTC."""
     monkeypatch.setenv("TZ", "<-03>3")
     time.tzset()
@@ -102,7 +102,7 @@ def test_times_are_those_of_the_clock_in_the_shop(monkeypatch: pytest.MonkeyPatc
 # --- who may look -----------------------------------------------------------------------------------
 
 
-def test_without_the_token_nothing_is_said() -> None:
+def test_page_without_the_token_shows_nothing() -> None:
     status, _, body = get(page(TOKEN))
     assert status.startswith("403")
     assert "pin" not in body
@@ -121,21 +121,21 @@ def test_a_wrong_token_is_refused_everywhere() -> None:
         {"HTTP_COOKIE": f"other=1; turndesk-8317={TOKEN}"},
     ],
 )
-def test_the_token_opens_it(brought: dict[str, str]) -> None:
+def test_correct_token_opens_the_page(brought: dict[str, str]) -> None:
     status, headers, body = get(page(TOKEN), **brought)
     assert status == "200 OK"
     assert "RUNNING" in body
     assert "HttpOnly" in headers["Set-Cookie"]
 
 
-def test_two_desks_of_one_computer_keep_their_tokens_apart() -> None:
+def test_two_pages_on_one_computer_use_separate_cookies() -> None:
     """To a browser the port is no part of where a cookie belongs."""
     kept = get(page(TOKEN), QUERY_STRING=f"token={TOKEN}")[1]["Set-Cookie"].partition("=")[0]
     other = get(page("another-desk-1"), QUERY_STRING="token=another-desk-1", SERVER_PORT="8318")[1]
     assert (kept, other["Set-Cookie"].partition("=")[0]) == ("turndesk-8317", "turndesk-8318")
 
 
-def test_without_a_token_of_its_own_a_page_sets_no_cookie() -> None:
+def test_page_without_a_configured_token_sets_no_cookie() -> None:
     status, headers, _ = get(page(), QUERY_STRING="token=any;Domain=x")
     assert status == "200 OK"
     assert "Set-Cookie" not in headers
@@ -151,34 +151,34 @@ def test_without_a_token_of_its_own_a_page_sets_no_cookie() -> None:
         {"HTTP_COOKIE": 'turndesk-8317="\\012"'},
     ],
 )
-def test_a_token_of_odd_bytes_is_a_bad_request(brought: dict[str, str], token: str) -> None:
+def test_token_with_invalid_bytes_is_a_bad_request(brought: dict[str, str], token: str) -> None:
     assert get(page(token), **brought)[0].startswith("400")
 
 
-def test_a_broken_cookie_is_no_token() -> None:
+def test_malformed_cookie_is_rejected() -> None:
     assert get(page(TOKEN), HTTP_COOKIE="turndesk=\x01;;=")[0].startswith("403")
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS"])
-def test_it_takes_no_orders(method: str) -> None:
+def test_page_rejects_other_methods(method: str) -> None:
     status, headers, _ = get(page(), method=method)
     assert status.startswith("405")
     assert headers["Allow"] == "GET, HEAD"
 
 
-def test_there_are_no_other_pages() -> None:
+def test_unknown_paths_are_not_found() -> None:
     assert get(page(), "/../pyproject.toml")[0].startswith("404")
     assert get(page(), "/part.png")[0].startswith("404")  # no part is drawn
     assert get(page(), "/alarm.svg")[0] == "200 OK"
 
 
-def test_head_has_no_body() -> None:
+def test_head_request_returns_an_empty_body() -> None:
     status, headers, body = get(page(), method="HEAD")
     assert (status, body) == ("200 OK", "")
     assert int(headers["Content-Length"]) > 500
 
 
-def test_a_page_open_to_the_shop_wants_a_token() -> None:
+def test_page_on_a_network_address_requires_a_token() -> None:
     text = read_machine_file("gt75.toml")
     with pytest.raises(MachineFileError, match=r"status_page\.token: .*0\.0\.0\.0"):
         parse_machine(text + '[status_page]\nbind = "0.0.0.0"\ntoken = "short"\n', "m.toml")
@@ -202,13 +202,13 @@ def test_a_page_open_to_the_shop_wants_a_token() -> None:
         ('topic = "shop/#"', "announce.topic"),
     ],
 )
-def test_a_wrong_address_of_who_is_told_is_refused(line: str, path: str) -> None:
+def test_invalid_announcement_address_is_rejected(line: str, path: str) -> None:
     with pytest.raises(MachineFileError) as told:
         parse_machine(f"{read_machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
     assert [finding.path for finding in told.value.findings] == [path]
 
 
-def test_the_broker_has_its_usual_port() -> None:
+def test_broker_address_has_the_default_port() -> None:
     assert parse_broker_address("shop-pc") == ("shop-pc", 1883)
     assert parse_broker_address("shop-pc:18") == ("shop-pc", 18)
 
@@ -216,7 +216,7 @@ def test_the_broker_has_its_usual_port() -> None:
 # --- what it shows ----------------------------------------------------------------------------------
 
 
-def test_what_a_program_is_called_is_text() -> None:
+def test_program_name_is_escaped_as_text() -> None:
     _, headers, body = get(page())
     for harm in ("<b>", "<i>", "<u>"):
         assert harm not in body
@@ -227,7 +227,7 @@ def test_what_a_program_is_called_is_text() -> None:
     assert "2:10" in body  # 130 s the last cycle
 
 
-def test_the_page_says_which_picture_belongs_to_what_it_shows() -> None:
+def test_picture_address_changes_with_the_picture() -> None:
     """Else that of the program before would stand beside another name for as long as it is not asked for."""
     pictures = [b""]
     shown = StatusPage("GT-75", "", lambda: STATUS, lambda: (), lambda: pictures[0], lambda: b"")
@@ -240,13 +240,13 @@ def test_the_page_says_which_picture_belongs_to_what_it_shows() -> None:
     assert marks[0] == marks[2] != marks[1]
 
 
-def test_what_happened_today_has_no_date() -> None:
+def test_events_of_today_are_shown_without_a_date() -> None:
     now = datetime.now().astimezone()
     told: StatusDocument = {**STATUS, "stops": [{"at": now.isoformat(), "reason": "FEED HOLD", "seconds": 5}]}
     assert f'<td class="time">{now:%H:%M:%S}</td>' in get(page(status=told))[2]
 
 
-def test_the_page_is_read_in_the_language_of_the_screen() -> None:
+def test_page_uses_the_screen_language() -> None:
     use_language("es")
     try:
         body, told = get(page(status={**STATUS, "stop": "GUARD OPEN"}))[2], get(page(), "/status.json")[2]
@@ -259,7 +259,7 @@ def test_the_page_is_read_in_the_language_of_the_screen() -> None:
     assert json.loads(told) == STATUS  # which programs read
 
 
-def test_an_alarm_is_told_once_and_without_an_empty_line() -> None:
+def test_alarm_is_shown_once_without_an_empty_line() -> None:
     text = "AXIS SENT, ITS ENCODER DOES NOT COUNT: X"
     alarm = {"number": 117, "code": "117", "text": text, "remedy": "look where the slide stands"}
     bare = {"number": None, "code": "interrupted", "text": "pin.nc line 52", "remedy": ""}
@@ -271,7 +271,7 @@ def test_an_alarm_is_told_once_and_without_an_empty_line() -> None:
     assert '<p class="why">GUARD OPEN</p>' in held
 
 
-def test_the_same_for_a_script() -> None:
+def test_status_json_equals_the_status() -> None:
     assert json.loads(get(page(), "/status.json")[2]) == STATUS
 
 
@@ -294,16 +294,16 @@ def test_a_running_part_has_its_time_left_and_the_newest_stops() -> None:
     assert [each["seconds"] for each in stops] == [18, 17, 16, 15, 14, 13][:MAX_LISTED_STOPS]
 
 
-def test_what_does_not_run_has_no_time_left() -> None:
+def test_idle_machine_has_no_time_left() -> None:
     assert looking(state=MachineState.IDLE)["time_left"] is None
 
 
-def test_a_message_to_the_operator_is_why_it_stands() -> None:
+def test_operator_message_is_shown_as_the_stop_reason() -> None:
     told = looking(state=MachineState.PROGRAM_STOP, message="TURN THE PART ROUND")
     assert told["stop"] == "TURN THE PART ROUND"
 
 
-def test_of_a_silent_control_nothing_else_is_said() -> None:
+def test_silent_control_shows_only_its_state() -> None:
     seconds = iter((0.0, 10.0, 20.0, 30.0))
     reader = MachineReader(LATHE, lambda: next(seconds))
     look = StatusSource("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
@@ -332,7 +332,7 @@ def connected(address: str, source: str = "127.0.0.1") -> socket.socket:
     return socket.create_connection((host.hostname, host.port), 60, source_address=(source, 0))
 
 
-def test_browsers_that_ask_half_a_question_keep_nobody_waiting() -> None:
+def test_incomplete_requests_do_not_block_other_clients() -> None:
     """More than there may be, of one address; without a token, as anybody in the network could."""
     with served(page()) as address, ExitStack() as half:
         for _ in range(150):
@@ -341,7 +341,7 @@ def test_browsers_that_ask_half_a_question_keep_nobody_waiting() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="one loopback address only")
-def test_connections_have_a_limit_in_all() -> None:
+def test_total_connections_are_limited() -> None:
     with served(page()) as address, ExitStack() as half:
         askers = [
             half.enter_context(connected(address, f"127.0.0.{2 + n // 10}"))
@@ -351,7 +351,7 @@ def test_connections_have_a_limit_in_all() -> None:
         assert read_turndesk_status(address).error_text == ""
 
 
-def test_connections_of_one_address_have_a_limit_and_the_oldest_ends() -> None:
+def test_connections_per_address_are_limited_and_the_oldest_is_closed() -> None:
     with served(page()) as address, ExitStack() as half:
         askers = [half.enter_context(connected(address)) for _ in range(MAX_CONNECTIONS_PER_HOST + 1)]
         assert askers[0].recv(1) == b""
@@ -359,7 +359,7 @@ def test_connections_of_one_address_have_a_limit_and_the_oldest_ends() -> None:
         assert askers[1].recv(12) == b"HTTP/1.0 200"
 
 
-def test_a_request_has_a_deadline_as_a_whole() -> None:
+def test_request_has_an_overall_deadline() -> None:
     """Bytes that go on coming do not put it off."""
     now = [100.0]
     with served(page(), lambda: now[0]) as address, connected(address) as drips:
@@ -376,7 +376,7 @@ def test_a_request_has_a_deadline_as_a_whole() -> None:
     "request_bytes",
     [b"GET http://[ HTTP/1.1\r\n\r\n", b"GET / HTTP/1.1\r\nContent-Length: %s\r\n\r\n" % (b"1" * 5000)],
 )
-def test_bytes_that_are_no_request_get_a_plain_refusal(
+def test_invalid_request_bytes_get_a_bad_request_response(
     request_bytes: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
     with served(page()) as address, connected(address) as odd:
@@ -391,7 +391,7 @@ def test_a_request_without_end_is_refused() -> None:
         assert odd.recv(12) == b"HTTP/1.0 431"
 
 
-def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
+def test_concurrent_requests_are_not_logged(caplog: pytest.LogCaptureFixture) -> None:
     go_on, under_way = threading.Event(), threading.Semaphore(0)
 
     def slow() -> StatusDocument:
@@ -413,7 +413,7 @@ def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytes
     assert caplog.records == []
 
 
-def test_a_desk_shows_another_one() -> None:
+def test_page_shows_another_machine() -> None:
     with served(page(TOKEN)) as address:
         heard = read_turndesk_status(f"{address}?token={TOKEN}")
     assert heard.error_text == ""
@@ -424,12 +424,12 @@ def test_a_desk_shows_another_one() -> None:
     assert TOKEN not in shown
 
 
-def test_another_desk_that_wants_another_token_says_so() -> None:
+def test_wrong_token_of_another_machine_is_reported() -> None:
     with served(page(TOKEN)) as address:
         assert read_turndesk_status(address).error_text == text("shopfloor.other-token")
 
 
-def test_a_desk_that_is_off_does_not_answer() -> None:
+def test_machine_that_is_off_is_shown_as_not_responding() -> None:
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
         heard = read_turndesk_status(f"http://127.0.0.1:{nobody.getsockname()[1]}")
@@ -438,7 +438,7 @@ def test_a_desk_that_is_off_does_not_answer() -> None:
     assert text("shopfloor.no-answer-shown") in get(page(others=(heard,)))[2]
 
 
-def test_what_another_desk_says_is_not_believed() -> None:
+def test_status_from_another_machine_is_validated() -> None:
     odd: StatusDocument = {**STATUS, "time_left": "soon", "program": ["x"], "line": {"a": 1}, "state": "<hr>"}
     with served(page(status=odd)) as address:
         heard = read_turndesk_status(address)
@@ -448,7 +448,7 @@ def test_what_another_desk_says_is_not_believed() -> None:
 
 
 @pytest.mark.parametrize("odd", [float("inf"), float("nan"), -float("inf"), 10**400, True])
-def test_a_figure_that_is_none_is_left_out(odd: float) -> None:
+def test_invalid_number_from_another_machine_is_omitted(odd: float) -> None:
     with served(page(status={**STATUS, "time_left": odd, "last_cycle": odd})) as address:
         heard = read_turndesk_status(address)
     assert heard.status is not None
@@ -456,12 +456,12 @@ def test_a_figure_that_is_none_is_left_out(odd: float) -> None:
     assert "RUNNING" in get(page(others=(heard,)))[2]
 
 
-def test_the_address_of_the_status() -> None:
+def test_status_address_is_derived_from_the_page_address() -> None:
     assert make_status_address("http://a:1/?token=x") == "http://a:1/status.json?token=x"
     assert make_status_address("http://a:1/desk") == "http://a:1/desk/status.json"
 
 
-def test_other_desks_are_asked_while_somebody_looks() -> None:
+def test_other_machines_are_polled_only_while_the_page_is_viewed() -> None:
     heard = OtherMachine("lathe2", {"state": "READY"})
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: heard)
     assert (asking.read_states()[0].state, asking.read_states()[0].error_text) == ("…", "")
@@ -471,7 +471,7 @@ def test_other_desks_are_asked_while_somebody_looks() -> None:
     asking.close()
 
 
-def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> None:
+def test_older_turndesk_shows_its_data_and_a_dead_one_is_marked() -> None:
     """Side by side: one that knows no counts and times yet, one that was killed, one as new as this."""
     older: StatusDocument = {key: STATUS[key] for key in ("machine", "state", "program", "line")}
     with served(page(status=older)) as old, served(page(status=STATUS)) as new, socket.socket() as dead:
@@ -489,7 +489,7 @@ def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> No
     ]
 
 
-def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
+def test_hung_machine_does_not_delay_the_others() -> None:
     hangs, healthy = threading.Event(), OtherMachine("lathe3", {"state": "READY"})
 
     def ask(address: str) -> OtherMachine:
@@ -509,7 +509,7 @@ def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
         asking.close()
 
 
-def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
+def test_outdated_status_is_not_shown_as_current() -> None:
     now = [0.0]
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
     asking.read_states()
@@ -523,7 +523,7 @@ def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
     )
 
 
-def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
+def test_machine_that_never_responds_is_reported_after_a_delay() -> None:
     now = [100.0]
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
     assert asking.read_states()[0].state == "…"
@@ -534,7 +534,7 @@ def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
     )
 
 
-def test_a_desk_that_dies_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_machine_that_dies_retains_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(other_machines, "READ_INTERVAL_S", 0.001)
     dies, answers = (
         threading.Event(),
@@ -561,7 +561,7 @@ def test_a_desk_that_dies_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "Connection refused" in shown
 
 
-def test_who_looks_after_a_night_sees_no_desk_that_is_dead_because_nobody_asked() -> None:
+def test_machines_are_not_reported_dead_after_a_polling_pause() -> None:
     now = [0.0]
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
     asking.read_states()
@@ -570,7 +570,7 @@ def test_who_looks_after_a_night_sees_no_desk_that_is_dead_because_nobody_asked(
     assert (asking.read_states()[0].status, asking.read_states()[0].state) == (None, "…")
 
 
-def test_a_port_that_is_taken_is_told() -> None:
+def test_port_in_use_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         with raises_code(DriverError, "driver", f"[status_page] 127.0.0.1:{port}: "):
@@ -599,7 +599,7 @@ def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
 # --- pictures ---------------------------------------------------------------------------------------
 
 
-def test_no_part_is_drawn_while_one_is_made() -> None:
+def test_part_picture_is_not_drawn_while_a_part_is_made() -> None:
     runs, drawn = [True], []
     job: Any = SimpleNamespace(digest="a")
 
@@ -619,7 +619,7 @@ def test_no_part_is_drawn_while_one_is_made() -> None:
     assert picture.get_png() == b""  # of another program
 
 
-def test_a_png_is_what_qt_reads() -> None:
+def test_encoded_png_can_be_read_by_qt() -> None:
     colours = [0xFF102030, 0x80FFFFFF, 0x00000000, 0xFF00FF00, 0xFFFF0000, 0xFF0000FF]
     image = QImage.fromData(encode_png(np.array(colours, dtype=np.uint32).tobytes(), 3, 2))
     assert [image.pixel(x, y) for y in range(2) for x in range(3)] == colours
@@ -634,7 +634,7 @@ def record_of(error: Any) -> ScopeRecord:
     return ScopeRecord(channels, times, columns, 0.0, 1000.0, about)
 
 
-def test_an_alarm_is_drawn_with_its_peak() -> None:
+def test_alarm_drawing_shows_the_peak() -> None:
     error = np.zeros(5000)
     error[2500] = 0.25  # one sample of 5 000, at the alarm
     svg = make_alarm_svg(record_of(error)).decode()

@@ -26,7 +26,7 @@ def office(snapshot: Snapshot) -> StatusDocument:
     ).read_status()
 
 
-def test_the_office_page_and_events() -> None:
+def test_office_page_and_events_have_the_declared_keys() -> None:
     told = [office(shot) for shot in shots()]
     declared_alone([json.loads(json.dumps(status)) for status in told], STATUS_PAGE_KEYS)
     declared_alone(
@@ -34,5 +34,5 @@ def test_the_office_page_and_events() -> None:
     )
 
 
-def test_meanings_are_sentences() -> None:
+def test_key_meanings_are_sentences() -> None:
     assert [key for key in EVENT_KEYS if not key.meaning.endswith(".") or "|" in key.meaning] == []

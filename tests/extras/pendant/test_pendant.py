@@ -94,7 +94,7 @@ class Bench:
         return self.pendant.get_state().wheel_counts
 
 
-def test_the_struct_is_the_kernels() -> None:
+def test_input_event_struct_matches_the_kernel() -> None:
     """Of 64 bits: 16 bytes of time, 2 of type, 2 of code, 4 of value."""
     data = bytes.fromhex(
         "0a00000000000000 20a1070000000000 0200 0700 ffffffff 0b00000000000000 0000000000000000"
@@ -107,7 +107,7 @@ def test_the_struct_is_the_kernels() -> None:
     assert event == (10.5, REL, REL_DIAL, -1)
 
 
-def test_a_packet_in_pieces_counts_once_it_is_whole() -> None:
+def test_packet_in_pieces_counts_once_it_is_complete() -> None:
     packets = PacketParser()
     data = EVENT.pack(1, 0, REL, REL_DIAL, 3) + EVENT.pack(1, 0, SYN, 0, 0)
     assert [packet for i in range(len(data) - 1) for packet in packets.parse(data[i : i + 1])] == []
@@ -115,7 +115,7 @@ def test_a_packet_in_pieces_counts_once_it_is_whole() -> None:
     assert packet.events[0].value == 3
 
 
-def test_a_button_is_held_until_it_comes_up() -> None:
+def test_button_is_pressed_until_it_is_released() -> None:
     bench = Bench()
     bench.device.key(BTN_A, True)
     bench.look()
@@ -128,7 +128,7 @@ def test_a_button_is_held_until_it_comes_up() -> None:
     assert bench.held == set()
 
 
-def test_a_hat_is_two_buttons() -> None:
+def test_hat_acts_as_two_buttons() -> None:
     bench = Bench()
     for value, names in ((1, {"jog_z_plus"}), (-1, {"jog_z_minus"}), (0, set())):
         bench.device.send((ABS, ABS_HAT0X, value))
@@ -136,7 +136,7 @@ def test_a_hat_is_two_buttons() -> None:
         assert bench.held == names
 
 
-def test_the_wheel_counts() -> None:
+def test_wheel_clicks_are_counted() -> None:
     bench = Bench()
     for counts in (1, 1, -3, 2):
         bench.device.turn(counts)
@@ -144,14 +144,14 @@ def test_the_wheel_counts() -> None:
     assert bench.counts == 1
 
 
-def test_a_second_report_of_the_same_turning_in_finer_steps_counts_nothing() -> None:
+def test_high_resolution_duplicate_of_a_wheel_event_is_ignored() -> None:
     bench = Bench()
     bench.device.send((REL, REL_DIAL, 1), (REL, 12, 120))
     bench.look()
     assert bench.counts == 1
 
 
-def test_a_dial_that_tells_its_place_moves_nothing_by_a_report_of_the_same_place() -> None:
+def test_repeated_dial_position_counts_nothing() -> None:
     """A Shuttle tells the place of its dial with every button, and never 0."""
     bench = Bench(place=True)
     for place in (200, 200, 201, 201):
@@ -170,7 +170,7 @@ def test_a_dial_that_tells_its_place_moves_nothing_by_a_report_of_the_same_place
 # --- what does not count --------------------------------------------------------------------------------
 
 
-def test_what_is_down_when_it_is_plugged_in_counts_from_the_next_press_on() -> None:
+def test_button_pressed_at_plug_in_counts_from_the_next_press() -> None:
     bench = Bench(pressed=(BTN_A,))
     assert bench.held == set()
     bench.device.send((KEY, BTN_A, 2))
@@ -183,11 +183,11 @@ def test_what_is_down_when_it_is_plugged_in_counts_from_the_next_press_on() -> N
     assert bench.held == {"jog_x_plus"}
 
 
-def test_a_stop_that_is_down_when_it_is_plugged_in_stops() -> None:
+def test_stop_pressed_at_plug_in_stops() -> None:
     assert Bench(pressed=(BTN_B,)).held == {"hold"}
 
 
-def test_a_late_press_moves_nothing_and_a_late_release_and_a_late_stop_count() -> None:
+def test_late_press_is_ignored_but_late_release_and_stop_count() -> None:
     bench = Bench()
     bench.device.key(BTN_A, True, ago=0.11)
     bench.look()
@@ -202,7 +202,7 @@ def test_a_late_press_moves_nothing_and_a_late_release_and_a_late_stop_count() -
     assert bench.held == {"hold"}
 
 
-def test_late_counts_are_dropped() -> None:
+def test_late_wheel_counts_are_dropped() -> None:
     bench = Bench()
     bench.device.turn(5, ago=0.2)
     bench.device.turn(1)
@@ -210,7 +210,7 @@ def test_late_counts_are_dropped() -> None:
     assert bench.counts == 1
 
 
-def test_a_late_place_moves_nothing_and_the_next_counts_from_it() -> None:
+def test_late_dial_position_is_only_the_new_reference() -> None:
     bench = Bench(place=True)
     bench.device.turn(10)
     bench.device.turn(40, ago=0.2)
@@ -219,7 +219,7 @@ def test_a_late_place_moves_nothing_and_the_next_counts_from_it() -> None:
     assert bench.counts == 1
 
 
-def test_dropped_events_let_everything_go_and_take_the_wheel_away() -> None:
+def test_dropped_events_release_all_buttons_and_deselect_the_wheel() -> None:
     bench = Bench()
     bench.device.key(BTN_A, True)
     bench.look()
@@ -239,7 +239,7 @@ def test_dropped_events_let_everything_go_and_take_the_wheel_away() -> None:
     assert bench.held == {"jog_x_plus"}
 
 
-def test_a_key_that_came_up_in_what_was_dropped_is_up() -> None:
+def test_key_released_in_dropped_events_is_released() -> None:
     bench = Bench()
     bench.device.key(BTN_B, True)
     bench.look()
@@ -273,7 +273,7 @@ class Inner:
         raise DriverError("safe")
 
 
-def test_unplugged_everything_is_let_go_and_it_is_told() -> None:
+def test_unplugging_releases_everything_and_is_reported() -> None:
     bench = Bench()
     bench.device.key(BTN_A, True)
     bench.device.key(BTN_0, True)
@@ -291,7 +291,7 @@ def test_unplugged_everything_is_let_go_and_it_is_told() -> None:
     assert "not plugged in" in station.read_state().wheel_trouble
 
 
-def test_one_without_a_stop_holds_once_and_is_not_missed() -> None:
+def test_pendant_without_stop_buttons_holds_once_when_unplugged() -> None:
     bench = Bench()
     station = PendantStation(Inner(), bench.pendant, has_stops=False, has_wheel=True)
     bench.device.pull()
@@ -304,7 +304,7 @@ def test_one_without_a_stop_holds_once_and_is_not_missed() -> None:
     assert "not plugged in" in station.read_state().wheel_trouble
 
 
-def test_plugged_in_again_it_is_back_and_nothing_moves_by_itself() -> None:
+def test_replugged_pendant_works_again_and_moves_nothing() -> None:
     bench = Bench()
     bench.device.turn(3)
     bench.look()
@@ -320,7 +320,7 @@ def test_plugged_in_again_it_is_back_and_nothing_moves_by_itself() -> None:
     assert bench.counts == 4
 
 
-def test_a_reader_that_has_stopped_holds_nothing() -> None:
+def test_stopped_reader_releases_all_buttons() -> None:
     bench = Bench()
     bench.device.key(BTN_A, True)
     bench.look()
@@ -329,7 +329,7 @@ def test_a_reader_that_has_stopped_holds_nothing() -> None:
     assert "has stopped" in bench.pendant.get_state().missing_reason
 
 
-def test_it_adds_to_the_station_and_can_start_nothing() -> None:
+def test_pendant_extends_the_station_and_cannot_start_a_cycle() -> None:
     bench = Bench()
     bench.device.turn(2)
     bench.device.key(BTN_B, True)
@@ -346,7 +346,7 @@ def test_it_adds_to_the_station_and_can_start_nothing() -> None:
         io.switch_to_safe_state()
 
 
-def test_its_thread_reads_and_ends() -> None:
+def test_reader_thread_reads_and_ends() -> None:
     bench = Bench()
     bench.pendant.start()
     bench.pendant.close()
@@ -354,7 +354,7 @@ def test_its_thread_reads_and_ends() -> None:
     assert bench.held == set()
 
 
-def test_a_control_at_rest_hears_at_once_that_something_was_pressed_turned_or_unplugged() -> None:
+def test_press_turn_or_unplug_wakes_the_control_at_rest() -> None:
     bench = Bench()
     acts: tuple[Callable[[], None], ...] = (
         lambda: bench.device.key(BTN_A, True),
@@ -388,7 +388,7 @@ class Said:
         self.buttons.apply_packet(EventPacket((InputEvent(10.0 - ago, kind, code, value),)), 10.0)
 
 
-def test_an_absolute_wheel_counts_from_where_it_stands_and_round_its_end() -> None:
+def test_absolute_wheel_counts_from_its_position_and_wraps_around() -> None:
     """0 to 255: from 250 to 5 are eleven on, back to 255 six the other way; a late one moves its place."""
     said = Said("ABS_WHEEL", {ABS_WHEEL: AxisRange(0, 255, 250)})
     counts = []
@@ -406,14 +406,14 @@ def test_an_absolute_wheel_without_a_range_counts_nothing() -> None:
 
 
 @pytest.mark.parametrize("ranges", [{}, {ABS_HAT0X: AxisRange(0, 0, 0)}])
-def test_a_stick_of_which_the_range_is_not_known_is_never_held(ranges: dict[int, AxisRange]) -> None:
+def test_stick_with_unknown_range_is_never_pressed(ranges: dict[int, AxisRange]) -> None:
     said = Said("REL_DIAL", ranges)
     for value in (1, 255, -32768):
         said.tell(ABS, ABS_HAT0X, value)
         assert said.buttons.pressed_names == set()
 
 
-def test_a_stick_is_held_to_one_side_until_it_is_back() -> None:
+def test_stick_is_pressed_to_one_side_until_it_returns() -> None:
     said = Said("REL_DIAL", {ABS_HAT0X: AxisRange(0, 200, 100)})
     seen = []
     for value in (140, 190, 140, 105, 10):
@@ -422,7 +422,7 @@ def test_a_stick_is_held_to_one_side_until_it_is_back() -> None:
     assert seen == [set(), {"jog_z_plus"}, {"jog_z_plus"}, set(), {"jog_z_minus"}]
 
 
-def test_a_late_report_of_a_button_that_is_held_changes_nothing() -> None:
+def test_late_report_of_a_pressed_button_changes_nothing() -> None:
     said = Said("REL_DIAL", {})
     said.tell(KEY, BTN_A, 1)
     said.tell(KEY, BTN_A, 1, ago=5.0)
@@ -441,7 +441,7 @@ class Pulled(Peer):
         raise OSError(19, "No such device")
 
 
-def test_one_that_goes_while_it_is_opened_is_let_go_and_looked_for_again() -> None:
+def test_pendant_unplugged_while_opening_is_released_and_searched_again() -> None:
     bench = Bench()
     bench.device.pull()
     bench.look()
@@ -455,7 +455,7 @@ def test_one_that_goes_while_it_is_opened_is_let_go_and_looked_for_again() -> No
     assert bench.pendant.get_state().missing_reason == ""
 
 
-def test_a_pendant_that_was_never_started_is_let_go() -> None:
+def test_pendant_that_was_never_started_is_released() -> None:
     bench = Bench()
     device = bench.device
     bench.pendant.close()

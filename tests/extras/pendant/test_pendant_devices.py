@@ -62,11 +62,11 @@ def in_sysfs(
         (device / path).write_text(text + "\n")
 
 
-def test_sysfs_is_read() -> None:
+def test_missing_sysfs_folder_lists_no_devices() -> None:
     assert list_devices(Path("/nowhere")) == []
 
 
-def test_capabilities_are_words_of_64_bits_the_highest_first(tmp_path: Path) -> None:
+def test_capability_words_are_64_bits_with_the_highest_first(tmp_path: Path) -> None:
     in_sysfs(tmp_path, "event3", "Shop Pendant", key="3000000000000 0 0 0 0", rel="80")
     in_sysfs(tmp_path, "event4", "Mouse", bus="0005")
     first, second = list_devices(tmp_path)
@@ -75,7 +75,7 @@ def test_capabilities_are_words_of_64_bits_the_highest_first(tmp_path: Path) -> 
     assert second.bluetooth
 
 
-def test_a_device_that_is_pulled_out_while_it_is_read_is_none(tmp_path: Path) -> None:
+def test_device_unplugged_while_listing_is_omitted(tmp_path: Path) -> None:
     in_sysfs(tmp_path, "event3", "Shop Pendant")
     (tmp_path / "event4" / "device").mkdir(parents=True)  # without its name
     (tmp_path / "event5").mkdir()
@@ -83,12 +83,12 @@ def test_a_device_that_is_pulled_out_while_it_is_read_is_none(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("device", ["Shop Pendant", "shop pendant", "0B33:0030"])
-def test_by_name_or_by_number(device: str) -> None:
+def test_device_is_selected_by_name_or_number(device: str) -> None:
     other = entry(node="event4", name="Keyboard", numbers="046d:c31c", stem="usb-1.1")
     assert select_device_nodes(device, "", WANTED, [other, entry()]) == (entry(),)
 
 
-def test_one_device_of_two_nodes_is_both() -> None:
+def test_device_with_two_nodes_selects_both() -> None:
     dial = entry(node="event4", name="Shop Pendant Dial", able=frozenset({(REL, 7)}))
     buttons = entry(able=frozenset({(KEY, 0x131)}))
     mouse = entry(node="event5", able=frozenset({(KEY, 0x110)}))
@@ -111,18 +111,20 @@ def test_one_device_of_two_nodes_is_both() -> None:
         ([entry(bluetooth=True)], "", "bluetooth", []),
     ],
 )
-def test_what_is_refused(found: list[DeviceEntry], serial: str, reason: str, values: list[str]) -> None:
+def test_ambiguous_or_missing_device_is_rejected(
+    found: list[DeviceEntry], serial: str, reason: str, values: list[str]
+) -> None:
     with raises_code(DriverError, "driver", *values) as told:
         select_device_nodes("Shop Pendant", serial, WANTED, found)
     assert told.value.reason == reason
 
 
-def test_a_twin_is_told_apart_by_its_serial() -> None:
+def test_identical_devices_are_distinguished_by_serial_number() -> None:
     twin = entry(node="event9", stem="usb-1.3", serial="B2")
     assert select_device_nodes("Shop Pendant", "B2", WANTED, [entry(serial="A1"), twin]) == (twin,)
 
 
-def test_what_may_not_be_read_says_the_rule_to_add(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_permission_error_shows_the_udev_rule(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> int:
         raise PermissionError(13, "Permission denied")
 
@@ -133,15 +135,13 @@ def test_what_may_not_be_read_says_the_rule_to_add(tmp_path: Path, monkeypatch: 
     assert "/etc/udev/rules.d/70-turndesk-pendant.rules" in str(caught.value)
 
 
-def test_a_node_that_is_gone_is_told_with_the_cause(tmp_path: Path) -> None:
+def test_missing_node_is_reported_with_the_cause(tmp_path: Path) -> None:
     with raises_code(DriverError, "driver", "Shop Pendant") as told:
         KernelDevice(entry(), tmp_path)
     assert told.value.reason == "not-opened"
 
 
-def test_the_kernel_is_asked_by_the_numbers_of_its_header(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ioctl_numbers_match_the_kernel_header(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """EVIOCSCLOCKID, EVIOCGRAB, EVIOCGKEY of 96 bytes, EVIOCGABS of axis 16, as linux/input.h makes them."""
     asked: list[int] = []
 
@@ -165,14 +165,14 @@ def test_the_kernel_is_asked_by_the_numbers_of_its_header(
     device.close()  # a second time is nothing
 
 
-def test_a_file_that_is_no_device_is_none(tmp_path: Path) -> None:
+def test_file_that_is_not_a_device_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "event3").write_bytes(b"")
     with raises_code(DriverError, "driver", "Shop Pendant") as told:
         KernelDevice(entry(), tmp_path)
     assert told.value.reason == "taken"
 
 
-def test_names_are_the_kernels() -> None:
+def test_event_names_match_the_kernel_header() -> None:
     """Against the kernel's own header, where it is installed."""
     header = Path("/usr/include/linux/input-event-codes.h")
     if not header.exists():
@@ -199,9 +199,9 @@ def test_names_are_the_kernels() -> None:
 
 
 @pytest.mark.parametrize("name", ["", "BTN_NONE", "KEY_0xfff", "ABS_HAT0X", "REL_DIAL", "+", "ABS_+"])
-def test_what_is_no_button(name: str) -> None:
+def test_invalid_button_name_is_not_parsed(name: str) -> None:
     assert parse_button_name(name) is None
 
 
-def test_a_key_by_its_number() -> None:
+def test_key_is_named_by_its_number() -> None:
     assert parse_button_name("KEY_0x1d3") == PendantControl(KEY, 0x1D3)

@@ -49,7 +49,7 @@ def refused(*changes: tuple[str, str]) -> str:
     return str(caught.value)
 
 
-def test_a_pendant() -> None:
+def test_pendant_table_is_read_and_removed_from_the_backend_machine() -> None:
     machine = parse_machine(text(), "test")
     assert machine.hardware.find_driver_table(PendantModel) == PendantModel("0b33:0030", "", "place")
     backend = remove_pendant(machine)
@@ -94,11 +94,11 @@ def test_a_pendant() -> None:
         ("handwheel = {", "feed_pot = {", "the handwheel is the only analog input that can be on a pendant"),
     ],
 )
-def test_what_is_refused(old: str, new: str, expected: str) -> None:
+def test_invalid_pendant_table_is_rejected(old: str, new: str, expected: str) -> None:
     assert expected in refused((old, new))
 
 
-def test_a_pendant_that_nothing_is_at() -> None:
+def test_pendant_table_without_button_assignments_is_rejected() -> None:
     found = resources.read_machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
     with pytest.raises(MachineFileError) as caught:
         parse_machine(found, "test")
@@ -107,7 +107,7 @@ def test_a_pendant_that_nothing_is_at() -> None:
     assert "pendant.BTN_B" in finding.expected_value
 
 
-def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_pendant_fails_its_row_in_machine_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """``machine check`` names it, and what to do; the machine answers all the same."""
     monkeypatch.setattr("app.extras.pendant.pendant_setup.list_devices", list)
     answers = check_machine(parse_machine(text(), "test"))
@@ -118,7 +118,7 @@ def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.Mon
     assert {rows[name].verdict for name in ("X", "Z", "spindle", "input wheel_x")} == {"not checked"}
 
 
-def test_a_pendant_that_is_there_is_read_beside_the_machine() -> None:
+def test_connected_pendant_is_read_alongside_the_machine() -> None:
     peer = Peer({ABS_HAT0X: AxisRange(-1, 1, 0)})
     machine = parse_machine(text(), "test")
     connected = add_pendant(

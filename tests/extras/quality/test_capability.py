@@ -12,7 +12,7 @@ from tests.coded import raises_code
 TEN = [9.99, 10.01] * 5
 
 
-def test_worked_by_hand() -> None:
+def test_capability_matches_hand_calculation() -> None:
     """Every moving range is .02, so sigma within is .02/1.128; all of it s = .01 √(10/9)."""
     found = calculate_capability(TEN, 9.95, 10.08)
     assert found.mean == pytest.approx(10.0)
@@ -22,28 +22,28 @@ def test_worked_by_hand() -> None:
     assert found.ppk == pytest.approx(1.581139, abs=1e-6)
 
 
-def test_what_ten_readings_promise_at_least() -> None:
+def test_cpk_lower_bound_of_ten_readings_matches_hand_calculation() -> None:
     """.94 − 1.645 √(1/90 + .8836/18)."""
     assert calculate_capability(TEN, 9.95, 10.08).cpk_lower_bound == pytest.approx(0.536388, abs=1e-5)
 
 
-def test_in_samples_the_range_tells_the_scatter() -> None:
+def test_within_sigma_of_samples_comes_from_the_range() -> None:
     """Five samples of two, each range .02: the same sigma; samples of five have d2 2.326."""
     assert calculate_capability(TEN, 9.95, 10.08, 2).cpk == pytest.approx(0.94)
     assert calculate_capability(TEN, 9.95, 10.08, 5).cpk == pytest.approx(0.05 * 2.326 / 0.06)
 
 
-def test_one_limit_has_no_width() -> None:
+def test_one_sided_tolerance_has_no_cp() -> None:
     found = calculate_capability(TEN, None, 10.05)
     assert (found.cp, found.pp) == (None, None)
     assert found.cpk == pytest.approx(0.94)
 
 
-def test_a_mean_outside_is_negative() -> None:
+def test_mean_outside_the_limits_gives_a_negative_cpk() -> None:
     assert (calculate_capability(TEN, 9.8, 9.95).cpk or 0) == pytest.approx(-0.94)
 
 
-def test_a_gauge_that_sees_no_scatter_has_no_cpk() -> None:
+def test_readings_without_scatter_have_no_cpk() -> None:
     found = calculate_capability([10.0] * 12, 9.9, 10.1)
     assert (found.cpk, found.cp, found.cpk_lower_bound) == (None, None, None)
 
@@ -58,6 +58,6 @@ def test_a_gauge_that_sees_no_scatter_has_no_cpk() -> None:
         (MIN_READINGS, 10.0, 10.0, "limits-reversed"),
     ],
 )
-def test_refused(count: int, lower: float | None, upper: float | None, code: str) -> None:
+def test_invalid_input_is_rejected(count: int, lower: float | None, upper: float | None, code: str) -> None:
     with raises_code(QualityError, code):
         calculate_capability(TEN[:count], lower, upper)

@@ -18,7 +18,7 @@ from core.extras.quality.control_charts import (
 from tests.coded import raises_code
 
 
-def test_average_and_range_of_samples_of_two() -> None:
+def test_xbar_r_limits_of_samples_of_two_match_hand_calculation() -> None:
     """Means 11 12 13, ranges 2 2 2: 12 ± 1.880 · 2, and 3.267 · 2 for the range."""
     pair = make_xbar_r_charts([(10, 12), (11, 13), (14, 12)])
     assert pair.location.points.tolist() == [11, 12, 13]
@@ -31,7 +31,7 @@ def test_average_and_range_of_samples_of_two() -> None:
     assert pair.within_sigma == pytest.approx(2 / 1.128)
 
 
-def test_the_classic_sample_of_five() -> None:
+def test_xbar_r_limits_of_samples_of_five_match_montgomery() -> None:
     """A2 .577, D3 0, D4 2.114 at an average range of .32521 and a mean of 1.5056 (Montgomery)."""
     half = 0.32521 / 2
     rows = [(1.5056 - half, 1.5056 - half / 2, 1.5056, 1.5056 + half / 2, 1.5056 + half)] * 3
@@ -41,7 +41,7 @@ def test_the_classic_sample_of_five() -> None:
     assert pair.spread.upper_limit == pytest.approx(0.68749, abs=2e-5)
 
 
-def test_individuals() -> None:
+def test_individuals_chart_matches_hand_calculation() -> None:
     """Values 10 12 11 13: moving ranges 2 1 2, mean 5/3; 11.5 ± 3/1.128 · 5/3, 3.267 · 5/3."""
     pair = make_individuals_charts([10, 12, 11, 13])
     assert pair.location.upper_limit == pytest.approx(11.5 + 3 / 1.128 * 5 / 3)
@@ -51,7 +51,7 @@ def test_individuals() -> None:
 
 
 @pytest.mark.parametrize("size", range(2, 11))
-def test_the_constants_belong_together(size: int) -> None:
+def test_chart_factors_are_consistent(size: int) -> None:
     """A2 is 3/(d2 √n); D3 and D4 lie as far from 1 on both sides, where D3 is not cut off at 0."""
     a2, d3, d4, d2 = CHART_FACTORS[size]
     assert a2 == pytest.approx(3 / (d2 * math.sqrt(size)), abs=1e-3)
@@ -64,12 +64,12 @@ def test_d2_is_the_mean_range_of_a_normal_sample() -> None:
         assert np.ptp(drawn[:, :size], axis=1).mean() == pytest.approx(factors.d2, rel=0.005)
 
 
-def test_an_incomplete_sample_waits() -> None:
+def test_incomplete_sample_is_not_charted() -> None:
     assert len(make_charts([1, 2, 3, 4, 5], 2).location.points) == 2
     assert len(make_charts([1, 2, 3, 4, 5], 1).location.points) == 5
 
 
-def test_limits_settle_with_twenty_points() -> None:
+def test_limits_are_stable_from_twenty_points() -> None:
     assert not ControlChart(np.zeros(19), 0, -1, 1).has_stable_limits
     assert ControlChart(np.zeros(20), 0, -1, 1).has_stable_limits
 
@@ -86,11 +86,11 @@ def test_limits_settle_with_twenty_points() -> None:
         ([1, 2, 3, math.inf], 2, "not-a-number"),
     ],
 )
-def test_what_has_no_chart(values: list[float], size: int, code: str) -> None:
+def test_invalid_values_or_sample_size_are_rejected(values: list[float], size: int, code: str) -> None:
     with raises_code(QualityError, code):
         make_charts(values, size)
 
 
-def test_ragged_samples_have_no_chart() -> None:
+def test_ragged_samples_are_rejected() -> None:
     with raises_code(QualityError, "sample-size"):
         make_xbar_r_charts([1, 2, 3])

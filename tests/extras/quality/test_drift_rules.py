@@ -30,13 +30,13 @@ def rules(points: list[float]) -> list[tuple[int, int]]:
         (8, [1.2, -1.2, -1.2, 1.2, 1.2, -1.2, -1.2, 1.2]),
     ],
 )
-def test_found_at_its_last_point(rule: int, points: list[float]) -> None:
+def test_rule_violation_is_found_at_its_last_point(rule: int, points: list[float]) -> None:
     padded = [0.0, *points] if rule == 5 and len(points) == 2 else points
     assert (len(padded) - 1, rule) in rules(padded)
     assert rule not in {each for _, each in rules(padded[:-1])}, "one point short of it"
 
 
-def test_what_is_no_drift() -> None:
+def test_normal_scatter_violates_no_rule() -> None:
     assert rules([0.4, -1.2, 0.9, -0.3, 1.6, -0.7, 0.1, -2.2, 0.8]) == []
     assert rules([3.0, -3.0]) == [], "on the limit is within it"
     assert rules([2.1, 0.0, -2.1]) == [], "two of three on different sides"
@@ -44,12 +44,12 @@ def test_what_is_no_drift() -> None:
     assert 2 not in {rule for _, rule in rules([0.2] * 4 + [0.0] + [0.2] * 4)}, "on the line is on no side"
 
 
-def test_points_that_do_not_scatter_tell_nothing() -> None:
+def test_points_without_scatter_violate_no_rule() -> None:
     assert find_rule_violations(ControlChart(np.ones(30), 1.0, 1.0, 1.0)) == ()
     assert find_rule_violations(ControlChart(np.zeros(0), 0.0, -3.0, 3.0)) == ()
 
 
-def test_each_has_words() -> None:
+def test_each_rule_has_its_own_text() -> None:
     assert len({words for words, _ in CONTROL_RULES.values()}) == 8
     assert find_rule_violations(ControlChart(np.asarray([4.0]), 0, -3, 3))[0].text == (
         "one point beyond a control limit"

@@ -39,7 +39,7 @@ from tests.texts import pattern, text
         ("12 MM", 12.0, "mm"),
     ],
 )
-def test_a_line_is_a_reading(line: str, value: float, unit: str) -> None:
+def test_line_is_parsed_as_a_reading(line: str, value: float, unit: str) -> None:
     assert parse_reading(line) == GaugeReading(value, unit)
 
 
@@ -57,7 +57,7 @@ def test_a_line_is_a_reading(line: str, value: float, unit: str) -> None:
         ("+", "not-a-reading"),
     ],
 )
-def test_what_is_no_reading(line: str, code: str) -> None:
+def test_invalid_line_is_rejected(line: str, code: str) -> None:
     with raises_code(GaugeError, code):
         parse_reading(line)
 
@@ -70,7 +70,7 @@ def test_bytes_are_cut_into_lines() -> None:
     assert reader.split_lines(b" mm\r") == ["3 mm"]
 
 
-def test_a_line_without_an_end_does_not_grow() -> None:
+def test_line_without_an_end_is_limited() -> None:
     reader = LineSplitter()
     assert reader.split_lines(b"x" * (MAX_LINE_LENGTH + 1)) == ["x" * (MAX_LINE_LENGTH + 1)]
     assert reader.split_lines(b"1 mm\r") == ["1 mm"]
@@ -129,7 +129,7 @@ def listening(bench: Bench) -> None:
     bench.hears(lambda found: GaugeReading(9999.0, "mm") in found)
 
 
-def test_both_kinds_of_lines_and_garbage_between(bench: Bench) -> None:
+def test_gauge_reads_both_line_formats_and_reports_garbage(bench: Bench) -> None:
     listening(bench)
     bench.send(b"01A+00000.5012\r")
     bench.send(b"\x00\xff#?\r\n12.345 mm\r\n")
@@ -140,7 +140,7 @@ def test_both_kinds_of_lines_and_garbage_between(bench: Bench) -> None:
     assert found[2] == GaugeReading(12.345, "mm")
 
 
-def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> None:
+def test_unplugged_cable_is_reported_and_f5_reconnects(bench: Bench) -> None:
     listening(bench)
     os.close(bench.far)
     os.close(bench.near)
@@ -155,7 +155,7 @@ def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> No
     assert not bench.wire.is_receiving
 
 
-def test_a_port_that_is_not_there(bench: Bench) -> None:
+def test_missing_serial_port_is_reported(bench: Bench) -> None:
     gone = SerialGauge(GaugeModel("/dev/ttyNONE", "g", "mm", 9600, 8, "N", 1))
     assert gone.toggle_receiving() == ""
     bench.wire = gone
@@ -163,7 +163,7 @@ def test_a_port_that_is_not_there(bench: Bench) -> None:
     assert "this port does not exist" in str(why)
 
 
-def test_silence_is_told(bench: Bench) -> None:
+def test_silence_is_reported(bench: Bench) -> None:
     assert "Press F5 to start" in bench.wire.status_text
     listening(bench)
     assert re.fullmatch(pattern("quality.listening"), bench.wire.status_text)
@@ -174,13 +174,13 @@ def test_silence_is_told(bench: Bench) -> None:
     assert re.fullmatch(pattern("quality.listening"), bench.wire.status_text)
 
 
-def test_listening_ends(bench: Bench) -> None:
+def test_receiving_can_be_stopped(bench: Bench) -> None:
     listening(bench)
     assert bench.wire.toggle_receiving() == ""
     assert not bench.wire.is_receiving
 
 
-def test_a_machine_without_a_gauge() -> None:
+def test_machine_without_a_gauge_reports_none() -> None:
     none = NoGauge()
     assert none.toggle_receiving() == text("quality.no-gauge")
     assert list(none.fetch_readings()) == []

@@ -39,7 +39,7 @@ def made(home: Path) -> Path:
     return home
 
 
-def test_the_promised_json(turndesk: Turndesk, made: Path) -> None:
+def test_json_contains_capability_stops_and_tool_lives(turndesk: Turndesk, made: Path) -> None:
     """Cpk by hand: every moving range is .02, so .05 · 1.128 / .06."""
     told = turndesk("parts", "--json")
     assert (told.status, told.err) == (0, "")
@@ -56,13 +56,13 @@ def test_the_promised_json(turndesk: Turndesk, made: Path) -> None:
     assert found["tool_lives"][0]["limit_parts"] == 50
 
 
-def test_one_program_alone(turndesk: Turndesk, made: Path) -> None:
+def test_single_program_can_be_selected(turndesk: Turndesk, made: Path) -> None:
     found = json.loads(turndesk("parts", "ring.nc", "--json").out)
     assert [each["program"] for each in found["programs"]] == ["ring.nc"]
     assert found["stops"] == []
 
 
-def test_csv_has_a_line_a_reading_in_the_unit_that_was_read(turndesk: Turndesk, made: Path) -> None:
+def test_csv_has_a_line_per_reading_in_its_original_unit(turndesk: Turndesk, made: Path) -> None:
     rows = list(csv.DictReader(io.StringIO(turndesk("parts", "--csv").out)))
     assert len(rows) == 10
     first = rows[0]
@@ -81,7 +81,7 @@ def test_csv_has_a_line_a_reading_in_the_unit_that_was_read(turndesk: Turndesk, 
     )
 
 
-def test_in_words(turndesk: Turndesk, made: Path) -> None:
+def test_text_output_lists_readings_and_parts(turndesk: Turndesk, made: Path) -> None:
     with Store.open(made) as store:  # its time is not that of the program
         began, ended = "2026-01-01T00:02:00Z", "2026-01-01T00:02:05Z"
         rest = CycleRow("r", "peg.nc", 10, began, ended, 5.0, "RESTARTED")
@@ -92,19 +92,19 @@ def test_in_words(turndesk: Turndesk, made: Path) -> None:
     assert out[2] == "ring.nc: parts 1"
 
 
-def test_without_a_store_there_is_nothing(turndesk: Turndesk) -> None:
+def test_missing_store_gives_an_empty_result(turndesk: Turndesk) -> None:
     assert turndesk("parts").out == "no parts are known yet\n"
     assert json.loads(turndesk("parts", "--json").out)["programs"] == []
 
 
-def test_a_program_that_nobody_made(turndesk: Turndesk, made: Path) -> None:
+def test_unknown_program_is_rejected(turndesk: Turndesk, made: Path) -> None:
     told = turndesk("parts", "pin.nc")
     assert (told.status, told.out) == (2, "")
     assert (told.code, told.err.count("\n")) == ("unknown-program", 1)
     assert "pin.nc" in told.err
 
 
-def test_csv_and_json_at_once(turndesk: Turndesk) -> None:
+def test_csv_and_json_together_are_rejected(turndesk: Turndesk) -> None:
     told = turndesk("parts", "--csv", "--json")
     assert told.status == 2
     assert "not allowed with" in told.err

@@ -11,11 +11,11 @@ from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
 
 
-def test_parts(turndesk: Turndesk, filled: Path) -> None:
+def test_parts_json_has_the_declared_keys(turndesk: Turndesk, filled: Path) -> None:
     declared_alone([whole(turndesk("parts", "--json"))], quality_json_keys.PARTS_OUTPUT.keys)
 
 
-def test_shift(turndesk: Turndesk, filled: Path) -> None:
+def test_shift_json_has_the_declared_keys(turndesk: Turndesk, filled: Path) -> None:
     with Store.open(filled) as store:
         store.events.log_event("alarm", "FOLLOWING ERROR").result(60)
     now = datetime.now()

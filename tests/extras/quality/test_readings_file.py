@@ -10,7 +10,7 @@ from tests.power_cut import cut_everywhere
 OLD = b"part,value\n1,12.7\n"
 
 
-def test_readings_for_a_spreadsheet_stay_whole(tmp_path: Path) -> None:
+def test_readings_csv_is_replaced_atomically(tmp_path: Path) -> None:
     path = tmp_path / "pin-readings.csv"
 
     def again() -> None:

@@ -101,7 +101,7 @@ def figures(store: Store, shift: Shift = EIGHT) -> ShiftResults:
     return calculate_shift_results(store, shift, datetime(2026, 3, 3, tzinfo=UTC).timestamp())
 
 
-def test_parts_are_those_that_were_finished_in_the_shift(store: Store) -> None:
+def test_shift_counts_the_parts_finished_in_it(store: Store) -> None:
     found = figures(store)
     assert [(p.program, p.part_count, dict(p.incomplete_cycles)) for p in found.programs] == [
         ("pin.nc", 3, {}),
@@ -111,7 +111,7 @@ def test_parts_are_those_that_were_finished_in_the_shift(store: Store) -> None:
     assert found.part_count == 3
 
 
-def test_availability_and_stops_by_hand(store: Store) -> None:
+def test_availability_and_stops_match_hand_calculation(store: Store) -> None:
     found = figures(store)
     assert found.availability is not None
     # 10 + 60 + 25 + 15 + 20 min of cycles in 8 h; 10 + 5 + 30 min of stops
@@ -123,7 +123,7 @@ def test_availability_and_stops_by_hand(store: Store) -> None:
     assert (found.stopped_s, found.unrecorded_s) == (2700.0, 28_800.0 - 7_800.0 - 2_700.0)
 
 
-def test_alarms_readings_and_lives(store: Store) -> None:
+def test_alarms_bad_readings_and_tool_lives_are_listed(store: Store) -> None:
     found = figures(store)
     assert [row.text for row in found.alarms] == ["102 following error: X"]
     assert found.reading_count == 2
@@ -131,7 +131,7 @@ def test_alarms_readings_and_lives(store: Store) -> None:
     assert [(row.number, row.parts) for row in found.tool_lives] == [(1, 20)]
 
 
-def test_offsets_are_told_with_who_and_when(store: Store) -> None:
+def test_offset_changes_are_listed_with_user_and_time(store: Store) -> None:
     store.offsets.tool_offsets.change_row(1, "wear", {"x": 1.0, "wear_x": -0.01}, who="proposed").result()
     now = datetime.now(UTC).timestamp()
     found = calculate_shift_results(store, Shift(now - 60.0, now + 60.0), now)
@@ -141,7 +141,7 @@ def test_offsets_are_told_with_who_and_when(store: Store) -> None:
     assert "The shift is still running" in page
 
 
-def test_an_empty_shift_says_so(store: Store) -> None:
+def test_empty_shift_is_reported_as_empty(store: Store) -> None:
     found = figures(store, Shift(EIGHT.start_s - 30 * 86_400, EIGHT.end_s - 30 * 86_400))
     assert (found.part_count, found.programs, found.notes) == (
         0,
@@ -152,7 +152,7 @@ def test_an_empty_shift_says_so(store: Store) -> None:
     assert "none" in make_shift_html(found, "", "now", is_metric=False)
 
 
-def test_a_clock_that_was_set_back_is_told_and_lengths_stay(store: Store) -> None:
+def test_clock_set_back_is_reported_and_durations_are_retained(store: Store) -> None:
     store.write(lambda c: part_cycles.save_cycle(c, cycle("p9", "07:00:00", "06:40:00", 600.0, 10))).result()
     found = figures(store)
     assert any("was set back" in note for note in found.notes)
@@ -169,9 +169,7 @@ def test_a_clock_that_was_set_back_is_told_and_lengths_stay(store: Store) -> Non
         (datetime(2026, 11, 23, 9, tzinfo=UTC), 8.0, 0.0),
     ],
 )
-def test_a_night_in_which_the_clock_moves_is_as_long_as_it_was(
-    now: datetime, hours: float, moved: float
-) -> None:
+def test_shift_over_a_clock_change_has_its_true_length(now: datetime, hours: float, moved: float) -> None:
     shift = find_shift((22, 6), now)
     assert (shift.end_s - shift.start_s) / 3600 == hours
     assert shift.clock_change_s == moved
@@ -179,7 +177,7 @@ def test_a_night_in_which_the_clock_moves_is_as_long_as_it_was(
     assert datetime.fromtimestamp(shift.end_s).hour == 6
 
 
-def test_the_shift_that_is_on_and_those_before_it() -> None:
+def test_current_and_previous_shifts_are_found() -> None:
     at = datetime(2026, 11, 23, 9, tzinfo=UTC)  # 10 h in Berlin
     assert find_shift((6, 14), at).start_s == parse_local_time("2026-11-23 06:00")
     assert find_shift((6, 14), at, 1).start_s == parse_local_time("2026-11-22 06:00")
@@ -196,12 +194,12 @@ def test_the_shift_that_is_on_and_those_before_it() -> None:
         ("2026-02-30", "2026-03-02", "not-a-time", "2026-02-30"),
     ],
 )
-def test_times_that_are_none_are_refused(first: str, last: str, code: str, value: str) -> None:
+def test_invalid_shift_times_are_rejected(first: str, last: str, code: str, value: str) -> None:
     with raises_code(ShiftTimesError, code, value):
         make_period(first, last)
 
 
-def test_names_of_others_are_text_on_the_page(store: Store) -> None:
+def test_names_are_escaped_on_the_page(store: Store) -> None:
     row = cycle("p7", "10:00:00", "10:10:00", 600.0, 11)._replace(program="<script>alert(1)</script>")
     store.write(lambda c: part_cycles.save_cycle(c, row)).result()
     page = make_shift_html(figures(store), "<b>", "now", is_metric=True)
@@ -216,7 +214,7 @@ class TestCommand:
 
     TIMES = ("--from", "2026-03-02 07:00", "--to", "2026-03-02 15:00")  # 6 to 14 h UTC
 
-    def test_text_json_and_page_have_one_figure(
+    def test_text_json_and_page_show_the_same_values(
         self, capsys: pytest.CaptureFixture[str], tmp_path: Path
     ) -> None:
         assert main(["shift", *self.TIMES]) == 0
@@ -241,7 +239,7 @@ class TestCommand:
             (("--report", "/nonexistent/r.html"), "cannot-write", "/nonexistent"),
         ],
     )
-    def test_refusals(
+    def test_invalid_commands_are_rejected(
         self,
         capsys: pytest.CaptureFixture[str],
         monkeypatch: pytest.MonkeyPatch,

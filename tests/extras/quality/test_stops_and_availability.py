@@ -15,7 +15,7 @@ from core.extras.quality.production_stops import (
 from tests.coded import raises_code
 
 
-def test_pareto() -> None:
+def test_stop_reasons_are_ranked_by_duration() -> None:
     rows = analyze_stop_reasons(
         [
             ProductionStop("DOOR", 0, 10),
@@ -33,12 +33,12 @@ def test_pareto() -> None:
     assert [row.together for row in rows] == pytest.approx([0.6, 0.9, 1.0])
 
 
-def test_stops_that_cost_nothing_share_nothing() -> None:
+def test_zero_length_stops_have_zero_share() -> None:
     assert analyze_stop_reasons([]) == ()
     assert analyze_stop_reasons([ProductionStop("A", 0, 0)])[0].share == 0.0
 
 
-def test_time_between_stops() -> None:
+def test_time_between_stops_is_calculated_in_order() -> None:
     """From 10 to 50 forty, from 110 to 200 ninety; out of order they are put in order."""
     stops = [ProductionStop("A", 0, 10), ProductionStop("C", 200, 20), ProductionStop("B", 50, 60)]
     assert calculate_times_between(stops) == (40, 90)
@@ -48,7 +48,7 @@ def test_time_between_stops() -> None:
     assert calculate_times_between([ProductionStop("A", 0, 10)]) == ()
 
 
-def test_availability() -> None:
+def test_availability_counts_overlapping_stops_once() -> None:
     """Of 100 s: 10 of the first, 30 to 60 once although told twice, 90 to the end."""
     found = calculate_availability(
         TimeSpan(100, 200), [TimeSpan(0, 110), TimeSpan(130, 150), TimeSpan(140, 160), TimeSpan(190, 250)]
@@ -56,18 +56,18 @@ def test_availability() -> None:
     assert (found.planned_s, found.producing_s, found.producing_share) == (100, 50, 0.5)
 
 
-def test_nothing_ran() -> None:
+def test_shift_without_production_has_zero_share() -> None:
     assert calculate_availability(TimeSpan(0, 10), []).producing_share == 0.0
     assert calculate_availability(TimeSpan(0, 10), [TimeSpan(10, 20)]).producing_share == 0.0
 
 
 @pytest.mark.parametrize("shift", [TimeSpan(10, 10), TimeSpan(10, 0)])
-def test_a_shift_has_a_length(shift: TimeSpan) -> None:
+def test_shift_without_a_length_is_rejected(shift: TimeSpan) -> None:
     with raises_code(QualityError, "shift-times"):
         calculate_availability(shift, [])
 
 
-def test_a_clock_that_was_set_back() -> None:
+def test_clock_set_back_is_rejected() -> None:
     with raises_code(QualityError, "clock-set-back"):
         calculate_availability(TimeSpan(0, 10), [TimeSpan(5, 4)])
     with raises_code(QualityError, "clock-set-back"):

@@ -70,7 +70,7 @@ def parts(tmp_path: Path) -> Path:
 
 @pytest.mark.long
 @with_distributed
-def test_two_workers_prove_a_folder_and_one_is_killed(
+def test_folder_is_proved_although_one_of_two_workers_is_killed(
     cluster: Cluster, parts: Path, offsets: Path, tmp_path: Path
 ) -> None:
     command = [sys.executable, "-m", "app.cli.main", "prove", str(parts), "--json", "--offsets", str(offsets)]
@@ -88,7 +88,7 @@ def test_two_workers_prove_a_folder_and_one_is_killed(
 
 
 @with_distributed
-def test_nothing_answers(
+def test_unreachable_scheduler_is_rejected(
     turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.extras.scheduler.proof_scheduler._ANSWER", 0.2)
@@ -97,12 +97,14 @@ def test_nothing_answers(
 
 
 @pytest.mark.parametrize("address", ["here", "127.0.0.1", "127.0.0.1:", ":8786", "127.0.0.1:99999", "a b:1"])
-def test_what_is_no_address_is_refused(turndesk: Turndesk, parts: Path, offsets: Path, address: str) -> None:
+def test_invalid_scheduler_address_is_rejected(
+    turndesk: Turndesk, parts: Path, offsets: Path, address: str
+) -> None:
     told = turndesk("prove", parts, "--offsets", offsets, f"--scheduler={address}")
     assert (told.status, told.code, told.err.count("\n")) == (2, "scheduler-address", 1)
 
 
-def test_without_dask_it_is_refused_in_one_line(
+def test_missing_dask_is_rejected_in_one_line(
     turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
@@ -111,12 +113,12 @@ def test_without_dask_it_is_refused_in_one_line(
     assert "turndesk[scheduler]" in told.err
 
 
-def test_jobs_and_scheduler_exclude_each_other(turndesk: Turndesk, parts: Path) -> None:
+def test_jobs_and_scheduler_options_are_mutually_exclusive(turndesk: Turndesk, parts: Path) -> None:
     told = turndesk("prove", parts, "--scheduler", "127.0.0.1:8786", "--jobs", 2)
     assert (told.status, told.code) == (2, "jobs-and-scheduler")
 
 
-def test_a_worker_with_another_turndesk_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_worker_with_another_turndesk_version_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proof_work, "get_code_hash", lambda: "another")
     with pytest.raises(VersionMismatchError):
         prove_pickled(b"", "ours", ProgramSource("a.nc", "M30\n"))

@@ -30,12 +30,12 @@ def said(one: FilledShape, setting: ProgramSettings) -> list[str]:
 
 
 @pytest.mark.parametrize("three", list(itertools.combinations(TAPER, 3)))
-def test_any_three_of_a_taper_give_the_fourth(three: tuple[str, ...]) -> None:
+def test_three_taper_values_give_the_fourth(three: tuple[str, ...]) -> None:
     found = solve_taper({word: TAPER[word] for word in three})
     assert found == pytest.approx(TAPER)
 
 
-def test_a_taper_is_written_and_told() -> None:
+def test_taper_is_written_with_its_notes() -> None:
     """.5 to 1. over 1.: slope sqrt(1 + .0625), 1 : 2 on the diameter."""
     one = fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0}, INCH)
     assert not said(one, INCH)
@@ -47,7 +47,7 @@ def test_a_taper_is_written_and_told() -> None:
     )
 
 
-def test_a_triangle_that_is_none() -> None:
+def test_impossible_triangle_is_rejected() -> None:
     assert (
         wording("shapes.value-missing", label="LENGTH")
         in said(fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
@@ -66,7 +66,7 @@ def test_a_triangle_that_is_none() -> None:
         ({"DIA": 0.1, "SURF": 900.0}, 3500, INCH),  # what the spindle has
     ],
 )
-def test_speed(typed: dict[str, FieldValue], rpm: float, setting: ProgramSettings) -> None:
+def test_speed_is_calculated(typed: dict[str, FieldValue], rpm: float, setting: ProgramSettings) -> None:
     one = fill_shape(SPEED_CALCULATOR, typed, setting)
     assert one.get_number("RPM") == rpm
     assert not said(one, setting)
@@ -75,7 +75,7 @@ def test_speed(typed: dict[str, FieldValue], rpm: float, setting: ProgramSetting
 @pytest.mark.parametrize(
     ("work", "depth"), [("TURN", "0.03"), ("BORE", "0.015"), ("DRILL", ""), ("PART", "")]
 )
-def test_speed_says_the_depth_of_a_rough_pass(work: str, depth: str) -> None:
+def test_speed_calculator_notes_the_roughing_depth(work: str, depth: str) -> None:
     """An assumed CCMT 0602 takes 3.224 mm: a quarter is .0317 in, half of it .0159 in for a boring bar."""
     typed: dict[str, FieldValue] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
     words = [
@@ -86,7 +86,7 @@ def test_speed_says_the_depth_of_a_rough_pass(work: str, depth: str) -> None:
     assert words == ([f"roughing passes {depth.removeprefix('0')} deep per side"] if depth else [])
 
 
-def test_feed_both_ways() -> None:
+def test_feed_per_minute_and_per_rev_are_converted() -> None:
     """1000 rpm at .005 are 5 in/min; 6 in/min are .006."""
     one = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005}, INCH)
     assert one.get_number("RATE") == 5.0
@@ -102,7 +102,7 @@ def test_feed_both_ways() -> None:
     assert "more than the 3500 rpm" in said(fast, INCH)[0]
 
 
-def test_passes_of_a_thread() -> None:
+def test_thread_passes_follow_the_square_root_rule() -> None:
     """Depth h in n passes: the first h / sqrt(n), pass k at I sqrt(k); either of I and n gives the other."""
     own: dict[str, FieldValue] = {"PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 1.0}
     own["SERIES"] = next(c for c in THREAD_CALCULATOR.fields[0].choices if "OWN" in c.upper())
@@ -138,7 +138,7 @@ def written(keys: str, text: str = "") -> str:
     return shapes.text
 
 
-def test_templates_make_a_program_that_is_good() -> None:
+def test_templates_make_a_valid_program() -> None:
     text = written("n")
     for key in "cg":
         text = written(key, text.replace("M30\n", "") + "")
@@ -148,7 +148,7 @@ def test_templates_make_a_program_that_is_good() -> None:
     assert part.removed_volume_mm3 > 0.0
 
 
-def test_a_thread_and_a_loop_by_template() -> None:
+def test_thread_and_loop_are_made_by_template() -> None:
     text = written("b", "G90G94F300G72\n")
     assert text.splitlines()[-2:] == ["}1", "M99"]
     assert "LS10" in text
@@ -172,7 +172,7 @@ def test_a_shape_is_not_opened_from_the_calculators() -> None:
 # --- tap
 
 
-def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
+def test_tap_enters_and_leaves_at_its_pitch() -> None:
     """1/4-20: pitch .05, to .05 before the depth of .5, back with M04; the proof finds nothing."""
     tap = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27)
     hand = Programmer({4: tap}, "")
@@ -185,7 +185,7 @@ def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
     assert [each.edited_line for each in hand.shapes.pieces] == [-1, -1]
 
 
-def test_the_hole_before_a_tap() -> None:
+def test_tap_hole_diameter_matches_iso_limits() -> None:
     """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
     one = fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
     assert TAPPING_SHAPE.make_notes(one, MM) == (
@@ -232,7 +232,7 @@ DRILLS = {
 @pytest.mark.parametrize(
     ("series", "size"), [(series, size) for series, sizes in DRILLS.items() for size in sizes]
 )
-def test_the_drill_before_a_tap_is_that_of_the_charts(series: str, size: str) -> None:
+def test_tap_drill_matches_the_charts(series: str, size: str) -> None:
     setting = MM if series.startswith("M") else INCH
     told = TAPPING_SHAPE.make_notes(
         fill_shape(TAPPING_SHAPE, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting
@@ -240,7 +240,7 @@ def test_the_drill_before_a_tap_is_that_of_the_charts(series: str, size: str) ->
     assert told.removeprefix("tap drill: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
 
 
-def test_a_drill_in_the_other_unit_is_told_with_its_size() -> None:
+def test_tap_drill_in_the_other_unit_shows_its_size() -> None:
     inch = TAPPING_SHAPE.make_notes(
         fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH
     )
@@ -250,7 +250,7 @@ def test_a_drill_in_the_other_unit_is_told_with_its_size() -> None:
     assert (inch[1], metric[1]) == ("tap drill: 5 mm, .1969", "tap drill: #7, 5.105")
 
 
-def test_no_drill_is_told_where_none_is_sold() -> None:
+def test_size_without_a_standard_drill_has_no_tap_drill() -> None:
     assert find_tap_drill(0.2015, 0.2028, is_metric=False) is None
     assert find_tap_drill(60.0, 61.0, is_metric=True) is None
 
@@ -271,7 +271,7 @@ def test_no_drill_is_told_where_none_is_sold() -> None:
         ),
     ],
 )
-def test_what_no_tap_does(typed: dict[str, FieldValue], says: str) -> None:
+def test_invalid_tapping_is_rejected(typed: dict[str, FieldValue], says: str) -> None:
     taps = {4: ToolShape(ToolKind.TAP, pitch=1.27, length=20.0), 5: ToolShape(ToolKind.TAP, pitch=1.0)}
     setting = ProgramSettings(shop=ShopData(tools=taps))
     base: dict[str, FieldValue] = {

@@ -39,7 +39,7 @@ def radii(text: str, tool: ToolShape, stock: str, at: list[float], *, inside: bo
 
 
 @pytest.mark.parametrize(("at_face", "at_chuck"), [(20.0, 20.0), (30.0, 0.0), (0.0, 15.0), (60.0, 45.0)])
-def test_walls_lean_by_their_angles(at_face: float, at_chuck: float) -> None:
+def test_groove_walls_lean_by_their_angles(at_face: float, at_chuck: float) -> None:
     """Edges at -10 and -30 on a bar of 40, 4 deep: a wall leaves its edge by depth times its tangent."""
     text = made(BLADE, TOP=40.0, BOTTOM=32.0, AT=10.0, LONG=20.0, FANGLE=at_face, CANGLE=at_chuck)
     a, b = (math.tan(math.radians(angle)) for angle in (at_face, at_chuck))
@@ -50,14 +50,14 @@ def test_walls_lean_by_their_angles(at_face: float, at_chuck: float) -> None:
     assert radii(text, BLADE, "bar:40mm:60mm", at) == pytest.approx(deep, abs=0.02)
 
 
-def test_a_wall_leans_in_a_bore() -> None:
+def test_bore_groove_wall_leans_by_its_angle() -> None:
     """From 20 out to 24 in diameter, the wall at the face by 45 degrees: 1 mm in, 1 mm deeper."""
     text = made(BORE_BLADE, SIDE="BORE", TOP=20.0, BOTTOM=24.0, AT=5.0, LONG=8.0, FANGLE=45.0)
     found = radii(text, BORE_BLADE, "tube:40mm:20mm:40mm", [-4.8, -6.0, -9.0, -12.9, -13.2], inside=True)
     assert found == pytest.approx([10.0, 11.0, 12.0, 12.0, 10.0], abs=0.02)
 
 
-def test_a_blade_comes_over_a_flange_and_goes_back_over_it() -> None:
+def test_blade_clears_a_flange_before_and_after_the_groove() -> None:
     """A flange of 40 before a groove of 30 in diameter: no rapid below 41 before it is behind the flange."""
     lines = made(BLADE, TOP=30.0, BOTTOM=26.0, AT=20.0, LONG=4.0, OVER=40.0).splitlines()
     first = next(n for n, line in enumerate(lines) if line.startswith("G00X"))

@@ -138,7 +138,7 @@ def only(text: list[str], name: str) -> ShapePiece:
 
 
 @pytest.mark.parametrize("name", STEPS)
-def test_every_shape_is_read_and_found_good_and_found_again(name: str) -> None:
+def test_every_written_shape_proves_and_is_recognized_again(name: str) -> None:
     """Strict, as the original control takes it: no finding at all."""
     text = written(STEPS[name])
     report, _ = proved("\n".join(text) + "\n")
@@ -155,7 +155,7 @@ def test_every_shape_is_read_and_found_good_and_found_again(name: str) -> None:
 
 
 @pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "METRIC"}])
-def test_other_modes_are_found_again(head: dict[str, FieldValue]) -> None:
+def test_shapes_in_other_modes_are_recognized(head: dict[str, FieldValue]) -> None:
     scale = 25.4 if "UNIT" in head else 1.0
     typed: dict[str, float | str] = {
         "FROM": 0.75 * scale,
@@ -174,7 +174,7 @@ def changed(text: list[str], before: str, after: str) -> list[str]:
     return [*text[:at], after, *text[at + 1 :]]
 
 
-def test_a_feed_that_was_changed_by_hand_is_taken_over() -> None:
+def test_manually_changed_feed_is_adopted() -> None:
     text = changed(written(STEPS["thread"][:1]), "G95F.003Z0", "G95F.002Z0")
     piece = only(text, "TURN")
     assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["FEED"]) == (
@@ -184,7 +184,7 @@ def test_a_feed_that_was_changed_by_hand_is_taken_over() -> None:
     )
 
 
-def test_a_depth_and_a_speed_that_were_changed_by_hand_are_taken_over() -> None:
+def test_manually_changed_depth_and_speed_are_adopted() -> None:
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
     (speed,) = [line for line in text if line.startswith("M03S")]
     (hole,) = [line for line in text if line.startswith("G81")]
@@ -194,14 +194,14 @@ def test_a_depth_and_a_speed_that_were_changed_by_hand_are_taken_over() -> None:
     assert (piece.filled_shape.values["RPM"], piece.filled_shape.values["DEEP"]) == (900.0, 0.65)
 
 
-def test_points_that_were_changed_by_hand_are_those_of_the_form() -> None:
+def test_manually_changed_points_are_adopted() -> None:
     text = changed(written([("T", {"FROM": 0.5}, PROFILE[:3])]), "Z-.5", "Z-.55")
     piece = only(text, "TURN")
     assert piece.edited_line == -1
     assert piece.filled_shape.contour_points[2] == ContourPoint(z=-0.55)
 
 
-def test_a_line_put_in_by_hand_is_told_and_nothing_is_taken_for_it() -> None:
+def test_manually_inserted_line_is_reported_and_not_adopted() -> None:
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
     (at,) = [n for n, line in enumerate(text) if line.startswith("G81")]
     text.insert(at, "G04F1")
@@ -210,7 +210,7 @@ def test_a_line_put_in_by_hand_is_told_and_nothing_is_taken_for_it() -> None:
     assert piece.next_line == text.index("M30")
 
 
-def test_a_figure_that_no_field_explains_is_told() -> None:
+def test_unexplained_value_is_reported_as_edited() -> None:
     text = changed(written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())]), "Z.05", "Z.75")
     assert only(text, "DRILL").edited_line >= 0
 
@@ -225,11 +225,11 @@ def test_lines_between_shapes_stay() -> None:
     assert again == text
 
 
-def test_comments_of_others_are_no_shapes() -> None:
+def test_unrelated_comments_are_not_shapes() -> None:
     assert not find_pieces(["G90G94F300(HEAD OF THE LINE)", "T1(DRILL)", "T2(FACE 1 TWO)", "M30"], SHOP)
 
 
-def test_another_unit_converts_what_was_written() -> None:
+def test_unit_change_converts_written_shapes() -> None:
     """A drill of .25 in is one of 6.35 mm: no figure keeps its digits under another unit."""
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6, "FEED": 0.004}, ())])
     before = find_pieces(text, SHOP)
@@ -242,7 +242,7 @@ def test_another_unit_converts_what_was_written() -> None:
     assert not bad(proved("\n".join(text) + "\n")[0])
 
 
-def test_a_shape_changed_by_hand_stays_under_another_unit_and_is_counted() -> None:
+def test_edited_shape_is_left_and_counted_on_unit_change() -> None:
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
     text.insert(-2, "G04F1")
     before = find_pieces(text, SHOP)
@@ -293,9 +293,7 @@ def refused(key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ..
         ("S", {"DIA": 0.1, "FROM": 0.5, "LONG": 0.2, "DEEP": 0.3}, "DEEP"),
     ],
 )
-def test_what_no_part_can_have_is_refused_at_its_field(
-    key: str, typed: dict[str, FieldValue], word: str
-) -> None:
+def test_invalid_value_is_rejected_at_its_field(key: str, typed: dict[str, FieldValue], word: str) -> None:
     said = refused(key, typed)
     assert list(said) == [word], said
     assert said[word][-1] in ".?"
@@ -313,13 +311,11 @@ def test_what_no_part_can_have_is_refused_at_its_field(
         ((ContourPoint(0.4, 0.0), ContourPoint(-0.2), ContourPoint(z=-1.0)), "#2"),
     ],
 )
-def test_contours_that_cannot_be_are_refused_at_their_point(
-    rows: tuple[ContourPoint, ...], word: str
-) -> None:
+def test_invalid_contour_is_rejected_at_its_point(rows: tuple[ContourPoint, ...], word: str) -> None:
     assert word in refused("T", {}, rows)
 
 
-def test_tools_that_are_others_by_their_sheets_are_refused_and_not_proposed() -> None:
+def test_unsuitable_tool_is_rejected_and_not_proposed() -> None:
     sheets = {1: ToolShape(ToolKind.TURNING, insert="CNMG432"), 3: ToolShape(ToolKind.DRILL, diameter=6.35)}
     setting = ProgramSettings(shop=ShopData(tools=sheets))
     thread = fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5}, setting)
@@ -330,7 +326,7 @@ def test_tools_that_are_others_by_their_sheets_are_refused_and_not_proposed() ->
     assert "T" in {each.field_word for each in wrong.find_errors(setting)}
 
 
-def test_what_works_in_a_bore_is_proposed_there() -> None:
+def test_boring_tool_is_proposed_for_a_bore() -> None:
     sheets = {1: ToolShape(ToolKind.TURNING), 2: ToolShape(ToolKind.BORING), 3: ToolShape(ToolKind.THREADING)}
     setting = ProgramSettings(shop=ShopData(tools=sheets))
     assert fill_shape(SHAPES_BY_KEY["T"], {}, setting).get_number("T") == 1.0
@@ -357,7 +353,7 @@ def test_what_works_in_a_bore_is_proposed_there() -> None:
         ("R", {"SIZE": "1/2", "LONG": 0.5}, ToolShape(ToolKind.THREADING, pitch=1.5), "T"),
     ],
 )
-def test_what_the_tool_cannot_do_is_refused(
+def test_operation_beyond_the_tool_is_rejected(
     key: str, typed: dict[str, FieldValue], sheet: ToolShape, word: str
 ) -> None:
     setting = ProgramSettings(shop=ShopData(tools={1: sheet}))
@@ -381,7 +377,7 @@ DRILLED = "T1(DRILL 0P25 DIA 0P5 DEEP 0 PECK 0P004 FEED 1200 RPM)"
     "spoilt",
     [DRILLED.replace("DEEP", "DEEPER"), DRILLED.replace(")", " BY JOE)"), DRILLED.removeprefix("T1")],
 )
-def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) -> None:
+def test_damaged_shape_comment_is_reported_with_its_line(spoilt: str, line: int) -> None:
     text = Programmer().strike("n§d.25⏎.5§").close()
     assert DRILLED in text
     hand = Programmer(text=text)
@@ -393,7 +389,7 @@ def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) 
 @pytest.mark.parametrize(
     ("comment", "line"), [("(DRILL)", 3), ("(DRILL .25 DIA BY HAND)", 5), (DRILLED.removeprefix("T1"), 2)]
 )
-def test_a_comment_of_another_hand_is_none_of_ours(comment: str, line: int) -> None:
+def test_foreign_comment_is_not_a_shape_comment(comment: str, line: int) -> None:
     """Of the last one the cursor stands in the head, which can be read."""
     text = Programmer().strike("n§d.25⏎.5§").close()
     hand = Programmer(text=text)

@@ -72,7 +72,7 @@ def refused(made: FilledShape, now: ProgramSettings) -> list[str]:
         ("", 3.224),  # a small holder is assumed
     ],
 )
-def test_the_most_of_an_insert(insert: str, most: float) -> None:
+def test_maximum_depth_depends_on_the_insert(insert: str, most: float) -> None:
     assert find_max_depth(setting(tools={1: turning(insert)}, metric=True), 1) == pytest.approx(
         most, abs=1e-3
     )
@@ -101,7 +101,7 @@ def test_the_most_of_an_insert(insert: str, most: float) -> None:
         ("STEEL", CNMG, 20.0, 7000.0, 0.005),
     ],
 )
-def test_a_depth_by_material_insert_and_machine(
+def test_roughing_depth_depends_on_material_insert_and_machine(
     material: str, tool: ToolShape, across: float, rpm: float, depth: float
 ) -> None:
     assert propose_roughing_depth(setting(material, {1: tool}, rpm), 1, across) == pytest.approx(depth)
@@ -115,14 +115,14 @@ def test_a_depth_by_material_insert_and_machine(
         ("power_kw = 30", 0.04),  # the material allows no more
     ],
 )  # fmt: skip
-def test_a_depth_by_the_power_of_the_machine_file(stated: str, depth: float) -> None:
+def test_roughing_depth_depends_on_spindle_power(stated: str, depth: float) -> None:
     text = resources.read_machine_file("gt75.toml").replace("[spindle]\n", f"[spindle]\n{stated}\n", 1)
     shop = make_shop_data(parse_machine(text, "t"), {1: CNMG})
     now = replace(setting("STEEL"), shop=shop)
     assert propose_roughing_depth(now, 1, 2.0) == pytest.approx(depth)
 
 
-def test_metric_facing_boring_and_finishing() -> None:
+def test_metric_facing_boring_and_finishing_values_are_proposed() -> None:
     """Steel .04 in = 1.016 mm; on 25 mm 4.093 / (2600 x 0.127 x 0.0125) = 0.992 mm; half of it for a bar."""
     now = setting(tools={1: CNMG, 2: BAR}, metric=True)
     assert propose_roughing_depth(now, 1, 25.0) == pytest.approx(0.9)
@@ -169,7 +169,7 @@ FORMS: dict[str, tuple[str, dict[str, FieldValue], tuple[ContourPoint, ...], flo
 
 @pytest.mark.parametrize("dialect", [Dialect.OMNITURN, Dialect.SINUMERIK])
 @pytest.mark.parametrize("name", FORMS)
-def test_every_form_along_a_contour_roughs(name: str, dialect: Dialect) -> None:
+def test_every_contour_shape_is_roughed(name: str, dialect: Dialect) -> None:
     key, typed, rows, depth = FORMS[name]
     now = setting(tools={1: CNMG, 2: BAR}, dialect=dialect)
     made = one(key, typed, now, rows)
@@ -193,7 +193,7 @@ def test_every_form_along_a_contour_roughs(name: str, dialect: Dialect) -> None:
         ({"FROM": 0.0}, (ContourPoint(0.5, 0.0), ContourPoint(z=-1.0))),  # nothing is known of the stock
     ],
 )
-def test_no_roughing_is_proposed_where_there_is_nothing_to_rough(
+def test_roughing_is_not_proposed_without_stock_to_remove(
     typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...]
 ) -> None:
     now = setting(tools={1: CNMG})
@@ -232,7 +232,7 @@ def test_the_templates_of_roughing_follow_the_same_rule() -> None:
         ("K", {"T": 9.0, "DIAM": 1.0, "EDGE": 0.2}, (), "EDGE"),  # .2 x 0.707 = .141 in
     ],
 )
-def test_a_pass_deeper_than_the_insert_takes_is_one_error(
+def test_pass_deeper_than_the_insert_allows_is_one_error(
     key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...], word: str, dialect: Dialect
 ) -> None:
     now = setting(tools={2: BAR, 3: VNMG}, dialect=dialect)
@@ -249,7 +249,7 @@ def test_a_pass_deeper_than_the_insert_takes_is_one_error(
         ("K", {"T": 9.0, "DIAM": 1.0, "EDGE": 0.15}, ()),
     ],
 )
-def test_a_pass_that_the_insert_takes_is_accepted(
+def test_pass_within_the_insert_limit_is_accepted(
     key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...]
 ) -> None:
     now = setting(tools={1: CNMG})
@@ -259,7 +259,7 @@ def test_a_pass_that_the_insert_takes_is_accepted(
 # --- the tool by its kind
 
 
-def test_the_proposed_tool_is_of_the_kind_of_the_work() -> None:
+def test_proposed_tool_suits_the_operation() -> None:
     rear = turning("CNMG120408", rear=True)
     now = setting(tools={1: BAR, 2: rear, 3: CNMG})
     assert one("T", {}, now, STEPPED).get_number("T") == 3.0
@@ -274,7 +274,7 @@ def test_the_proposed_tool_is_of_the_kind_of_the_work() -> None:
 # --- at the page, and its program on the bar
 
 
-def test_a_programmer_at_the_form_gets_rough_passes_and_a_good_part() -> None:
+def test_form_entry_gives_roughing_passes_and_a_good_part() -> None:
     text = Programmer({1: CNMG}).strike("n↓↓↓1§f§t.5⏎z-.5⏎.7⏎z-1.1⏎1§").close()
     assert "G75I.035U.01F.005" in text
     report, _ = proved(text, {1: CNMG}, stock="bar:1.0:3.0")

@@ -40,7 +40,7 @@ def form(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", ALIKE)
-def test_a_file_writes_what_the_page_writes(name: str, form: Path, turndesk: Turndesk) -> None:
+def test_form_file_writes_the_same_program_as_the_page(name: str, form: Path, turndesk: Turndesk) -> None:
     keys, steps = ALIKE[name]
     form.write_text(HEAD + steps)
     page = Programmer().strike(keys).close()
@@ -58,7 +58,7 @@ def test_a_program_is_written_proved_and_never_replaced(form: Path, turndesk: Tu
     assert (again.status, again.code) == (2, "file-exists")
 
 
-def test_in_sinumerik_by_the_name_of_the_program(form: Path, turndesk: Turndesk) -> None:
+def test_file_extension_selects_sinumerik(form: Path, turndesk: Turndesk) -> None:
     out = form.with_name("part.mpf")
     assert turndesk("shapes", form, "--out", out).status == 0
     assert "DIAMON" in out.read_text()
@@ -70,7 +70,7 @@ def test_steps_come_from_stdin(form: Path, turndesk: Turndesk, monkeypatch: pyte
     assert turndesk("shapes", "-").out == turndesk("shapes", form).out
 
 
-def test_the_example_of_the_help_roughs(form: Path, turndesk: Turndesk) -> None:
+def test_help_example_makes_roughing_passes(form: Path, turndesk: Turndesk) -> None:
     """From a bar of 1 in to .5 in: one pass of .25 in before, passes of .03 in now (no sheet: CCMT 0602)."""
     lines = [line for line in _ABOUT.splitlines() if line.startswith("  ")]
     form.write_text("\n".join(lines))
@@ -80,7 +80,7 @@ def test_the_example_of_the_help_roughs(form: Path, turndesk: Turndesk) -> None:
 
 
 @pytest.mark.parametrize(("rough", "code"), [("0", "invalid-step"), (".2", "invalid-step")])
-def test_a_pass_that_the_insert_cannot_take_is_refused_once(
+def test_pass_beyond_the_insert_limit_is_rejected_once(
     rough: str, code: str, form: Path, turndesk: Turndesk
 ) -> None:
     lines = [line for line in _ABOUT.splitlines() if line.startswith("  ")]
@@ -90,7 +90,7 @@ def test_a_pass_that_the_insert_cannot_take_is_refused_once(
     assert "step 3, turn: rough: " in told.err
 
 
-def test_what_follows_a_bar_loop_is_its_part(form: Path, turndesk: Turndesk) -> None:
+def test_steps_after_a_bar_loop_become_its_part(form: Path, turndesk: Turndesk) -> None:
     form.write_text(HEAD + '[[step]]\nkind = "bar loop"\ncount = 5\nlong = 1.0\n' + ALIKE["points"][1])
     (told,) = turndesk("shapes", form, "--json").lines
     lines = told["program"].splitlines()
@@ -121,7 +121,7 @@ def test_what_follows_a_bar_loop_is_its_part(form: Path, turndesk: Turndesk) -> 
         ("[[step]]\nkind = \n", "is not a valid TOML file"),
     ],
 )
-def test_what_makes_no_program_is_told_by_step_and_key(
+def test_invalid_step_is_reported_by_number_and_key(
     steps: str, said: str, form: Path, turndesk: Turndesk
 ) -> None:
     form.write_text(steps)
@@ -133,7 +133,7 @@ def test_what_makes_no_program_is_told_by_step_and_key(
     assert not form.with_name("part.nc").exists()
 
 
-def test_a_program_with_errors_is_written_and_told(form: Path, turndesk: Turndesk) -> None:
+def test_program_with_errors_is_written_and_reported(form: Path, turndesk: Turndesk) -> None:
     form.write_text(HEAD + '[[step]]\nkind = "drill"\ndia = .5\ndeep = 40\n')
     told = turndesk("shapes", form, "--out", form.with_name("part.nc"))
     assert told.status == 1

@@ -36,16 +36,16 @@ def lines_of(keys: str, text: str = HEAD) -> list[str]:
     return found.removeprefix(text).removesuffix("M30\n").splitlines()
 
 
-def test_a_taper_is_points_of_this_language() -> None:
+def test_taper_is_written_as_sinumerik_points() -> None:
     assert lines_of("t10⏎20⏎12§") == ["X10 Z0", "X20 Z-12"]
 
 
-def test_feed_and_speed_are_one_line() -> None:
+def test_feed_and_speed_are_written_on_one_line() -> None:
     """150 m/min at 30 mm are 1591 rpm; .1 a turn."""
     assert lines_of("f30⏎150⏎⏎.1§") == ["G95 S1591 M3 F0.1"]
 
 
-def test_passes_of_a_thread_are_its_cycle() -> None:
+def test_thread_passes_are_written_as_a_cycle() -> None:
     """M10 6g: major from 9.732 to 9.968, pitch 8.928 in the middle, root H/6 before the sharp V: 7.846."""
     (line,) = lines_of("r↑m⏎10⏎⏎⏎⏎⏎⏎20⏎9§")
     words = [float(word or 0) for word in line.removeprefix("CYCLE97(").removesuffix(")").split(", ")]
@@ -65,7 +65,7 @@ def program(*keys: str, name: str = "x.mpf") -> list[str]:
     return text.splitlines()
 
 
-def test_roughing_by_template_is_good_and_of_the_same_metal_as_in_omniturn() -> None:
+def test_roughing_template_removes_the_same_stock_as_in_omniturn() -> None:
     keys = ("n§", "c⏎⏎30§", "g30§")
     ours, theirs = program(*keys), program(*keys, name="x.nc")
     assert 'CYCLE95("CONTOUR_1:CONTOUR_1_END", 0.5, , , 0.25, 0.102, 0.102, , 1)' in ours
@@ -78,20 +78,20 @@ def test_roughing_by_template_is_good_and_of_the_same_metal_as_in_omniturn() -> 
     assert np.quantile(np.abs(mine - finished), 0.9) <= NEAR
 
 
-def test_a_thread_by_template_is_good() -> None:
+def test_thread_template_proves_without_errors() -> None:
     text = program("n§", "c⏎⏎30§", "d⏎⏎30§")
     assert "CYCLE97(1.5, , 0, -12, 30, 30, 7, 0, 0.9201, 0, 29, 0, 8, 0, 3, 1)" in text  # .6134 x 1.5
     _, said = metal(text, Dialect.SINUMERIK)
     assert not said
 
 
-def test_tools_change_as_far_away_in_mm_as_in_inches() -> None:
+def test_tool_change_position_is_the_same_in_mm_and_inches() -> None:
     """Without the comment of a head nobody has said where."""
     assert "G00Z25" in program("n§", "c⏎⏎30§", "c⏎⏎30§", name="x.nc")
     assert "G0 Z25" in program("n§", "c⏎⏎30§", "c⏎⏎30§")
 
 
-def test_a_bar_is_fed_by_the_codes_of_the_chuck() -> None:
+def test_bar_loop_uses_the_chuck_codes() -> None:
     text = program("n§", "b5⏎3⏎22§")
     assert text[text.index("T3 D1") - 1] == "BAR_1:"
     assert [line for line in text if line in {"M69", "M68", "REPEAT BAR_1 BAR_1_END P=4"}] == [
@@ -102,6 +102,6 @@ def test_a_bar_is_fed_by_the_codes_of_the_chuck() -> None:
     assert text[-2:] == ["%_N_PART_1_SPF", "M17"]
 
 
-def test_a_bar_without_codes_of_a_chuck_is_refused() -> None:
+def test_bar_loop_without_chuck_codes_is_rejected() -> None:
     _, said = written("b5⏎3⏎22§", HEAD, shop=replace(SHOP, chuck_codes=None))
     assert begins(said, "shapes.no-chuck-codes")

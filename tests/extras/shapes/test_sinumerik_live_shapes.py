@@ -84,7 +84,7 @@ def cuts(text: list[str]) -> list[Block]:
     ],
 )
 @pytest.mark.parametrize("head", [{}, {"WORDS": "RADIUS"}])
-def test_each_is_proved_and_opened_again_from_its_text(key: str, typed: Typed, head: Typed) -> None:
+def test_live_shape_is_proved_and_reopened_from_its_text(key: str, typed: Typed, head: Typed) -> None:
     text = written((key, typed), shop=SHOP, **head)
     blocks(text)
     piece = find_pieces(text, SHOP, NEW)[-1]
@@ -99,7 +99,7 @@ def test_each_is_proved_and_opened_again_from_its_text(key: str, typed: Typed, h
 # --- taps
 
 
-def test_a_tap_in_a_holder_that_gives_goes_in_by_its_pitch_and_is_turned_back() -> None:
+def test_compensating_holder_tap_feeds_by_pitch_and_reverses_out() -> None:
     """M6 has 1 mm a turn; the slide stops a pitch before the depth, as the spindle runs on."""
     text = written(("O", {**TAP, "RPM": 300.0, "DWELL": 0.5}))
     assert "CYCLE840(3, 0, 3, -11, , 0.5, 0, , 0, , 1)" in text
@@ -107,7 +107,7 @@ def test_a_tap_in_a_holder_that_gives_goes_in_by_its_pitch_and_is_turned_back() 
     assert [(each.z, each.feed) for each in tapped] == [(-11.0, 1.0), (3.0, 1.0)]
 
 
-def test_a_rigid_tap_goes_the_whole_depth_and_a_left_one_turns_the_other_way() -> None:
+def test_rigid_tap_reaches_full_depth_and_left_hand_tap_reverses() -> None:
     """15 mm from Z3 by 1 mm a turn are 15 turns of C."""
     ways = {}
     for hand in ("RIGHT", "LEFT"):
@@ -120,7 +120,7 @@ def test_a_rigid_tap_goes_the_whole_depth_and_a_left_one_turns_the_other_way() -
 # --- live tools
 
 
-def test_holes_lie_at_their_angles() -> None:
+def test_cross_holes_are_at_their_angles() -> None:
     """Feeds along X from 11.25 to 4 mm of radius, Z -8, C from 27.5 by 90 degrees, the spindle at rest."""
     text = written(("C", CROSS))
     drilled = [each for each in blocks(text) if each.kind is BlockKind.FEED]
@@ -130,14 +130,14 @@ def test_holes_lie_at_their_angles() -> None:
     assert all("live" in each.modal.outputs for each in drilled)
 
 
-def test_c_is_written_by_the_name_that_its_builder_gave_it() -> None:
+def test_c_axis_is_written_with_its_configured_name() -> None:
     named = replace(SHOP, third_axis="A1")
     assert "G0 A1=27.5" in written(("C", CROSS), shop=named)
     assert "G0 C27.5" in written(("C", CROSS))
 
 
 @pytest.mark.parametrize(("many", "deep"), [(6.0, 5.0), (4.0, 2.0), (2.0, 2.0), (1.0, 5.0)])
-def test_a_mill_round_flats_is_nowhere_nearer_than_they_are(many: float, deep: float) -> None:
+def test_flats_are_milled_at_the_correct_distance_from_the_axis(many: float, deep: float) -> None:
     """Its centre keeps 8.5 + 3 mm from the axis at every depth, and touches that beside each flat."""
     faces = cuts(written(("M", {**FACES, "FLATS": many, "DEEP": deep})))
     milled = [each.plane for each in faces if each.plane and min(each.plane.start[2], each.plane.end[2]) < 0]
@@ -161,7 +161,7 @@ def test_two_flats_in_passes_do_not_cross_the_part_in_omniturn_either() -> None:
     assert text[text.index("(Z-.2F6)") - 2 : text.index("(Z-.2F6)")] == ["(X-.45Y-.525)", "(X.45Y-.525F50)"]
 
 
-def test_a_slot_lies_at_its_angle_and_as_deep_as_it_is_said() -> None:
+def test_slot_is_at_its_angle_and_programmed_depth() -> None:
     """Three slots of 12 mm at radius 8, 0, 120 and 240 degrees apart, on the part as C turns it."""
     ways = [each.plane for each in cuts(written(("S", SLOT))) if each.plane]
     paths = [make_plane_path(way) for way in ways]  # r, z and angle on the part
@@ -172,7 +172,7 @@ def test_a_slot_lies_at_its_angle_and_as_deep_as_it_is_said() -> None:
     assert [b[0][2] - a[0][2] for a, b in pairwise(bottom)] == pytest.approx([-120.0] * 2, abs=1e-3)
 
 
-def test_a_slot_by_angle_and_a_hole_by_c_lie_in_one_place() -> None:
+def test_slot_angle_and_hole_c_angle_agree() -> None:
     """Both at 30 degrees: C stands at 30 when the slot's mill is there."""
     first = next(
         each for each in blocks(written(("S", {**SLOT, "ANGLE": 30.0, "COUNT": 1.0})))
@@ -181,7 +181,7 @@ def test_a_slot_by_angle_and_a_hole_by_c_lie_in_one_place() -> None:
     assert first.c % 360.0 == pytest.approx(30.0, abs=1e-3)
 
 
-def test_a_keyway_round_the_part_turns_as_in_omniturn() -> None:
+def test_circumferential_keyway_turns_as_in_omniturn() -> None:
     """A quarter turn, 2 mm deep in 20: at radius 8 from one angle on the part to that 90 degrees on."""
     typed: Typed = {**SLOT, "TURN": 90.0, "LONG": 0.0, "COUNT": 1.0, "PASS": 2.0}
     there = omniturn([("S", typed | {"DIA": 3.0}, ())], UNIT="METRIC")
@@ -217,7 +217,7 @@ def test_a_bar_loop_makes_its_parts(feeds: str) -> None:
     assert names == [("HEAD", -1), ("BAR LOOP", -1), ("FACE", -1)]
 
 
-def test_a_contour_of_a_bar_loop_may_be_compensated_here() -> None:
+def test_contour_in_a_sinumerik_bar_loop_may_be_compensated() -> None:
     text = written(("L", LOOP))
     setting = find_settings(text, len(text) - 1, SHOP, NEW)
     assert setting.is_subroutine
@@ -231,7 +231,7 @@ def test_a_contour_of_a_bar_loop_may_be_compensated_here() -> None:
     ("text", "found"),
     [("S900 M3\nM69", "unclamp-turning"), ("S900 M3\nM5\nM69\nM3", "collet-open")],
 )
-def test_a_code_bound_to_the_chuck_is_no_mere_output(text: str, found: str) -> None:
+def test_chuck_code_obeys_the_collet_interlocks(text: str, found: str) -> None:
     held = replace(
         BARS, interlocks=replace(BARS.interlocks, unclamp_while_turning=False, spindle_with_collet_open=False)
     )
@@ -243,7 +243,7 @@ def test_a_code_bound_to_the_chuck_is_no_mere_output(text: str, found: str) -> N
     assert [each.code for each in report.errors] == [found]
 
 
-def test_a_chuck_that_opens_and_closes_at_rest_is_the_collet() -> None:
+def test_chuck_codes_open_and_close_the_collet() -> None:
     made = blocks(["G54 G18 G90", "M5", "M69", "M68", "M30"], BARS)
     assert [each.action for each in made if isinstance(each.action, ColletSwitch | OutputSwitch)] == [
         ColletSwitch(closed=False), ColletSwitch(closed=True)
@@ -268,7 +268,7 @@ def test_a_chuck_that_opens_and_closes_at_rest_is_the_collet() -> None:
         ("L", LOOP, replace(SHOP, chuck_codes=None), "FEEDS"),
     ],
 )
-def test_what_the_machine_cannot_do_is_refused_at_its_field(
+def test_operation_beyond_the_machine_is_rejected_at_its_field(
     key: str, typed: Typed, shop: ShopData, word: str
 ) -> None:
     setting = find_settings(written(), 1, shop, NEW)
@@ -276,7 +276,7 @@ def test_what_the_machine_cannot_do_is_refused_at_its_field(
     assert [each.field_word for each in one.find_errors(setting)] == [word]
 
 
-def test_a_loop_in_the_part_of_another_is_refused() -> None:
+def test_bar_loop_inside_another_is_rejected() -> None:
     text = written(("L", LOOP))
     setting = find_settings(text, len(text) - 1, SHOP, NEW)
     assert [
@@ -284,7 +284,7 @@ def test_a_loop_in_the_part_of_another_is_refused() -> None:
     ] == ["COUNT"]
 
 
-def test_a_lathe_without_a_live_tool_says_so_in_the_proof_too() -> None:
+def test_lathe_without_a_live_tool_is_reported_in_the_proof() -> None:
     report = prove(
         source(written(("C", CROSS))), create_setup(LINEAR, tool_offsets={}, secondary_offsets={}), LINEAR
     )

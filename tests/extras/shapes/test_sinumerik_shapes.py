@@ -147,7 +147,7 @@ def metal(
 
 
 @pytest.mark.parametrize("name", STEPS)
-def test_the_same_metal_as_in_omniturn_and_found_again(name: str) -> None:
+def test_shape_removes_the_same_stock_as_in_omniturn_and_is_recognized(name: str) -> None:
     ours, theirs = written(STEPS[name], OURS), written(STEPS[name], THEIRS)
     tools = tools_of(STEPS[name])
     (mine, said), (there, _) = metal(ours, OURS, tools), metal(theirs, THEIRS, tools)
@@ -175,7 +175,7 @@ def test_the_same_metal_as_in_omniturn_and_found_again(name: str) -> None:
         {"AT": 10.0, "LONG": 5.0, "TOP": 26.0, "BOTTOM": 20.0, "OVER": 30.0, "CORNER": "RIGHT"},
     ],
 )
-def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, FieldValue]) -> None:
+def test_groove_cycle_equals_its_lines(typed: dict[str, FieldValue]) -> None:
     """The blade of 2 mm has D1 at the corner that was touched off, and D2."""
     turned: Step = (
         "T",
@@ -202,7 +202,7 @@ def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, FieldValue]
     ("typed", "word"),
     [({"DN": 1.0}, "DN"), ({"SIDE": "REAR"}, "SIDE"), ({"EDGE": 0.5}, "EDGE"), ({"CANGLE": 10.0}, "FANGLE")],
 )
-def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, FieldValue], word: str) -> None:
+def test_groove_beyond_the_cycle_is_rejected(typed: dict[str, FieldValue], word: str) -> None:
     setting = find_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
     groove = {"TOP": 30.0, "BOTTOM": 20.0, "AT": 9.0, "WIDE": 2.0, "LONG": 8.0, "DN": 2.0, **typed}
     one = fill_shape(SHAPES_BY_DIALECT[OURS]["G"], groove, setting)
@@ -218,7 +218,7 @@ def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, Field
         {"SERIES": "NPT", "SIZE": "1/4", "LONG": 12.0},
     ],
 )
-def test_the_same_thread_as_in_omniturn(typed: dict[str, FieldValue]) -> None:
+def test_thread_equals_the_omniturn_thread(typed: dict[str, FieldValue]) -> None:
     """The last pass is the thread: radius and Z at its end, its lead, its slope."""
     relief = {"RELIEF": 8.0}
     ours = written([("R", {**typed, **relief}, ())], OURS)
@@ -235,7 +235,7 @@ def test_the_same_thread_as_in_omniturn(typed: dict[str, FieldValue]) -> None:
     assert (piece.edited_line, piece.adopted_fields) == (-1, ())
 
 
-def test_the_program_is_that_of_a_good_programmer() -> None:
+def test_generated_program_uses_one_move_per_line_and_cycle95() -> None:
     """One move a line, words apart, CYCLE95 on the contour that the finish runs along, G42 to the right."""
     typed: dict[str, float | str] = {
         "FROM": 30.0,
@@ -258,7 +258,7 @@ def test_the_program_is_that_of_a_good_programmer() -> None:
 
 
 @pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "INCH"}])
-def test_other_modes_are_found_again(head: dict[str, FieldValue]) -> None:
+def test_shapes_in_other_modes_are_recognized(head: dict[str, FieldValue]) -> None:
     scale = 1.0 if "WORDS" in head else 1.0 / 25.4
     typed: dict[str, FieldValue] = {"FROM": 30.0 * scale, "ROUGH": 1.0 * scale}
     rows = tuple(ContourPoint(x * scale, z * scale) for x, z in ((0.0, 0.0), (20.0, 0.0), (20.0, -10.0)))
@@ -271,7 +271,7 @@ def test_other_modes_are_found_again(head: dict[str, FieldValue]) -> None:
     assert (piece.edited_line, len(piece.filled_shape.contour_points)) == (-1, 3)
 
 
-def test_a_figure_changed_by_hand_is_taken_over_and_a_line_put_in_is_told() -> None:
+def test_changed_value_is_adopted_and_inserted_line_is_reported() -> None:
     text = written([("D", {"DIA": 6.0, "DEEP": 15.0, "PECK": 0.0}, ())], OURS)
     (at,) = [n for n, line in enumerate(text) if line.startswith("CYCLE81")]
     assert text[at] == "CYCLE81(2.5, 0, 1.25, -15)"
@@ -286,7 +286,7 @@ def test_a_figure_changed_by_hand_is_taken_over_and_a_line_put_in_is_told() -> N
     assert find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1].edited_line == at
 
 
-def test_block_numbers_change_nothing_and_another_unit_converts() -> None:
+def test_block_numbers_are_ignored_and_unit_change_converts() -> None:
     text = written([("D", {"DIA": 6.35, "DEEP": 12.7, "PECK": 0.0, "FEED": 0.1016}, ())], OURS)
     numbered = [f"N{10 * n} {line}" for n, line in enumerate(text, 1)]
     before = find_pieces(numbered, SHOP, ProgramSettings(dialect=OURS))
@@ -308,9 +308,7 @@ def test_block_numbers_change_nothing_and_another_unit_converts() -> None:
         ("D", {"DIA": 2.0, "DEEP": 30.0, "PECK": 0.0}, "PECK"),
     ],
 )
-def test_what_no_part_can_have_is_refused_at_its_field(
-    key: str, typed: dict[str, FieldValue], word: str
-) -> None:
+def test_invalid_value_is_rejected_at_its_field(key: str, typed: dict[str, FieldValue], word: str) -> None:
     setting = find_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
     one = fill_shape(SHAPES_BY_DIALECT[OURS][key], typed, setting, PROFILE)
     assert [each.field_word for each in one.find_errors(setting)] == [word]
@@ -343,12 +341,12 @@ def test_the_forms_write_the_language_of_the_program(desk: ShapesModel) -> None:
     assert desk.form.filled_shape.get_number("DEEP") == 15.0
 
 
-def test_a_program_without_a_head_asks_for_it(desk: ShapesModel) -> None:
+def test_program_without_a_head_asks_for_one(desk: ShapesModel) -> None:
     assert desk.open_for_text("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
     strike(desk, "d")
     assert (desk.form, "PRESS N" in desk.notice) == (None, True)
 
 
-def test_a_language_that_the_forms_do_not_write_is_refused(desk: ShapesModel) -> None:
+def test_unsupported_language_is_rejected(desk: ShapesModel) -> None:
     for helpers in (False, True):
         assert desk.open_for_text("x.h", "", 1, lists_helpers=helpers) == text("shapes.other-language")

@@ -92,7 +92,7 @@ def made_by_hand(name: str, made: Made) -> tuple[str, str]:
 
 
 @pytest.mark.parametrize("name", PARTS)
-def test_the_same_metal_by_fewer_keys(name: str) -> None:
+def test_forms_remove_the_same_stock_with_fewer_keys(name: str) -> None:
     made = PARTS[name]
     example, ours = made_by_hand(name, made)
     theirs, mine = sections(example, made), sections(ours, made)
@@ -115,7 +115,7 @@ THREADS = {
 
 
 @pytest.mark.parametrize("name", THREADS)
-def test_the_same_thread_by_fewer_keys(name: str) -> None:
+def test_forms_make_the_same_thread_with_fewer_keys(name: str) -> None:
     """The last pass is the thread: its radius, its lead, where it ends; and it begins before the part."""
     example, ours = made_by_hand(name, THREADS[name])
     theirs, mine = ([b for b in blocks_of(text) if b.kind is BlockKind.THREAD] for text in (example, ours))
@@ -125,7 +125,7 @@ def test_the_same_thread_by_fewer_keys(name: str) -> None:
     assert made.z0 > 0.0
 
 
-def test_the_same_pieces_off_a_bar_by_fewer_keys() -> None:
+def test_forms_make_the_same_bar_parts_with_fewer_keys() -> None:
     tools = {1: TURNING, 2: BLADE}
     made = Made("n§l3⏎.35⏎o§t.1z-.05⏎z-.15⏎.2§p↑r⏎.2⏎⏎.29§", "bar:.2:2", tools)
     example, ours = made_by_hand("workshift-bar-loop", made)
@@ -138,7 +138,7 @@ def test_the_same_pieces_off_a_bar_by_fewer_keys() -> None:
         )
 
 
-def test_the_same_cross_holes_by_fewer_keys() -> None:
+def test_forms_make_the_same_cross_holes_with_fewer_keys() -> None:
     across = ToolShape(ToolKind.DRILL, tip=8, diameter=3.175, point=118.0)
     example, ours = made_by_hand("caxis-cross-drill", Made("n§c1.4⏎.3⏎.2⏎27.5⏎4§", "bar:1.4:2", {5: across}))
     theirs, mine = (

@@ -83,7 +83,7 @@ def rounding(series: ThreadSeries) -> float:
 
 
 @pytest.mark.parametrize(("series", "name", "tolerance", "major", "pitch"), OUTSIDE)
-def test_external_limits_are_those_of_the_table(
+def test_external_limits_match_the_table(
     series: ThreadSeries, name: str, tolerance: str, major: tuple[float, float], pitch: tuple[float, float]
 ) -> None:
     found = of(series, name, tolerance, inside=False)
@@ -92,7 +92,7 @@ def test_external_limits_are_those_of_the_table(
 
 
 @pytest.mark.parametrize(("series", "name", "tolerance", "pitch", "minor"), INSIDE)
-def test_internal_limits_are_those_of_the_table(
+def test_internal_limits_match_the_table(
     series: ThreadSeries, name: str, tolerance: str, pitch: tuple[float, float], minor: tuple[float, float]
 ) -> None:
     found = of(series, name, tolerance, inside=True)
@@ -100,13 +100,13 @@ def test_internal_limits_are_those_of_the_table(
     assert found.minor_diameter == pytest.approx(minor, abs=max(0.0006, rounding(series)))
 
 
-def test_the_minor_diameter_of_half_inch_13_class_3b() -> None:
+def test_half_inch_13_class_3b_minor_diameter_matches_the_table() -> None:
     assert of(ThreadSeries.UNC, "1/2", "3B", inside=True).minor_diameter == pytest.approx(
         (0.4167, 0.4284), abs=0.0001
     )
 
 
-def test_taper_pipe_at_its_small_end() -> None:
+def test_taper_pipe_thread_matches_b1_20_1_at_its_small_end() -> None:
     """B1.20.1: E0 and K0 of 1/4-18 and 1/2-14, and L2."""
     for name, pitch, minor, long in (("1/4", 0.47739, 0.4329, 0.4018), ("1/2", 0.75843, 0.7013, 0.5337)):
         found, known = of(ThreadSeries.NPT, name, "", inside=False), find_thread_size(ThreadSeries.NPT, name)
@@ -116,7 +116,7 @@ def test_taper_pipe_at_its_small_end() -> None:
         assert get_pipe_thread_length(ThreadSeries.NPT, known) == pytest.approx(long, abs=0.0001)
 
 
-def test_how_long_a_taper_pipe_thread_is_useful() -> None:
+def test_taper_pipe_thread_length_matches_iso_7_1() -> None:
     """ISO 7-1, basic gauge length: 1/8, 1/2, 1 and 2."""
     for name, long in (("1/8", 6.5), ("1/2", 13.2), ("1", 16.8), ("2", 23.4)):
         known = find_thread_size(ThreadSeries.BSPT, name)
@@ -125,7 +125,7 @@ def test_how_long_a_taper_pipe_thread_is_useful() -> None:
 
 
 @pytest.mark.parametrize(("side", "crest", "root"), [("OUTSIDE", 20.813, 18.560), ("BORE", 18.902, 21.026)])
-def test_a_parallel_pipe_thread_goes_to_the_middle_of_its_limits(
+def test_parallel_pipe_thread_is_cut_to_the_middle_of_its_limits(
     side: str, crest: float, root: float
 ) -> None:
     """G 1/2: major and minor in the middle, and the last pass a height of 1.162 from the middle pitch."""
@@ -134,7 +134,7 @@ def test_a_parallel_pipe_thread_goes_to_the_middle_of_its_limits(
     assert not one.find_errors(ProgramSettings(metric=True))
 
 
-def test_the_nose_counts_in_a_pipe_thread_too() -> None:
+def test_nose_radius_is_included_in_pipe_thread_depth() -> None:
     """G 1/2 class A, pitch 19.722: half of .9605 P behind the pitch line a point would end, and a nose of
     .2 lacks .2 (1 / sin 27.5 - 1) of that."""
     size = find_thread_size(ThreadSeries.BSP, "1/2")
@@ -144,7 +144,7 @@ def test_the_nose_counts_in_a_pipe_thread_too() -> None:
     assert found.root_diameter == pytest.approx(19.722 - 0.960491 * 25.4 / 14 + 2 * lack, abs=0.001)
 
 
-def test_the_tool_goes_as_deep_as_its_nose_asks() -> None:
+def test_thread_depth_includes_the_nose_radius() -> None:
     """Of a sharp V half of its height lies behind the pitch line, and a nose of radius r lacks r of that."""
     size = find_thread_size(ThreadSeries.UNC, "1/2")
     assert size is not None
@@ -156,7 +156,7 @@ def test_the_tool_goes_as_deep_as_its_nose_asks() -> None:
     assert sharp.root_diameter < nosed.root_diameter < usual.root_diameter
 
 
-def test_names_as_people_type_them() -> None:
+def test_common_spellings_of_thread_sizes_are_recognized() -> None:
     for name in ("1/2", "1/2-13", " 1/2-13 "):
         found = find_thread_size(ThreadSeries.UNC, name)
         assert found is not None
@@ -170,7 +170,7 @@ def test_names_as_people_type_them() -> None:
     assert find_thread_size(ThreadSeries.UNC, "7/13") is None
 
 
-def test_one_inch_is_not_number_one() -> None:
+def test_one_inch_differs_from_number_one() -> None:
     inch, number = find_thread_size(ThreadSeries.UNC, "1"), find_thread_size(ThreadSeries.UNC, "#1")
     assert inch is not None
     assert number is not None
@@ -181,13 +181,13 @@ def thread(typed: dict[str, float | str], *, metric: bool = False) -> FilledShap
     return fill_shape(SHAPES_BY_KEY["R"], typed, ProgramSettings(metric=metric))
 
 
-def test_a_size_that_the_series_has_not_is_refused() -> None:
+def test_size_missing_from_the_series_is_rejected() -> None:
     one = thread({"SIZE": "7/13", "LONG": 0.5, "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.4, "RPM": 300.0})
     said = {each.field_word: each.text for each in one.find_errors(ProgramSettings())}
     assert said == {"SIZE": wording("shapes.no-such-size", series="UNC", size="7/13")}
 
 
-def test_a_class_of_the_other_side_is_refused() -> None:
+def test_tolerance_class_of_the_other_side_is_rejected() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "CLASS": "2B"})
     assert [each.text for each in one.find_errors(ProgramSettings())] == [
         wording("shapes.no-such-class", tolerance="2B", allowed="2A, 1A, 3A")
@@ -195,24 +195,24 @@ def test_a_class_of_the_other_side_is_refused() -> None:
     assert list_tolerance_classes(ThreadSeries.UNC, is_inside=False) == ("2A", "1A", "3A")
 
 
-def test_a_metric_thread_in_an_inch_program() -> None:
+def test_metric_thread_is_converted_in_an_inch_program() -> None:
     one = thread({"SERIES": "M", "SIZE": "M10", "LONG": 0.5})
     assert one.get_number("PITCH") == pytest.approx(1.5 / 25.4, abs=1e-6)
     assert one.get_number("CREST") * 25.4 == pytest.approx((9.968 + 9.732) / 2, abs=0.002)
 
 
-def test_a_thread_that_ends_without_relief_is_refused() -> None:
+def test_thread_without_relief_is_rejected() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "PULL": "NO"})
     (said,) = one.find_errors(ProgramSettings())
     assert (said.field_word, said.text[:21]) == ("RELIEF", "Thread relief missing")
 
 
-def test_a_lead_that_the_slide_cannot_follow_is_refused() -> None:
+def test_lead_too_fast_for_the_axis_is_rejected() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "STARTS": 4.0, "RPM": 1000.0, "RUNUP": 0.5})
     assert {each.field_word for each in one.find_errors(ProgramSettings())} == {"RPM"}
 
 
-def test_deeper_than_its_flanks_is_refused() -> None:
+def test_thread_deeper_than_its_flanks_is_rejected() -> None:
     own: dict[str, float | str] = {
         "SERIES": "OWN",
         "PITCH": 0.05,
@@ -235,7 +235,9 @@ FLANKS = [
 
 @pytest.mark.parametrize("side", ["OUTSIDE", "BORE"])
 @pytest.mark.parametrize(("series", "size", "flank"), FLANKS)
-def test_no_pass_cuts_beyond_the_flank_of_the_last(series: str, size: str, flank: float, side: str) -> None:
+def test_earlier_passes_stay_within_the_flank_of_the_last(
+    series: str, size: str, flank: float, side: str
+) -> None:
     """A pass that ends d before the last may stand d tan(flank) beside it, and no more."""
     typed: dict[str, float | str] = {"SERIES": series, "SIZE": size, "SIDE": side, "LONG": 0.5, "TAPER": 0.0}
     one = thread(typed)
@@ -249,14 +251,14 @@ def test_no_pass_cuts_beyond_the_flank_of_the_last(series: str, size: str, flank
 
 
 @pytest.mark.parametrize(("series", "most"), [("BSP", 27), ("ACME", 14)])
-def test_an_infeed_flatter_than_the_flank_is_refused(series: str, most: int) -> None:
+def test_infeed_angle_flatter_than_the_flank_is_rejected(series: str, most: int) -> None:
     one = thread({"SERIES": series, "SIZE": "1/2", "LONG": 0.5, "INFEED": 29.0})
     (said,) = one.find_errors(ProgramSettings())
     assert said.field_word == "INFEED"
     assert said.text.endswith(f"so the first passes would cut into the flank. Enter {most} or less.")
 
 
-def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
+def test_custom_thread_uses_the_angle_of_its_tool() -> None:
     """A trapezoidal insert of 30 degrees, which no series here has."""
     tool = ToolShape(ToolKind.THREADING, tip=8, point=30.0)
     setting = ProgramSettings(metric=True, shop=ShopData(tools={1: tool}))
@@ -270,7 +272,7 @@ def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
     ]
 
 
-def test_what_a_thread_is_measured_by() -> None:
+def test_thread_measurement_limits_are_noted() -> None:
     """ASME B1.1, 1/2-13: 2A outside, 2B in a bore; M10 of 6g in mm (ISO 965-2)."""
     says = SHAPES_BY_KEY["R"].make_notes
     assert says(thread({"SIZE": "1/2", "LONG": 0.5}), ProgramSettings()) == (
@@ -285,7 +287,7 @@ def test_what_a_thread_is_measured_by() -> None:
     assert metric == "major diameter 9.732 to 9.968, pitch diameter 8.862 to 8.994"
 
 
-def test_the_cone_before_a_pipe_thread() -> None:
+def test_cone_before_a_pipe_thread_is_noted() -> None:
     """1/2-14 NPT: E0 .7584 and .8 / 14 to the crest; 1 in 16 over the .5337 of L2 (B1.20.1)."""
     assert SHAPES_BY_KEY["R"].make_notes(thread({"SERIES": "NPT", "SIZE": "1/2"}), ProgramSettings()) == (
         wording("shapes.pitch-diameter", size=".7584"),
@@ -293,12 +295,12 @@ def test_the_cone_before_a_pipe_thread() -> None:
     )
 
 
-def test_nothing_is_told_of_a_thread_of_its_own_figures() -> None:
+def test_custom_thread_has_no_notes() -> None:
     own: dict[str, float | str] = {"SERIES": "OWN", "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 0.5}
     assert SHAPES_BY_KEY["R"].make_notes(thread(own), ProgramSettings()) == ()
 
 
-def test_every_start_of_a_tapered_thread_lies_on_the_same_cone() -> None:
+def test_all_starts_of_a_tapered_thread_are_on_the_same_cone() -> None:
     one = thread({"SERIES": "NPT", "SIZE": "1/2", "STARTS": 2.0, "RPM": 200.0})
     text = "\n".join(["G90G94F300G72", *one.make_lines(ProgramSettings()), "M30", ""])
     cuts = [b for b in blocks_of(text) if b.kind is BlockKind.THREAD and b.z < b.z0 and b.travel is None]

@@ -10,7 +10,7 @@ from tests.power_cut import cut_everywhere, mains
 __all__ = ["mains"]
 
 
-def test_a_desk_keeps_its_own_id_among_those_that_share(tmp_path: Path) -> None:
+def test_machine_id_file_is_replaced_atomically(tmp_path: Path) -> None:
     """An empty file would be another desk, whose programs nobody may go on with."""
     store_machine_id(tmp_path, "0" * 32)
     seen = set(

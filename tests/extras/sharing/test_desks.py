@@ -53,7 +53,7 @@ def only(desk: ProgramSharing) -> SharedVersion:
 # --- in every kind of place -----------------------------------------------------------------------------
 
 
-def test_what_is_changed_here_is_newer_there_until_it_is_taken(desk: MakeDesk) -> None:
+def test_local_change_is_newer_elsewhere_until_copied(desk: MakeDesk) -> None:
     one, two = desk(1), desk(2)
     write(one, "G00 X1\n")
     together(one, two)
@@ -70,7 +70,7 @@ def test_what_is_changed_here_is_newer_there_until_it_is_taken(desk: MakeDesk) -
     assert read(two) == "G00 X2\n"
 
 
-def test_desks_that_were_apart_for_a_day_keep_both_versions_and_settle_once(rig: Rig, desk: MakeDesk) -> None:
+def test_machines_apart_for_a_day_retain_both_versions_and_resolve_once(rig: Rig, desk: MakeDesk) -> None:
     one, two = desk(1), desk(2)
     write(one, "G00 X1\n")
     together(one, two)
@@ -97,7 +97,7 @@ def test_desks_that_were_apart_for_a_day_keep_both_versions_and_settle_once(rig:
     assert kept == {b"G00 X1\n", *(b"G00 X%d%d\n" % (d, hour) for d in (1, 2) for hour in range(3))}
 
 
-def test_a_place_that_ends_in_the_middle_of_publishing_loses_nothing(
+def test_interrupted_publishing_loses_nothing(
     rig: Rig, desk: MakeDesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, two = desk(1), desk(2)
@@ -118,7 +118,7 @@ def test_a_place_that_ends_in_the_middle_of_publishing_loses_nothing(
 # --- where the kind does not matter ---------------------------------------------------------------------
 
 
-def test_what_is_here_can_stand_against_what_was_changed_elsewhere(desk_at_folder: MakeDesk) -> None:
+def test_local_version_can_win_over_a_remote_change(desk_at_folder: MakeDesk) -> None:
     one, two = _both_changed(desk_at_folder)
     one.resolve_with_local("part.nc")
     together(one, two)
@@ -142,9 +142,7 @@ def _both_changed(desk: MakeDesk) -> tuple[ProgramSharing, ProgramSharing]:
     return one, two
 
 
-def test_a_clock_that_is_years_off_changes_nothing(
-    desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_wrong_clock_has_no_effect(desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     monkeypatch.setattr(sharing_module, "get_utc_now_text", lambda: "2041-01-01T00:00:00.000Z")
     write(one, "OLD\n")
@@ -159,7 +157,7 @@ def test_a_clock_that_is_years_off_changes_nothing(
     assert read(one) == "NEW\n"
 
 
-def test_the_text_of_before_is_a_newer_version_again(desk_at_folder: MakeDesk) -> None:
+def test_returning_to_an_old_text_is_a_newer_version(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     for text in ("A\n", "B\n"):
         write(one, text)
@@ -172,7 +170,7 @@ def test_the_text_of_before_is_a_newer_version_again(desk_at_folder: MakeDesk) -
     assert read(one) == "A\n"
 
 
-def test_the_same_text_on_two_desks_is_one_version(desk_at_folder: MakeDesk) -> None:
+def test_same_text_on_two_machines_is_one_version(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n")
     write(two, "G00\n")  # brought on a stick
@@ -180,7 +178,7 @@ def test_the_same_text_on_two_desks_is_one_version(desk_at_folder: MakeDesk) -> 
     assert (family(two).state, len(family(two).versions)) == ("same", 1)
 
 
-def test_one_name_for_two_programs_keeps_both(desk_at_folder: MakeDesk) -> None:
+def test_two_programs_of_the_same_name_are_both_retained(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "BOLT\n")
     one.synchronize()
@@ -190,7 +188,7 @@ def test_one_name_for_two_programs_keeps_both(desk_at_folder: MakeDesk) -> None:
     assert (read(one), read(two)) == ("BOLT\n", "NUT\n")
 
 
-def test_names_that_differ_by_case_only_are_one_program(desk_at_folder: MakeDesk) -> None:
+def test_names_that_differ_only_in_case_are_one_program(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n", "Part.nc")
     together(one, two)
@@ -211,7 +209,7 @@ def test_names_that_differ_by_case_only_are_one_program(desk_at_folder: MakeDesk
     assert (read(two, "PART.NC"), read(two, "part.NC")) == ("G01\n", "ELSE\n")
 
 
-def test_a_program_that_is_deleted_here_stays_with_the_others(desk_at_folder: MakeDesk) -> None:
+def test_locally_deleted_program_remains_on_the_others(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n")
     together(one, two)
@@ -222,7 +220,7 @@ def test_a_program_that_is_deleted_here_stays_with_the_others(desk_at_folder: Ma
     assert one.last_result.find_machines_with(family(two).local_version_id) == ("LATHE 2",)
 
 
-def test_what_is_being_written_is_left_until_it_stands_still(desk_at_folder: MakeDesk) -> None:
+def test_file_being_written_is_skipped_until_settled(desk_at_folder: MakeDesk) -> None:
     one = desk_at_folder(1)
     write(one, "G00\n")
     one.synchronize(is_settled=True)
@@ -235,7 +233,7 @@ def test_what_is_being_written_is_left_until_it_stands_still(desk_at_folder: Mak
     assert {one.read_text(each) for each in family(one).versions.values()} == {b"G00\n", b"G00\nG01 X1\n"}
 
 
-def test_two_desks_of_one_name_are_refused_and_nothing_is_published(desk_at_folder: MakeDesk) -> None:
+def test_two_machines_with_one_id_are_rejected_and_publish_nothing(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n")
     one.synchronize()
@@ -247,7 +245,7 @@ def test_two_desks_of_one_name_are_refused_and_nothing_is_published(desk_at_fold
     assert two.synchronize().error_text == ""
 
 
-def test_a_file_that_cannot_be_written_leaves_all_as_it_was(
+def test_failed_write_leaves_everything_unchanged(
     desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, two = _both_changed(desk_at_folder)
@@ -265,7 +263,7 @@ def test_a_file_that_cannot_be_written_leaves_all_as_it_was(
 
 
 @pytest.mark.parametrize("before", [True, False])
-def test_a_power_cut_while_a_version_is_taken_is_made_good_by_the_next_look(
+def test_next_synchronization_recovers_from_a_power_cut_while_copying(
     desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch, *, before: bool
 ) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
@@ -289,7 +287,7 @@ def test_a_power_cut_while_a_version_is_taken_is_made_good_by_the_next_look(
     assert (family(two).state, read(two)) == (("newer", "A\n") if before else ("same", "B\n"))
 
 
-def test_a_version_whose_text_cannot_be_had_is_not_taken(folder_rig: Rig, desk_at_folder: MakeDesk) -> None:
+def test_version_without_its_text_is_not_copied(folder_rig: Rig, desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n")
     together(one, two)
@@ -303,7 +301,7 @@ def test_a_version_whose_text_cannot_be_had_is_not_taken(folder_rig: Rig, desk_a
         two.copy_version(family(two).newest_versions[0])
 
 
-def test_what_somebody_took_out_of_the_place_is_published_again(
+def test_version_removed_from_the_location_is_published_again(
     folder_rig: Rig, desk_at_folder: MakeDesk
 ) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
@@ -315,7 +313,7 @@ def test_what_somebody_took_out_of_the_place_is_published_again(
     assert two.read_text(only(two)) == b"G00\n"
 
 
-def test_a_thousand_programs_go_over_in_one_look_each(
+def test_thousand_programs_synchronize_in_one_pass_each(
     desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
@@ -328,7 +326,7 @@ def test_a_thousand_programs_go_over_in_one_look_each(
     assert two.read_text(two.last_result.programs["p0999.nc"].newest_versions[0]) == b"G00 X999\n"
 
 
-def test_a_restore_in_the_middle_of_a_look_is_told_and_ends_nothing(
+def test_store_closed_by_a_restore_during_synchronization_is_reported(
     desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The store is closed while the last file goes to the place: the thread that looks has to live on."""

@@ -38,7 +38,7 @@ def shared(room: Room, tmp_path: Path) -> SharingModel:
     return model
 
 
-def test_taking_a_shared_program_is_no_operators_work(room: Room, tmp_path: Path) -> None:
+def test_copying_a_shared_program_requires_setup_level(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     model, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
     model.copy_version()
@@ -53,9 +53,7 @@ def test_taking_a_shared_program_is_no_operators_work(room: Room, tmp_path: Path
     model.close()
 
 
-def test_a_shared_program_asks_again_when_it_is_taken_and_has_the_name_of_who_took_it(
-    room: Room, tmp_path: Path
-) -> None:
+def test_level_is_checked_again_on_copy_and_the_user_is_logged(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     page, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
     version = page.selected_version

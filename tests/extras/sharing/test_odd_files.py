@@ -51,21 +51,21 @@ def little_memory() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("name", [f"{VERSIONS}/{'a' * 64}.version", f"{DESKS}/{'b' * 32}.json"])
-def test_a_pipe_is_a_stray_and_keeps_no_look_waiting(place: SharedFolder, tmp_path: Path, name: str) -> None:
+def test_pipe_is_listed_as_foreign_and_does_not_block(place: SharedFolder, tmp_path: Path, name: str) -> None:
     os.mkfifo(tmp_path / name)
     found = in_time(lambda: place.read_contents({}))
     assert found.foreign_items == (Path(name).name,)
     assert found.unknown_versions == (published(1).version,)
 
 
-def test_a_pipe_in_the_place_of_the_mark_is_named(place: SharedFolder, tmp_path: Path) -> None:
+def test_pipe_in_place_of_the_marker_file_is_reported(place: SharedFolder, tmp_path: Path) -> None:
     (tmp_path / MARKER_FILE_NAME).unlink()
     os.mkfifo(tmp_path / MARKER_FILE_NAME)
     cause, words = in_time(lambda: cause_of(place.read_contents, {}))
     assert (cause, MARKER_FILE_NAME in words) == (SharingErrorCause.OTHER, True)
 
 
-def test_a_pipe_in_the_place_of_a_version_is_put_aside(place: SharedFolder, tmp_path: Path) -> None:
+def test_pipe_in_place_of_a_version_is_damaged_and_replaced(place: SharedFolder, tmp_path: Path) -> None:
     one = published(1)
     path = tmp_path / VERSIONS / f"{one.version.id}.version"
     path.unlink()
@@ -83,13 +83,13 @@ def test_a_file_of_gigabytes_is_not_read(place: SharedFolder, tmp_path: Path, na
         assert place.read_contents({}).foreign_items == (Path(name).name,)
 
 
-def test_what_is_no_regular_file_is_refused(tmp_path: Path) -> None:
+def test_file_that_is_not_regular_is_rejected(tmp_path: Path) -> None:
     for path in (tmp_path, Path("/dev/zero")):
         with pytest.raises(OSError, match=path.name):
             read_input_bytes(path, 10)
 
 
-def test_a_file_has_its_limit(tmp_path: Path) -> None:
+def test_file_above_its_size_limit_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(b"0123456789")
     assert read_input_bytes(path, 10) == b"0123456789"

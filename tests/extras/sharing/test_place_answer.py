@@ -24,7 +24,7 @@ class Place:
     name = "the database shop"
 
 
-def test_a_silent_place_is_told_once_and_its_answer_still_counts(
+def test_silent_location_is_reported_once_and_its_response_still_used(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = threading.Event()
@@ -40,12 +40,12 @@ def test_a_silent_place_is_told_once_and_its_answer_still_counts(
     assert capsys.readouterr() == ("", f"turndesk: {said}\n")
 
 
-def test_an_answer_in_time_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+def test_timely_response_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     assert wait_for_location(cast("SharedLocation", Place()), lambda: 7) == 7
     assert capsys.readouterr() == ("", "")
 
 
-def test_what_the_place_refuses_is_raised_where_it_was_asked() -> None:
+def test_location_error_is_raised_in_the_caller() -> None:
     def refuse() -> None:
         raise SharingErrorCause.FULL.make_error("the folder x")
 
@@ -66,7 +66,7 @@ def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
-def test_a_folder_that_hangs_is_told_before_it_is_touched(
+def test_hanging_folder_is_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     os.mkfifo(tmp_path / MARKER_FILE_NAME)  # opening it waits for a writer, as a dead drive does

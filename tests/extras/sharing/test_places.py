@@ -44,7 +44,7 @@ def cause_of(call: object, *args: object) -> tuple[SharingErrorCause, str]:
     return raised.value.cause, str(raised.value)
 
 
-def test_what_one_desk_publishes_another_finds_and_reads(rig: Rig) -> None:
+def test_version_published_by_one_machine_is_read_by_another(rig: Rig) -> None:
     one, two = published(1), published(2, "ÄÖ 2.NC")
     rig.place(1).publish([one, two], state(one, two))
     other = rig.place(2)
@@ -55,7 +55,7 @@ def test_what_one_desk_publishes_another_finds_and_reads(rig: Rig) -> None:
     assert [other.read_text(each.version) for each in (one, two)] == [one.program_text, two.program_text]
 
 
-def test_what_is_known_is_told_as_there_and_not_read_again(rig: Rig) -> None:
+def test_known_version_is_listed_but_not_read_again(rig: Rig) -> None:
     one, two = published(1), published(2)
     place = rig.place()
     place.publish([one], state(one))
@@ -73,7 +73,7 @@ def test_publishing_the_same_again_changes_nothing(rig: Rig) -> None:
     assert (found.unknown_versions, found.foreign_items, len(found.machine_states)) == ((one.version,), (), 1)
 
 
-def test_a_desk_tells_another_state_in_the_place_of_its_own(rig: Rig) -> None:
+def test_machine_state_replaces_its_previous_state(rig: Rig) -> None:
     one, place = published(1), rig.place()
     place.publish([one], state(one))
     other = PublishedMachineState("f" * 32, "LATHE 2", AT, {})
@@ -83,14 +83,14 @@ def test_a_desk_tells_another_state_in_the_place_of_its_own(rig: Rig) -> None:
     assert desks == {HOME: state(), "f" * 32: other}
 
 
-def test_laying_out_again_leaves_all_as_it_is(rig: Rig) -> None:
+def test_repeated_setup_changes_nothing(rig: Rig) -> None:
     one = published(1)
     rig.place().publish([one], state(one))
     rig.place(2).set_up()
     assert rig.place().read_contents({}).unknown_versions == (one.version,)
 
 
-def test_a_place_away_is_told_as_away_and_goes_on_when_it_is_back(rig: Rig) -> None:
+def test_unreachable_location_is_reported_and_works_when_it_returns(rig: Rig) -> None:
     one, two, place = published(1), published(2), rig.place()
     place.publish([one], state(one))
     rig.leave()
@@ -101,7 +101,7 @@ def test_a_place_away_is_told_as_away_and_goes_on_when_it_is_back(rig: Rig) -> N
     assert {each.id for each in place.read_contents({}).unknown_versions} == {one.version.id, two.version.id}
 
 
-def test_a_newer_layout_is_refused_and_left_alone(rig: Rig) -> None:
+def test_newer_format_is_rejected_and_left_unchanged(rig: Rig) -> None:
     one, place = published(1), rig.place()
     rig.make_newer()
     for cause, words in (
@@ -112,7 +112,7 @@ def test_a_newer_layout_is_refused_and_left_alone(rig: Rig) -> None:
         assert (cause, "newer TurnDesk (format 2)" in words) == (SharingErrorCause.NEWER, True)
 
 
-def test_garbage_is_named_and_hides_nothing(rig: Rig) -> None:
+def test_garbage_is_listed_and_hides_nothing(rig: Rig) -> None:
     one, place = published(1), rig.place()
     place.publish([one], state(one))
     rig.litter()
@@ -125,7 +125,7 @@ def test_garbage_is_named_and_hides_nothing(rig: Rig) -> None:
     assert found.stored_ids == {one.version.id}
 
 
-def test_cut_in_the_middle_of_publishing_each_version_is_whole_or_not_there(
+def test_interrupted_publishing_leaves_each_version_complete_or_absent(
     rig: Rig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, more = published(0), [published(number) for number in range(1, 6)]
@@ -147,14 +147,14 @@ def test_cut_in_the_middle_of_publishing_each_version_is_whole_or_not_there(
     assert [rig.place(2).read_text(each.version) for each in more] == [each.program_text for each in more]
 
 
-def test_a_text_that_is_not_there_is_refused(rig: Rig) -> None:
+def test_missing_text_is_rejected(rig: Rig) -> None:
     rig.place().publish([], state())
     cause, words = cause_of(rig.place().read_text, published(7).version)
     assert cause in {SharingErrorCause.DAMAGED, SharingErrorCause.NOT_THERE}
     assert rig.place().name in words
 
 
-def test_a_place_that_was_not_begun_says_how(rig: Rig) -> None:
+def test_location_that_is_not_set_up_says_how_to_set_it_up(rig: Rig) -> None:
     empty = _emptied(rig)
     cause, words = cause_of(empty.read_contents, {})
     assert (cause, "turndesk share begin" in words) == (SharingErrorCause.NOT_BEGUN, True)
@@ -186,7 +186,7 @@ def _emptied(rig: Rig) -> SharedLocation:
         (errno.ESTALE, SharingErrorCause.AWAY),
     ],
 )
-def test_what_the_system_refuses_is_told_by_its_cause(
+def test_system_error_is_reported_with_its_cause(
     folder_rig: Rig, monkeypatch: pytest.MonkeyPatch, number: int, cause: SharingErrorCause
 ) -> None:
     def refused(_file: int) -> None:
@@ -201,7 +201,7 @@ def test_what_the_system_refuses_is_told_by_its_cause(
     assert place.read_contents({}).foreign_items == ()
 
 
-def test_a_version_that_was_cut_off_on_the_disk_is_no_version_and_comes_again(folder_rig: Rig) -> None:
+def test_truncated_version_is_set_aside_and_published_again(folder_rig: Rig) -> None:
     one, place = published(1), folder_rig.place()
     place.publish([one], state(one))
     (file,) = (folder_rig.folder / "shop" / "versions").iterdir()
@@ -217,7 +217,7 @@ def test_a_version_that_was_cut_off_on_the_disk_is_no_version_and_comes_again(fo
 
 
 @pytest.mark.parametrize("text", ["", "[]", '{"format": "1"}', "[" * 100_000])
-def test_a_mark_that_is_none_of_ours_is_refused(folder_rig: Rig, text: str) -> None:
+def test_foreign_marker_file_is_rejected(folder_rig: Rig, text: str) -> None:
     (folder_rig.folder / "shop" / "turndesk-share.json").write_text(text)
     assert cause_of(folder_rig.place().read_contents, {})[0] is SharingErrorCause.OTHER
 
@@ -230,7 +230,7 @@ def database(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Postgre
         yield made
 
 
-def test_a_user_without_rights_is_told_so(database: PostgresRig) -> None:
+def test_user_without_permissions_is_reported(database: PostgresRig) -> None:
     database.server.sql("CREATE ROLE visitor LOGIN", database.database)
     try:
         visitor = SharedDatabase(database.server.conninfo(database.database, "visitor"))
@@ -255,7 +255,7 @@ def test_a_user_without_rights_is_told_so(database: PostgresRig) -> None:
         database.server.sql("DROP OWNED BY visitor; DROP ROLE visitor", database.database)
 
 
-def test_tables_of_somebody_else_are_refused(database: PostgresRig) -> None:
+def test_foreign_database_tables_are_rejected(database: PostgresRig) -> None:
     database.server.sql("ALTER TABLE turndesk.versions RENAME COLUMN record TO recipe", database.database)
     one = published(1)
     database.server.sql(
@@ -264,7 +264,7 @@ def test_tables_of_somebody_else_are_refused(database: PostgresRig) -> None:
     assert cause_of(database.place().read_contents, {})[0] is SharingErrorCause.OTHER
 
 
-def test_without_psycopg_one_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_psycopg_is_reported_in_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda _name: None)
     cause, words = cause_of(SharedDatabase("host=shop-pc password=secret dbname=shop").read_contents, {})
     assert (cause, "turndesk[postgresql]" in words) == (SharingErrorCause.NO_PSYCOPG, True)
@@ -285,9 +285,7 @@ def test_without_psycopg_one_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -
         "host=h port=secret",
     ],
 )
-def test_no_password_stands_in_a_sentence_or_a_crash_file(
-    conninfo: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_passwords_are_not_in_messages_or_crash_files(conninfo: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def away(**_values: object) -> None:
         raise psycopg.OperationalError("no answer")
 
@@ -298,13 +296,13 @@ def test_no_password_stands_in_a_sentence_or_a_crash_file(
     assert "cret" not in place.name + "".join(traceback.format_exception(refused.value))
 
 
-def test_a_database_is_named_by_what_libpq_reads() -> None:
+def test_database_name_comes_from_the_libpq_settings() -> None:
     name = SharedDatabase("postgresql://lathe:secret@127.0.0.1:5432/d").name
     assert name == "the database user=lathe host=127.0.0.1 port=5432 dbname=d"
 
 
 @pytest.mark.parametrize("conninfo", ["host=h passwort=x", "host=h port=x", "postgresql://a:b/c@h/d"])
-def test_what_libpq_cannot_read_is_told_as_such(conninfo: str) -> None:
+def test_invalid_libpq_settings_are_reported(conninfo: str) -> None:
     assert cause_of(SharedDatabase(conninfo).read_contents, {})[0] is SharingErrorCause.UNREADABLE
 
 
@@ -322,7 +320,7 @@ def test_what_libpq_cannot_read_is_told_as_such(conninfo: str) -> None:
         ("dbname=d", None),
     ],
 )
-def test_a_server_elsewhere_has_to_prove_who_it_is(
+def test_remote_server_must_verify_its_certificate(
     conninfo: str, mode: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in ("PGHOST", "PGSSLMODE", "PGSSLROOTCERT"):
@@ -376,7 +374,7 @@ _AT = 'connection failed: connection to server at "10.0.0.7", port 5432 failed: 
         (f"{_AT}Connection refused\n\tIs the server running?", SharingErrorCause.AWAY, "Connection refused"),
     ],
 )
-def test_what_a_server_says_at_the_door_has_its_cause(
+def test_connection_error_of_the_server_is_mapped_to_its_cause(
     said: str, cause: SharingErrorCause, why: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As libpq 17 and a server of version 15 have said it."""

@@ -50,7 +50,7 @@ def shop(tmp_path: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) ->
     return made
 
 
-def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
+def test_program_is_published_compared_copied_and_resolved(shop: Shop) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
     assert shop.share(1, "publish")[1].endswith("contains the only program from LATHE 1\n")
     told = json.loads(shop.share(2, "status", "--json")[1])
@@ -89,7 +89,7 @@ def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
         (("keep", "GONE.NC"), "nothing-to-settle", ""),
     ],
 )
-def test_refusals(shop: Shop, words: tuple[str, ...], code: str, value: str) -> None:
+def test_invalid_commands_are_rejected(shop: Shop, words: tuple[str, ...], code: str, value: str) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\n")
     shop.share(1, "publish")
     told = shop.share(1, *words)
@@ -97,7 +97,7 @@ def test_refusals(shop: Shop, words: tuple[str, ...], code: str, value: str) -> 
     assert value in told.err
 
 
-def test_a_folder_that_is_not_mounted_costs_one_sentence(shop: Shop) -> None:
+def test_unmounted_folder_is_reported_in_one_sentence(shop: Shop) -> None:
     (shop.folder / "shop").rename(shop.folder / "unmounted")
     told = shop.share(1, "status", "--json")
     assert (told.status, json.loads(told.out)["waiting"]) == (1, 0)
@@ -108,7 +108,7 @@ def test_a_folder_that_is_not_mounted_costs_one_sentence(shop: Shop) -> None:
     assert list((shop.folder / "shop").iterdir()) == []
 
 
-def test_a_new_computer_goes_on_in_the_name_of_the_old_one(shop: Shop) -> None:
+def test_new_computer_can_claim_the_name_of_the_old_one(shop: Shop) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\n")
     shop.share(1, "publish")
     shop.sharing(2, f'folder = "{shop.folder / "shop"}"\ndesk = "Lathe 1"\n')
@@ -119,14 +119,14 @@ def test_a_new_computer_goes_on_in_the_name_of_the_old_one(shop: Shop) -> None:
     assert len(list((shop.folder / "shop" / "desks").iterdir())) == 1
 
 
-def test_a_desk_that_runs_publishes_by_itself(shop: Shop) -> None:
+def test_publish_command_is_rejected_while_turndesk_runs(shop: Shop) -> None:
     with Store.open(shop.folder / "home1"):
         told = shop.share(1, "publish")
         assert (told.status, told.code) == (2, "in-use")
         assert shop.share(1, "status")[0] == 0
 
 
-def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
+def test_machine_file_without_a_sharing_location_is_rejected(turndesk: Turndesk) -> None:
     told = turndesk("share", "status")
     assert (told.status, told.code) == (2, "no-sharing")
 
@@ -143,12 +143,12 @@ def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
         ('folder = "/a"\npassword = "x"', "unknown-key", "sharing.password"),
     ],
 )
-def test_tables_that_are_refused(table: str, code: str, value: str) -> None:
+def test_invalid_sharing_tables_are_rejected(table: str, code: str, value: str) -> None:
     with raises_code(MachineFileError, code, value):
         parse_machine(resources.read_machine_file("gt75.toml") + f"[sharing]\n{table}\n", "m.toml")
 
 
-def test_machine_check_has_a_row_for_the_place(shop: Shop) -> None:
+def test_machine_check_has_a_row_for_the_location(shop: Shop) -> None:
     shop.share(1, "publish")
     for name, state in (("shop", "ok"), ("gone", "no answer")):
         table = f'[sharing]\nfolder = "{shop.folder / name}"\n'
@@ -157,7 +157,7 @@ def test_machine_check_has_a_row_for_the_place(shop: Shop) -> None:
         assert (row.state, "LATHE 1" in row.detail) == (state, state == "ok")
 
 
-def test_share(shop: Shop) -> None:
+def test_share_json_output_has_the_declared_keys(shop: Shop) -> None:
     begun = whole(shop.share(1, "begin", "--json"))
     declared_alone([begun], share_command.SHARE_BEGIN_OUTPUT.keys)
     shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")

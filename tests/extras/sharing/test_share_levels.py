@@ -17,7 +17,7 @@ __all__ = ["any_pin", "home", "people", "refusals", "say"]
 pytestmark = pytest.mark.usefixtures("any_pin")
 
 
-def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
+def test_sharing_is_logged_with_the_user_name(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     (tmp_path / "shop").mkdir()
     table = f'[sharing]\nfolder = "{tmp_path / "shop"}"\ndesk = "LATHE 1"\n'
     (tmp_path / "own.toml").write_text(f"{resources.read_machine_file('gt75.toml')}\n{table}")
@@ -31,7 +31,7 @@ def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: 
     assert told == [("share publish", "BEN"), ("share begin", "ANNA")]
 
 
-def test_a_shared_program_is_taken_from_setup_on(
+def test_copying_a_shared_program_needs_setup_level(
     say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     file, shop = tmp_path / "lathe.toml", tmp_path / "shop"

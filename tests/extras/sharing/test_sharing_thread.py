@@ -21,7 +21,7 @@ class Dead:
         return SharingResult()
 
 
-def test_a_look_that_hangs_is_counted_until_it_ends() -> None:
+def test_waiting_time_counts_until_a_hung_synchronization_ends() -> None:
     now, dead, heard = [100.0], Dead(), threading.Event()
     thread = SharingThread(cast("ProgramSharing", dead), 3600.0, lambda _shared: heard.set(), lambda: now[0])
     assert thread.get_waiting_time_s() == 0.0

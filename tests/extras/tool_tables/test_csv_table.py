@@ -64,7 +64,7 @@ def test_shapes_are_read(tmp_path: Path) -> None:
     }
 
 
-def test_quotes_line_ends_and_byte_order_marks(tmp_path: Path) -> None:
+def test_quotes_line_ends_and_byte_order_mark_are_read(tmp_path: Path) -> None:
     text = b'\xef\xbb\xbf"T","Remark"\r\n"2","one, ""two"""\r\n\r\n'
     assert tool_of(tmp_path, "a.csv", text, RADIUS).offset_values == {"remark": 'one, "two"'}
 
@@ -93,42 +93,42 @@ def test_quotes_line_ends_and_byte_order_marks(tmp_path: Path) -> None:
         (f"T,Remark\n1,{'a' * 200_000}\n", "not-csv", "line 2"),
     ],
 )
-def test_rejected_tables(tmp_path: Path, text: str, code: str, place: str) -> None:
+def test_invalid_tables_are_rejected(tmp_path: Path, text: str, code: str, place: str) -> None:
     with raises_code(ToolTableError, code, f"a.csv: {place}:"):
         table_of(tmp_path, "a.csv", text, RADIUS)
 
 
-def test_x_without_radius_or_diameter_is_asked(tmp_path: Path) -> None:
+def test_x_without_radius_or_diameter_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "x-unclear", "--x"):
         table_of(tmp_path, "a.csv", "T,X,Z\n1,1,1\n")
 
 
-def test_a_unit_that_is_not_specified_is_asked(tmp_path: Path) -> None:
+def test_missing_unit_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unit-missing", "--unit"):
         table_of(tmp_path, "a.csv", "T,Z\n1,1\n", ReadingOptions())
 
 
-def test_an_assigned_column_that_does_not_exist(tmp_path: Path) -> None:
+def test_unknown_assigned_column_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unknown-column", "did you mean Diam"):
         table_of(tmp_path, "a.csv", "T,Diam\n1,1\n", ReadingOptions("in", "", {"x": "Dia"}))
 
 
-def test_a_binary_table_of_mach_is_named(tmp_path: Path) -> None:
+def test_binary_mach_table_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "binary-table", "CSV"):
         table_of(tmp_path, "tools.dat", b"\x05Empty" + bytes(40))
 
 
-def test_a_text_table_of_mach(tmp_path: Path) -> None:
+def test_mach_text_table_is_read(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "tools.dat", "Tool,Name,X Offset,Z Offset\n1,rough,1,2\n", RADIUS)
     assert tool.offset_values["remark"] == "rough"
 
 
-def test_a_table_without_end(tmp_path: Path) -> None:
+def test_overlong_table_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "too-long", "line 10001"):
         table_of(tmp_path, "a.csv", "T,Z\n" + "1,1\n" * 20_000, RADIUS)
 
 
-def test_what_is_written_is_read_again(tmp_path: Path) -> None:
+def test_written_table_is_read_back_unchanged(tmp_path: Path) -> None:
     text = (
         "T,X radius,Z,R,Quadrant,Kind,Insert,Holder,Diameter,Flutes,Point,Rear,Remark\n"
         "1,1.5,-2,.0156,3,turning,CNMG432,MCLNR-124B,,,,1,=HYPERLINK()\n"

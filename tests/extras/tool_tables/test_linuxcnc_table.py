@@ -13,7 +13,7 @@ from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of, tool_of
 
 
-def test_a_line_in_inches(tmp_path: Path) -> None:
+def test_inch_line_is_read(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T3 P3 X1.5 Z-2 D0.0312 I85 J25 Q2 ;roughing\n")
     assert tool.number == 3
     assert tool.offset_values == {
@@ -26,7 +26,7 @@ def test_a_line_in_inches(tmp_path: Path) -> None:
     assert tool.shape_values == {}
 
 
-def test_millimeters_and_points_first(tmp_path: Path) -> None:
+def test_millimeters_and_leading_points_are_read(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T1 P1 X.5 Z+1. D.8\r\n", ReadingOptions(unit="mm"))
     assert (tool.offset_values["x"], tool.offset_values["z"], tool.offset_values["nose_radius"]) == (
         0.5,
@@ -39,7 +39,7 @@ def test_millimeters_and_points_first(tmp_path: Path) -> None:
     ("orientation", "z", "x"),
     [(1, 1, -1), (2, -1, -1), (3, -1, 1), (4, 1, 1), (5, 1, 0), (6, 0, -1), (7, -1, 0), (8, 0, 1)],
 )
-def test_the_tip_points_as_in_the_compensation_of_linuxcnc(
+def test_tip_orientation_matches_linuxcnc_compensation(
     tmp_path: Path, orientation: int, z: int, x: int
 ) -> None:
     """LinuxCNC subtracts the radius from X for 1, 2 and 6, and from Z for 2, 3 and 7."""
@@ -66,19 +66,19 @@ def test_a_radius_entered_as_diameter_is_noted(tmp_path: Path) -> None:
     assert "0.800" in note
 
 
-def test_a_drill_has_a_diameter_and_no_nose(tmp_path: Path) -> None:
+def test_drill_has_a_diameter_and_no_nose_radius(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T4 Z2 X1 D.25 ;1/4 drill\n")
     assert tool.shape_values == {"kind": "drill", "diameter": pytest.approx(6.35)}
     assert "nose_radius" not in tool.offset_values
 
 
-def test_a_tool_at_zero_is_not_measured(tmp_path: Path) -> None:
+def test_tool_at_zero_is_treated_as_not_measured(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T1 P1 X0 Z0 A0 B0 C0 U0 V0 W0 D.03 I0 J0 Q2 ;rem\n")
     assert tool.offset_values.keys() == {"nose_radius", "quadrant", "remark"}
     assert len(tool.notes) == 1
 
 
-def test_only_some_tools_are_read(tmp_path: Path) -> None:
+def test_only_selected_tools_are_read(tmp_path: Path) -> None:
     text = "T1 X1 Z1\nT2 X1 Z1\nT10001 X1 Z1\n"
     table = table_of(
         tmp_path, "a.tbl", text, ReadingOptions(unit="in", selected_tool_numbers=frozenset({2, 3}))
@@ -113,7 +113,7 @@ def test_comments_and_empty_lines_are_skipped(tmp_path: Path) -> None:
         ("tool,x,z\n", "not-a-number", "line 1, column 1"),
     ],
 )
-def test_rejected_lines(tmp_path: Path, text: str, code: str, place: str) -> None:
+def test_invalid_lines_are_rejected(tmp_path: Path, text: str, code: str, place: str) -> None:
     with pytest.raises(ToolTableError) as raised:
         table_of(tmp_path, "a.tbl", text)
     assert code in raised.value.code.split()
@@ -121,7 +121,7 @@ def test_rejected_lines(tmp_path: Path, text: str, code: str, place: str) -> Non
     assert f"{place}:" in str(raised.value)
 
 
-def test_a_unit_that_is_not_specified_is_asked_once(tmp_path: Path) -> None:
+def test_missing_unit_is_reported_once(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unit-missing", "--unit"):
         table_of(tmp_path, "a.tbl", "T1 X1 Z1\nT2 X1 Z1\n", ReadingOptions())
     assert list(table_of(tmp_path, "a.tbl", "T1 P1 Q2 X0\n", ReadingOptions()).tools) == [
@@ -129,7 +129,7 @@ def test_a_unit_that_is_not_specified_is_asked_once(tmp_path: Path) -> None:
     ]  # without a length
 
 
-def test_many_mistakes_are_one_short_error(tmp_path: Path) -> None:
+def test_many_errors_are_summarized_in_one_message(tmp_path: Path) -> None:
     with pytest.raises(ToolTableError) as raised:
         table_of(tmp_path, "a.tbl", "T99 P1\n" * 5000)
     assert raised.value.code == "unknown-number"
@@ -146,12 +146,12 @@ def test_many_mistakes_are_one_short_error(tmp_path: Path) -> None:
         (b";\n", "no-tools"),
     ],
 )
-def test_files_that_are_no_table(tmp_path: Path, data: bytes, code: str) -> None:
+def test_files_that_are_not_tables_are_rejected(tmp_path: Path, data: bytes, code: str) -> None:
     with raises_code(ToolTableError, code, "a.tbl"):
         table_of(tmp_path, "a.tbl", data)
 
 
-def test_what_is_written_is_read_again(tmp_path: Path) -> None:
+def test_written_table_is_read_back_unchanged(tmp_path: Path) -> None:
     text = "T3 X1.5 Z-2 D.0315 Q2 ;CNMG431 rough\nT4 X1 Z2 D.25 Q7 ;drill\nT5 X2 Z1 D.02 Q9\n"
     tools = table_of(tmp_path, "a.tbl", text).tools
     for unit in ("in", "mm"):

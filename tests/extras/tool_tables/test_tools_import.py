@@ -52,7 +52,7 @@ def test_new_tools_are_imported(turndesk: Turndesk, table: Path, home: Path) -> 
     assert 4 not in tools  # it has no position yet
 
 
-def test_the_import_is_one_step_with_its_reason(turndesk: Turndesk, table: Path, home: Path) -> None:
+def test_import_is_one_history_step_with_its_reason(turndesk: Turndesk, table: Path, home: Path) -> None:
     turndesk("tools", "import", table, "--unit", "in", "--yes", "--why", "old control")
     with Store.open(home) as store:
         changes = store.offsets.read_history()
@@ -63,13 +63,13 @@ def test_the_import_is_one_step_with_its_reason(turndesk: Turndesk, table: Path,
     assert turndesk("offsets", "undo").code == "nothing-to-undo"
 
 
-def test_the_file_is_the_usual_reason(turndesk: Turndesk, table: Path, home: Path) -> None:
+def test_default_reason_is_the_file_name(turndesk: Turndesk, table: Path, home: Path) -> None:
     turndesk("tools", "import", table, "--unit", "in", "--yes")
     with Store.open(home) as store:
         assert {each.why for each in store.offsets.read_history()} == {"import tool.tbl"}
 
 
-def test_an_offset_in_use_is_not_replaced_unasked(turndesk: Turndesk, table: Path, home: Path) -> None:
+def test_existing_offset_is_not_replaced_by_default(turndesk: Turndesk, table: Path, home: Path) -> None:
     set_tool(home, 1, x=38.0, z=-50.0, wear_x=0.1)
     told = turndesk("tools", "import", table, "--unit", "in", "--yes")
     assert told.status == 0
@@ -78,7 +78,9 @@ def test_an_offset_in_use_is_not_replaced_unasked(turndesk: Turndesk, table: Pat
     assert (tools[1].x, tools[1].wear_x, 1 in shapes, 3 in tools) == (38.0, 0.1, False, True)
 
 
-def test_replace_changes_it_and_wear_stays(turndesk: Turndesk, table: Path, home: Path) -> None:
+def test_replace_option_changes_the_offset_and_retains_wear(
+    turndesk: Turndesk, table: Path, home: Path
+) -> None:
     set_tool(home, 1, x=38.0, z=-50.0, wear_x=0.1, master=True)
     assert turndesk("tools", "import", table, "--unit", "in", "--yes", "--replace").status == 0
     tools, _shapes = rows(home)
@@ -94,7 +96,7 @@ def test_positions_can_be_left_out(turndesk: Turndesk, table: Path, home: Path) 
     assert 3 not in tools
 
 
-def test_only_the_named_tools(turndesk: Turndesk, table: Path, home: Path) -> None:
+def test_only_the_selected_tools_are_imported(turndesk: Turndesk, table: Path, home: Path) -> None:
     assert turndesk("tools", "import", table, "--unit", "in", "--yes", "--only", "3-4").status == 0
     tools, shapes = rows(home)
     assert (list(tools), list(shapes)) == ([3], [4])
@@ -107,7 +109,7 @@ def test_a_second_import_changes_nothing(turndesk: Turndesk, table: Path, home: 
         assert {each.step for each in store.offsets.read_history()} == {1}
 
 
-def test_json_is_a_preview(turndesk: Turndesk, table: Path, home: Path) -> None:
+def test_json_without_yes_is_a_preview(turndesk: Turndesk, table: Path, home: Path) -> None:
     set_tool(home, 1, x=25.4, z=-50.8)
     csv = table.with_name("tool.csv")
     csv.write_text("T,X,Z,Kind,Colour\n1,1.5,-2,turning,red\n2,0,0,,\n")
@@ -127,7 +129,7 @@ def test_json_with_yes_saves(turndesk: Turndesk, table: Path, home: Path) -> Non
     assert list(rows(home)[0]) == [1, 3]
 
 
-def test_on_a_terminal_each_group_is_asked(say: Say, table: Path, home: Path) -> None:
+def test_terminal_import_asks_for_each_group(say: Say, table: Path, home: Path) -> None:
     set_tool(home, 1, x=38.0, z=-50.7)
     status, told = say("tools", "import", table, "--unit", "in", typed="n y", terminal=True)
     assert status == 0
@@ -136,7 +138,7 @@ def test_on_a_terminal_each_group_is_asked(say: Say, table: Path, home: Path) ->
     assert (tools[1].quadrant, 3 in tools) == (3, False)
 
 
-def test_without_a_terminal_nothing_is_imported(
+def test_import_without_a_terminal_is_rejected(
     say: Say, table: Path, home: Path, refusals: list[CodedError]
 ) -> None:
     assert say("tools", "import", table, "--unit", "in", typed="y y")[0] == 2
@@ -179,17 +181,19 @@ def test_an_impossible_shape_is_rejected(turndesk: Turndesk, tmp_path: Path, hom
         ((), "unit-missing"),
     ],
 )
-def test_wrong_options(turndesk: Turndesk, table: Path, words: tuple[str, ...], code: str) -> None:
+def test_invalid_options_are_rejected(
+    turndesk: Turndesk, table: Path, words: tuple[str, ...], code: str
+) -> None:
     told = turndesk("tools", "import", table, "--yes", *words)
     assert (told.status, told.code, told.err.count("\n")) == (2, code, 1)
 
 
-def test_a_file_of_unknown_format(turndesk: Turndesk, tmp_path: Path) -> None:
+def test_file_of_unknown_format_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     told = turndesk("tools", "import", tmp_path / "tool.xyz", "--yes")
     assert (told.status, told.code) == (2, "unknown-format")
 
 
-def test_a_level_below_setup_may_not_import(
+def test_import_below_setup_level_is_rejected(
     say: Say, table: Path, home: Path, refusals: list[CodedError]
 ) -> None:
     with Store.open(home) as store:

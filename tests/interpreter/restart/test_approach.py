@@ -41,7 +41,7 @@ def order(steps: tuple[ApproachStep, ...]) -> list[str]:
     return [step.text for step in steps]
 
 
-def test_the_way_in_is_the_way_back_the_other_way_round() -> None:
+def test_approach_is_the_retract_path_reversed() -> None:
     steps = plan_lathe_approach(FOUND, STANDS, OperatorChoices())
     assert legs(steps) == [(5.0, None, True), (None, -62.0, False), (-2.0, None, False)]
     assert order(steps) == ["X", "M03", "M08", "Z", "X"]
@@ -50,7 +50,7 @@ def test_the_way_in_is_the_way_back_the_other_way_round() -> None:
     assert last.feed_mm_s < OperatorChoices().outside_speed_mm_s  # a feed waits for the spindle's speed
 
 
-def test_a_line_that_begins_clear_of_the_work_is_gone_to_by_rapid() -> None:
+def test_line_that_starts_clear_of_the_part_is_approached_in_rapid() -> None:
     found = replace(FOUND, retract=Retract(ToolSituation.CLEAR))
     assert legs(plan_lathe_approach(found, STANDS, OperatorChoices())) == [
         (-2.0, None, True),
@@ -58,7 +58,7 @@ def test_a_line_that_begins_clear_of_the_work_is_gone_to_by_rapid() -> None:
     ]
 
 
-def test_what_must_not_run_is_stopped_before_anything_moves() -> None:
+def test_unwanted_functions_are_stopped_before_any_move() -> None:
     now = PresentState(
         STANDS.axis_positions, MODAL._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"}))
     )
@@ -69,7 +69,7 @@ def test_what_must_not_run_is_stopped_before_anything_moves() -> None:
     assert actions[:3] == [SpindleStop(), CoolantSwitch(False), OutputSwitch("live1", False)]
 
 
-def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
+def test_starting_functions_are_listed_and_coolant_is_optional() -> None:
     told = [
         step.action
         for step in list_starting_functions(FOUND, STANDS, OperatorChoices())
@@ -81,7 +81,7 @@ def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
     assert "M08" not in order(without.approach)
 
 
-def test_c_is_locked_and_turned_to_its_angle_by_the_short_way_clear_of_the_part() -> None:
+def test_c_is_locked_and_turned_the_short_distance_clear_of_the_part() -> None:
     modal = AT.modal._replace(spindle=0, c_locked=True, coolant=False, offset_c=720.0)
     found = replace(FOUND, checkpoint=AT._replace(modal=modal, c=90.0))
     begin = make_lathe_start(found, PresentState((30.0, -48.0, 1000.0), MODAL), OperatorChoices())
@@ -127,7 +127,7 @@ def in_the_groove(x: float = 0.42) -> tuple[PresentState, Interruption]:
     return PresentState(at, MODAL, broken), broken
 
 
-def test_the_way_out_is_that_of_the_tool_that_was_interrupted_whatever_the_line_works_with() -> None:
+def test_retract_uses_the_interrupted_tool_not_the_tool_of_the_line() -> None:
     now, broken = in_the_groove()
     back = plan_lathe_approach(two(6, broken), now, OperatorChoices())
     # X out of the groove at a feed; Z to the Z2 of T2, at machine -20 + 50.8; down again over the bar.
@@ -138,7 +138,7 @@ def test_the_way_out_is_that_of_the_tool_that_was_interrupted_whatever_the_line_
     assert spots(other, 1)[:2] == [(0.5, None, False), (None, 3.1811, True)]
 
 
-def test_a_tool_called_by_hand_in_mdi_does_not_take_the_place_of_the_one_in_the_groove() -> None:
+def test_tool_called_in_mdi_does_not_replace_the_tool_in_the_groove() -> None:
     now, _ = in_the_groove()
     by_hand = replace(now, modal=now.modal._replace(tool=2, tool_x=90.0, tool_z=-20.0))
     cut = two(6).cut_record
@@ -146,7 +146,7 @@ def test_a_tool_called_by_hand_in_mdi_does_not_take_the_place_of_the_one_in_the_
     assert plan_exit_moves(cut, by_hand, OperatorChoices()) == plan_exit_moves(cut, now, OperatorChoices())
 
 
-def test_a_tool_that_was_jogged_along_its_way_out_goes_on_with_the_rest_of_it() -> None:
+def test_tool_jogged_along_its_retract_path_completes_the_rest() -> None:
     now, _ = in_the_groove()
     cut = two(6).cut_record
     assert cut is not None
@@ -154,7 +154,7 @@ def test_a_tool_that_was_jogged_along_its_way_out_goes_on_with_the_rest_of_it() 
     assert spots(plan_exit_moves(cut, moved, OperatorChoices()), 1)[0] == (0.5, None, False)
 
 
-def test_a_tool_that_was_jogged_elsewhere_in_the_part_is_asked_to_be_jogged_on() -> None:
+def test_tool_jogged_elsewhere_in_the_part_requires_more_jogging() -> None:
     now, _ = in_the_groove()
     cut = two(6).cut_record
     assert cut is not None
@@ -165,7 +165,7 @@ def test_a_tool_that_was_jogged_elsewhere_in_the_part_is_asked_to_be_jogged_on()
     assert found.direction == (1, 0)  # X, and not Z
 
 
-def test_a_tool_jogged_clear_needs_no_way_out_but_z() -> None:
+def test_tool_jogged_clear_retracts_only_along_z() -> None:
     now, _ = in_the_groove()
     cut = two(6).cut_record
     assert cut is not None
@@ -174,7 +174,7 @@ def test_a_tool_jogged_clear_needs_no_way_out_but_z() -> None:
     assert all(rapid for _, _, rapid in legs(plan_exit_moves(cut, clear, OperatorChoices())))
 
 
-def test_where_nothing_is_known_to_be_interrupted_every_tool_has_to_stand_clear() -> None:
+def test_unknown_interruption_requires_every_tool_to_be_clear() -> None:
     cut = two(6).cut_record
     assert cut is not None
     unknown = PresentState((-10.0 + 0.2 * INCH, -50.0 - 0.3 * INCH, 0.0), ModalState())
@@ -182,7 +182,7 @@ def test_where_nothing_is_known_to_be_interrupted_every_tool_has_to_stand_clear(
     assert plan_retract_from_part(cut, PresentState((40.0, cut.max_machine_z, 0.0), ModalState()))[0].is_known
 
 
-def test_a_control_that_was_cut_off_may_stand_a_little_farther_on() -> None:
+def test_position_after_a_power_cut_may_be_slightly_further_along() -> None:
     now, _ = in_the_groove()
     noted = Interruption(4, 1, (-10.0 + 0.5 * INCH, -50.0 + 0.05 * INCH, 0.0), 4, is_stale=True)
     cut = two(6).cut_record
@@ -196,7 +196,7 @@ def test_a_control_that_was_cut_off_may_stand_a_little_farther_on() -> None:
     assert plan_exit_moves(cut, known, OperatorChoices()) == ()  # it was moved by hand, nobody knows whither
 
 
-def test_a_tool_that_the_program_has_not_named_yet_is_brought_in_clear_of_the_whole_program() -> None:
+def test_tool_not_yet_called_is_brought_in_clear_of_the_whole_program() -> None:
     now, broken = in_the_groove()
     found = two(10, broken._replace(block_number=99, last_started_block=99))
     steps = plan_lathe_approach(
@@ -205,7 +205,7 @@ def test_a_tool_that_the_program_has_not_named_yet_is_brought_in_clear_of_the_wh
     assert all(rapid for _, _, rapid in legs(steps))
 
 
-def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> None:
+def test_line_that_starts_in_uncut_material_is_rejected() -> None:
     _, broken = in_the_groove()
     answer = OmniturnSearch(ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None).find_restart(
         12, 0, broken
@@ -216,7 +216,7 @@ def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> Non
     assert two(9, broken).skipped_lines == (6, 6)  # the groove is begun, but not complete
 
 
-def test_the_rest_of_an_interrupted_cut_is_left_out_unless_the_tool_is_at_its_end() -> None:
+def test_rest_of_an_interrupted_cut_is_skipped_unless_complete() -> None:
     _, broken = in_the_groove()
     rebuild = OmniturnSearch(ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None)
     answer = rebuild.find_restart(7, 0, broken)

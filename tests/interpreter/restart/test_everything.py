@@ -61,21 +61,21 @@ def _called(source: ProgramSource) -> set[int]:
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
-def test_every_good_line_of_our_golden_programs(path: Path) -> None:
+def test_every_valid_line_of_the_golden_programs_restarts(path: Path) -> None:
     source, given = load_source(path), golden_setup(path)
     assert runs(source, given)
     check(source, given)
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
-def test_every_good_line_of_the_samples(path: Path) -> None:
+def test_every_valid_line_of_the_samples_restarts(path: Path) -> None:
     source = load_source(path)
     assert check(source, setup(tools=ALL_TOOLS)) > len(source.lines) / 3
 
 
 @pytest.mark.skipif(not WORKED, reason="the worked examples are not at hand")
 @pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
-def test_every_good_line_of_the_worked_examples(path: Path) -> None:
+def test_every_valid_line_of_the_worked_examples_restarts(path: Path) -> None:
     source, given = load_source(path), setup(secondary=dict.fromkeys(range(1, 9), (-0.015, -0.015, 0.015)))
     try:
         all_of(source, given)

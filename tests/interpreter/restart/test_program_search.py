@@ -176,7 +176,7 @@ def mill_begin(
         (23, 0),
     ],
 )
-def test_behind_the_way_a_mill_does_what_the_run_would_have_done(line: int, visit: int) -> None:
+def test_mill_restart_continues_as_the_original_run(line: int, visit: int) -> None:
     of = mill()
     found = good(of, line, visit)
     begin = mill_begin(of, found)
@@ -188,7 +188,7 @@ def test_behind_the_way_a_mill_does_what_the_run_would_have_done(line: int, visi
 
 
 @pytest.mark.parametrize(("line", "visit"), [(4, 0), (6, 1), (6, 3), (9, 2), (12, 0)])
-def test_behind_the_way_a_lathe_does_what_the_run_would_have_done(line: int, visit: int) -> None:
+def test_lathe_restart_continues_as_the_original_run(line: int, visit: int) -> None:
     of = lathe()
     found = good(of, line, visit)
     now = PresentState((150.0, 100.0, 0.0), ModalState())
@@ -203,7 +203,7 @@ def test_the_passes_of_a_loop_are_counted() -> None:
     assert good(lathe(), 6, 2).visit == (2, 3, ())
 
 
-def test_the_pass_that_was_interrupted_is_the_one_that_is_meant() -> None:
+def test_interrupted_pass_is_the_default() -> None:
     second = [each for each in whole(mill()) if each.line == 10][1]
     broken = Interruption(second.n, 5, STANDS, second.n)
     found = searched(mill(), 9, broken=broken)
@@ -214,7 +214,7 @@ def test_the_pass_that_was_interrupted_is_the_one_that_is_meant() -> None:
 # --- the way --------------------------------------------------------------------------------------------
 
 
-def test_a_mill_goes_out_along_the_tool_turns_over_and_in_last() -> None:
+def test_mill_retracts_along_the_tool_repositions_and_feeds_in_last() -> None:
     of = mill()
     turned = PresentState((-50.0, 30.0, -420.0, 15.0, 200.0), ModalState())
     begin = mill_begin(of, good(of, 19), turned)
@@ -226,14 +226,14 @@ def test_a_mill_goes_out_along_the_tool_turns_over_and_in_last() -> None:
     assert all(leg.feed is None for leg in legs[1:-1])
 
 
-def test_another_tool_is_asked_for_at_the_top_and_the_spindle_turns_behind_it() -> None:
+def test_other_tool_is_requested_at_the_top_before_the_spindle_starts() -> None:
     of = mill()
     begin = mill_begin(of, good(of, 15), PresentState(STANDS, ModalState(tool=5, spindle=1, rpm=3000.0)))
     actions = [step.action for step in begin.approach if isinstance(step, FunctionStep)]
     assert actions[1:] == [ToolChange(6), ProgramStop(optional=False, message="TOOL 6"), SpindleRun(1500.0)]
 
 
-def test_an_axis_that_never_moved_stays_where_it_stands() -> None:
+def test_axis_that_never_moved_is_not_moved() -> None:
     found = good(mill(), 10, 1)
     assert found.axis_positions[3:] == (None, None)
     goals = [
@@ -256,14 +256,14 @@ def test_an_axis_that_never_moved_stays_where_it_stands() -> None:
         (21, "radius compensation is active"),
     ],
 )
-def test_lines_of_a_mill_that_are_not_good(line: int, why: str) -> None:
+def test_invalid_mill_lines_are_rejected(line: int, why: str) -> None:
     of = mill()
     if line == 3:
         of = mill("0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S99\n2 Q1 = 3\n3 L X+Q1 Y+0 Z+9 FMAX\n4 END PGM A MM\n")
     assert why in refused(of, line).why
 
 
-def test_a_line_that_needs_where_the_slides_stood_is_refused() -> None:
+def test_line_that_depends_on_the_start_position_is_rejected() -> None:
     text = (
         "0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S99\n2 L IX+5 FMAX\n3 L Y+3 FMAX\n4 L Z+9 FMAX\n5 END PGM A MM\n"
     )
@@ -272,7 +272,7 @@ def test_a_line_that_needs_where_the_slides_stood_is_refused() -> None:
     )
 
 
-def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_of() -> None:
+def test_line_in_uncut_material_is_rejected_and_one_above_it_warns() -> None:
     of = mill()
     first = next(each for each in whole(of) if each.line == 9)  # the plunge of the first pass
     assert first.travel is not None
@@ -292,7 +292,7 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     assert half_cut.skipped_lines == (9, 10)
 
 
-def test_a_full_circle_that_was_interrupted_counts_as_uncut_wherever_it_stopped() -> None:
+def test_interrupted_full_circle_counts_as_uncut() -> None:
     of = mill(RING)
     circle = next(each for each in whole(of) if each.line == 8)
     assert circle.travel is not None
@@ -302,7 +302,7 @@ def test_a_full_circle_that_was_interrupted_counts_as_uncut_wherever_it_stopped(
 
 
 @pytest.mark.parametrize("turn", [360.0, 720.0])
-def test_whole_turns_that_were_interrupted_count_as_uncut(turn: float) -> None:
+def test_interrupted_full_revolutions_count_as_uncut(turn: float) -> None:
     block = next(each for each in whole(mill(RING)) if each.line == 8)
     assert block.travel is not None
     start = (*block.travel.start[:3], 0.0, 0.0)
@@ -312,7 +312,7 @@ def test_whole_turns_that_were_interrupted_count_as_uncut(turn: float) -> None:
     assert _is_uncut(turned, Interruption(block.n, 5, start, block.n))
 
 
-def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
+def test_lathe_restart_ignores_the_height_of_skipped_cuts() -> None:
     """Broken off in the cut of line 3; searched for is the line behind that of line 5."""
     of = lathe("G54 G90 G94 G71 DIAMON\nG0 X60 Z5\nG1 Z-20 F100\nG0 X70\nG1 Z-30 F100\nG0 X80\nZ5\nM30\n")
     cut = next(each for each in whole(of) if each.line == 3)
@@ -321,18 +321,18 @@ def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
     assert (found.line_number, found.checkpoint.x, found.checkpoint.z) == (7, 40.0, -30.0)
 
 
-def test_comments_and_lines_behind_the_end_are_told_apart() -> None:
+def test_comments_and_lines_after_the_end_have_separate_messages() -> None:
     text = PLATE.replace("3 Q1 = 0\n", "; a remark\n3 Q1 = 0\n")
     assert "a comment" in refused(mill(text), 4).why
     assert "The program ends on line 13, before line 14." in refused(lathe(TURNED + "G0 X1\n"), 14).why
 
 
-def test_a_refusal_names_the_nearest_good_lines() -> None:
+def test_refusal_names_the_nearest_valid_lines() -> None:
     found = refused(mill(), 21)
     assert (found.nearest_line_before, found.nearest_line_after) == (20, 23)
 
 
-def test_a_line_that_is_named_in_the_place_of_another_is_good() -> None:
+def test_suggested_line_is_valid() -> None:
     """Outwards from the middle: the cuts of both lines lie in the work, with no way out of it."""
     of = lathe("G54 G90 G94 G71 DIAMON\nT1 D1\nG0 X0 Z1\nG1 Z-1 F600\nX6 F60\nZ1 F600\nM30\n")
     for line in (4, 5):
@@ -341,7 +341,7 @@ def test_a_line_that_is_named_in_the_place_of_another_is_good() -> None:
             assert not each or good(of, each)
 
 
-def test_work_that_nobody_wants_is_given_up() -> None:
+def test_outdated_search_is_canceled() -> None:
     class GivenUpError(Exception):
         pass
 
@@ -374,12 +374,12 @@ def edged(program: str = CONTOUR) -> tuple[SharedProgram, Setup]:
 
 
 @pytest.mark.parametrize("line", [6, 7, 8])
-def test_no_search_ends_on_a_contour_of_g42(line: int) -> None:
+def test_line_within_a_g42_contour_is_rejected(line: int) -> None:
     assert "part of a G41 or G42 contour" in refused(edged(), line).why
 
 
 @pytest.mark.parametrize("line", [5, 9])
-def test_the_edge_and_its_nose_go_over_to_the_pass_behind(line: int) -> None:
+def test_restart_on_the_next_pass_retains_cutting_edge_and_nose_radius(line: int) -> None:
     of = edged()
     found = good(of, line)
     begin = make_lathe_start(
@@ -423,7 +423,7 @@ def milled(program: str = FLATS) -> tuple[SharedProgram, Setup]:
 
 
 @pytest.mark.parametrize("line", [9, 10, 12, 13, 14, 16])
-def test_in_transmit_the_part_is_turned_to_where_the_run_would_have_had_it(line: int) -> None:
+def test_transmit_restart_turns_the_part_to_the_original_angle(line: int) -> None:
     """X, Z and C are where they would have been; C counts whole turns from where the part stands now."""
     of = milled()
     found = good(of, line)
@@ -439,7 +439,7 @@ def test_in_transmit_the_part_is_turned_to_where_the_run_would_have_had_it(line:
         assert abs(c - 725.0) < 360.0
 
 
-def test_the_live_tool_and_the_held_part_come_before_the_line() -> None:
+def test_live_tool_and_locked_spindle_are_set_before_the_line() -> None:
     begin = make_lathe_start(
         good(milled(), 10), PresentState((150.0, 100.0, 0.0), ModalState()), OperatorChoices()
     )
@@ -461,9 +461,7 @@ M30
 
 
 @pytest.mark.parametrize(("line", "told_of"), [(5, ["M19 90"]), (6, ["M19 90"]), (8, [])])
-def test_a_spindle_that_the_run_would_have_held_is_brought_to_its_angle(
-    line: int, told_of: list[str]
-) -> None:
+def test_oriented_spindle_is_restored_to_its_angle(line: int, told_of: list[str]) -> None:
     of = lathe(HELD)
     found = good(of, line)
     now = PresentState((150.0, 100.0, 0.0), ModalState())
@@ -473,11 +471,11 @@ def test_a_spindle_that_the_run_would_have_held_is_brought_to_its_angle(
     assert behind == [told(block) for block in whole(of) if block.n > found.checkpoint.blocks]
 
 
-def test_no_search_ends_on_a_corner_in_transmit() -> None:
+def test_line_on_a_corner_in_transmit_is_rejected() -> None:
     assert "part of a corner or a contour in TRANSMIT" in refused(milled(), 15).why
 
 
-def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
+def test_deleted_block_is_rejected() -> None:
     reading, setup = milled(FLATS.replace("Z2\nG1", "/Z2\nG1"))
     deleted = refused((reading, replace(setup, block_delete=True)), 9)
     assert deleted.why == text("search.never-reached", line=9)
@@ -487,7 +485,7 @@ def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
 @pytest.mark.parametrize(
     ("cutting", "turned", "good"), [(False, False, True), (True, False, False), (False, True, False)]
 )
-def test_only_a_place_of_a_rapid_with_the_table_still_is_above_what_was_left_out(
+def test_only_a_rapid_with_a_fixed_table_is_above_skipped_cuts(
     cutting: bool, turned: bool, good: bool
 ) -> None:
     """Tip at 60 - 20 = 40 mm, the highest cut begins at 30."""

@@ -29,7 +29,7 @@ BEHIND = "G90G94F300\nX1Z1\nX2\nM30\n\n}1\nZ.5\nM99\n"
 PLANE = "G90G94F300\nX-.5Z.1\nM19\n(~PLXC)\n(X.5Y.1)\n(END)\nM05\nM30\n"
 
 
-def test_everything_that_a_line_inherits() -> None:
+def test_line_inherits_the_complete_state() -> None:
     found = find(PLAIN, 7, tools={1: ToolOffset(-10.0, -20.0)})
     assert isinstance(found, RestartPoint)
     point, modal = found.checkpoint, found.checkpoint.modal
@@ -58,7 +58,7 @@ def test_everything_that_a_line_inherits() -> None:
         ("G90G94F300\nX1Z1\n\nX2\nM30\n", 3, "Line 3 is empty.", 2 + 0, 4),
     ],
 )
-def test_lines_that_are_not_good_and_the_nearest_that_are(
+def test_invalid_lines_are_rejected_with_the_nearest_valid_ones(
     text: str, line: int, why: str, before: int, after: int
 ) -> None:
     answer = find(text, line, secondary={1: (-0.015, -0.015, 0.015)})
@@ -68,7 +68,7 @@ def test_lines_that_are_not_good_and_the_nearest_that_are(
 
 
 @pytest.mark.parametrize("line", [1, 2])
-def test_nothing_has_moved_yet(line: int) -> None:
+def test_line_before_any_axis_motion_is_rejected(line: int) -> None:
     answer = find("G90G94F300\nT1\nX1Z1\nX2\nM30\n", line)
     assert isinstance(answer, RestartRefusal)
     assert answer.why.startswith(f"No axis has moved before line {line}")
@@ -79,25 +79,25 @@ IN_A_LOOP = "G90G94F300\nT1\nLS3\nX1Z.1\nX.5\nG91Z-.1\nG90X1\nLF\nM30\n"
 
 
 @pytest.mark.parametrize(("visit", "expected"), [(0, 1), (1, 1), (2, 2), (3, 3)])
-def test_a_program_whose_first_move_is_in_a_loop_is_entered_in_every_pass(visit: int, expected: int) -> None:
+def test_loop_with_the_first_move_is_entered_in_every_pass(visit: int, expected: int) -> None:
     answer = find(IN_A_LOOP, 5, visit=visit)
     assert isinstance(answer, RestartPoint)
     assert (answer.visit.visit_number, answer.visit.visit_count) == (expected, 3)
     assert answer.checkpoint.machine == pytest.approx((INCH, 0.1 * INCH))
 
 
-def test_the_first_move_itself_in_the_first_pass_depends_on_the_start_and_later_passes_do_not() -> None:
+def test_first_move_in_a_loop_is_valid_only_from_the_second_pass() -> None:
     first, second = find(IN_A_LOOP, 4, visit=1), find(IN_A_LOOP, 4, visit=2)
     assert isinstance(first, RestartRefusal)
     assert isinstance(second, RestartPoint)
 
 
-def test_a_loop_of_incremental_moves_alone_stays_refused() -> None:
+def test_loop_of_only_incremental_moves_is_rejected() -> None:
     text = "G91G94F300\nT1\nLS3\nX.1Z-.1\nX-.1\nLF\nM30\n"
     assert all(isinstance(find(text, 5, visit=each), RestartRefusal) for each in (1, 2, 3))
 
 
-def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are_known() -> None:
+def test_incremental_moves_are_rejected_until_both_axes_are_known() -> None:
     text = "G91G94F300\nX.1Z.1\nX.1\nG90X1\nG91Z.1\nG90Z1\nG91X.1\nX.2\nM30\n"
     said = {line: find(text, line) for line in range(3, 9)}
     for line in (3, 4, 5, 6):
@@ -109,7 +109,7 @@ def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are
     assert isinstance(said[8], RestartPoint)  # incremental, from a place that is known
 
 
-def test_a_preset_at_an_unknown_place_stays_unknown() -> None:
+def test_preset_at_an_unknown_position_remains_unknown() -> None:
     text = "G90G94F300\nG92X0Z0\nX1Z1\nX2\nT1\nX1Z1\nX2\nM30\n"
     answer = find(text, 4)
     assert isinstance(answer, RestartRefusal)
@@ -117,7 +117,7 @@ def test_a_preset_at_an_unknown_place_stays_unknown() -> None:
     assert isinstance(find(text, 7), RestartPoint)
 
 
-def test_what_an_input_answered_is_not_guessed() -> None:
+def test_result_of_an_input_is_not_assumed() -> None:
     sub = "}1\nZ.5\nM99\n"
     text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
     answer = find(text, 4)
@@ -131,21 +131,21 @@ def test_what_an_input_answered_is_not_guessed() -> None:
     assert isinstance(find(text, 6), RestartPoint)
 
 
-def test_a_second_unknown_answer_before_the_first_has_lost_its_effect() -> None:
+def test_second_unknown_input_result_is_rejected() -> None:
     text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
     answer = find(text, 6)
     assert isinstance(answer, RestartRefusal)
     assert text_of("search.unknown-input", asked=4) in answer.why
 
 
-def test_an_input_asked_in_a_loop_or_in_a_subroutine() -> None:
+def test_line_after_an_input_test_in_a_loop_or_subroutine_is_rejected() -> None:
     text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
     answer = find(text, 7)
     assert isinstance(answer, RestartRefusal)
     assert text_of("search.unknown-terminal", asked=4, terminal=3) in answer.why
 
 
-def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
+def test_line_after_the_program_end_or_an_error_is_rejected() -> None:
     answer = find("G90G94F300\nX1Z1\nM97I3C0P1\nX2\nM30\n}1\nM30\nM99\n", 4)
     assert isinstance(answer, RestartRefusal)
     broken = find("G90G94F300\nX1Z1\nX1R9\nX2\nX3\nM30\n", 5)
@@ -153,7 +153,7 @@ def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
     assert broken.why == "The program has errors before line 5."
 
 
-def test_loops_are_gone_through_and_asks_go_on_from_each_other() -> None:
+def test_restart_search_works_after_a_loop_and_for_an_earlier_line() -> None:
     text = "G90G94F300\nX1Z1\nLS50\nG91X-.01\nZ-.01\nLF\nG90\nX1Z1\nM30\n"
     rebuild = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None)
     first, later, earlier = rebuild.find_restart(3), rebuild.find_restart(7), rebuild.find_restart(3)
@@ -164,7 +164,7 @@ def test_loops_are_gone_through_and_asks_go_on_from_each_other() -> None:
     assert earlier == first
 
 
-def test_the_work_is_given_up_when_nobody_wants_it_any_more() -> None:
+def test_outdated_search_is_canceled() -> None:
     class GivenUpError(Exception):
         pass
 
@@ -203,7 +203,7 @@ def visit(text: str, line: int, number: int, broken: Interruption | None = None)
         (9, 2, 2, 0.9, 0.4, ((3, 9, 2, 2),)),
     ],
 )
-def test_passes_of_nested_loops_and_calls(
+def test_passes_of_nested_loops_and_calls_are_counted(
     line: int, number: int, of: int, x: float, z: float, within: tuple[tuple[int, ...], ...]
 ) -> None:
     found = visit(NESTED, line, number)
@@ -212,14 +212,14 @@ def test_passes_of_nested_loops_and_calls(
     assert (found.checkpoint.x / INCH, found.checkpoint.z / INCH) == pytest.approx((x, z))
 
 
-def test_the_work_shift_of_a_pass_is_what_the_passes_before_it_have_added_up() -> None:
+def test_work_shift_of_a_pass_accumulates_over_previous_passes() -> None:
     bar = "G90G94F300\nX1Z1\nLS4\nT1\nX1Z1\nG94F10X.5\nF300X1\nG10X0Z-.35\nLF\nM30\n"
     third = visit(bar, 6, 3).checkpoint.modal
     assert third.shift_z == pytest.approx(-0.7 * INCH)
     assert third.pending_shift_z == pytest.approx(-0.7 * INCH)
 
 
-def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
+def test_interrupted_pass_is_the_default() -> None:
     # X1Z1 is block 1, the first outer pass 2 to 6, the second 7 to 11: in that line 6 is 8, 9, 10.
     found = visit(NESTED, 6, 0, Interruption(9, 0, (0.0, 0.0, 0.0), 9))
     assert found.visit.visit_number == 5
@@ -249,7 +249,7 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
         ),
     ],
 )  # fmt: skip
-def test_passes_that_are_no_place_to_go_on(text: str, line: int, number: int, why: str) -> None:
+def test_invalid_passes_are_rejected(text: str, line: int, number: int, why: str) -> None:
     answer = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None).find_restart(
         line, number
     )

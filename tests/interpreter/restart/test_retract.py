@@ -76,20 +76,22 @@ ON_THE_FACE = "X-.8Z1\nM27\nM19\nG94F10Z-.1\n(~PLXC)\n(X.4Y.3)\n(END)\nF300Z1\nM
         pytest.param(PARTED, 5, 0.2, -0.5, [(0.6, -0.5)], id="parting off: X"),
     ],
 )  # fmt: skip
-def test_the_way_out_of(text: str, line: int, x: float, z: float, way: list[tuple[float, float]]) -> None:
+def test_retract_path_matches_the_operation(
+    text: str, line: int, x: float, z: float, way: list[tuple[float, float]]
+) -> None:
     found = standing(text, line, x, z)
     assert found.situation is ToolSituation.IN_PART
     assert hops(found) == way
 
 
-def test_out_of_a_thread_it_is_x_alone_first_and_never_back_along_z() -> None:
+def test_thread_retract_moves_x_first_and_never_back_along_z() -> None:
     # S is X.5, I .02 a side: it is drawn back to S + 3 I.
     found = standing(THREAD, 5, 0.5, -0.2)
     assert found.situation is ToolSituation.IN_THREAD
     assert hops(found)[0] == (0.56, -0.2)
 
 
-def test_a_tap_has_no_way_out_by_the_slides() -> None:
+def test_tap_has_no_retract_by_the_axes() -> None:
     found = standing(TAP, 5, 0.0, -0.3)
     assert found.situation is ToolSituation.IN_TAPPED_HOLE
     assert not found.is_known
@@ -101,7 +103,7 @@ def test_a_live_drill_in_a_cross_hole_leaves_along_x() -> None:
     assert (found.situation, hops(found)) == (ToolSituation.MILLING, [(0.75, -0.3)])
 
 
-def test_a_mill_leaves_along_its_own_axis() -> None:
+def test_mill_retracts_along_its_own_axis() -> None:
     side = standing(ON_THE_SIDE, 11, -0.4, -0.2)
     assert side.situation is ToolSituation.MILLING
     assert hops(side)[0][0] == -1.0  # X, away from the centre, as far as it has been
@@ -113,27 +115,27 @@ def test_a_mill_leaves_along_its_own_axis() -> None:
     ("text", "line", "x", "z"),
     [(GROOVE, 6, 0.42, -0.35), (BORE, 5, 0.3, -0.4), (TURNED, 5, 0.45, -0.5)],
 )
-def test_a_tool_that_the_program_did_not_bring_there_has_no_way_known(
+def test_tool_not_moved_there_by_the_program_has_no_known_retract(
     text: str, line: int, x: float, z: float
 ) -> None:
     found = standing(text, line, x, z)
     assert (found.situation, found.is_known) == (ToolSituation.UNKNOWN, False)
 
 
-def test_where_the_collet_was_opened_since_nothing_of_before_counts() -> None:
+def test_opening_the_collet_invalidates_earlier_cuts() -> None:
     """The bar has been pulled: where the tool came through is metal now."""
     pulled = "X.5Z.1\nZ-.3\nM05\nM13\nF20Z.3\nM12\nF300Z1\nX1\n"
     found = standing(pulled, 8, 0.5, 0.0)
     assert not found.is_known
 
 
-def test_the_largest_cut_of_a_program_that_only_bores_is_not_the_outside_of_its_bar() -> None:
+def test_largest_cut_of_a_bored_part_is_not_the_bar_diameter() -> None:
     """G74 inside: a wall stands around the last pass, however large that is."""
     found = standing("X.25Z.05\nG95F.004\nG74X.5Z-.5I.125\nG94F300X1Z1\n", 6, 0.5, -0.3, nth=6)
     assert hops(found) == [(0.48, -0.3), (0.48, 0.05)]  # .02 off the wall as the cycle is, and out along Z
 
 
-def test_a_pass_that_is_fed_off_the_part_is_left_by_x_where_passes_before_it_have_made_room() -> None:
+def test_feed_off_pass_retracts_along_x_where_earlier_passes_made_room() -> None:
     rough = "X.46Z.1\nG95F.008Z-.9\nX.5\nG94F300Z.1\nX.42\nG95F.008Z-.9\nX.5\nG94F300Z.1\nX1Z1\n"  # .04 each
     first = standing(rough, 5, 0.46, -0.4)
     assert hops(first) == [(0.46, 0.1)]  # a groove in the face would be cut just so

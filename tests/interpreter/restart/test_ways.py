@@ -125,7 +125,7 @@ def spoiled(
 
 
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: path.stem)
-def test_the_way_out_from_every_block_and_from_within_it(path: Path) -> None:
+def test_retract_is_clear_from_every_block_and_within_it(path: Path) -> None:
     cut = OmniturnSearch(load_source(path), given_for(path), lambda _count: None).cut_record
     known = asked = 0
     for row in range(0, len(cut), max(1, len(cut) // MOST)):
@@ -171,7 +171,7 @@ def ways_in(source: ProgramSource, given: Setup) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: path.stem)
-def test_the_way_to_every_good_line_in_every_pass(path: Path) -> None:
+def test_approach_is_clear_to_every_valid_line_in_every_pass(path: Path) -> None:
     try:
         ways_in(load_source(path), given_for(path))
     except KeyError as error:

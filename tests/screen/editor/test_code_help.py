@@ -37,14 +37,14 @@ def look_up(writer: Writer) -> None:
     writer.sees(lambda: writer.editor.mode is EditorMode.CODES)
 
 
-def test_the_line_beside_the_text_says_what_the_code_means(proved: Writer) -> None:
+def test_code_strip_explains_code_at_cursor(proved: Writer) -> None:
     proved.editor.move_cursor_to(1, 5)
     proved.sees(lambda: head_of(proved.editor.code_strip.entry) == "G94")
     proved.editor.move_cursor_to(1, 8)
     proved.sees(lambda: head_of(proved.editor.code_strip.entry) == "G72")
 
 
-def test_what_is_typed_is_completed(proved: Writer) -> None:
+def test_typed_code_is_completed_from_list(proved: Writer) -> None:
     look_up(proved)
     assert marked(proved) == "G00"
     proved.key(Key.Key_Down)
@@ -58,7 +58,7 @@ def test_what_is_typed_is_completed(proved: Writer) -> None:
     proved.key(Key.Key_Z, CTRL)
 
 
-def test_what_is_written_is_one_step_back(proved: Writer) -> None:
+def test_inserted_code_is_undone_in_one_step(proved: Writer) -> None:
     look_up(proved)
     proved.key(Key.Key_F2)
     assert proved.text() == "G90G94G72F100\nG00"
@@ -66,7 +66,7 @@ def test_what_is_written_is_one_step_back(proved: Writer) -> None:
     assert proved.text() == "G90G94G72F100\nG0"
 
 
-def test_chapters_are_turned_and_left_without_a_trace(proved: Writer) -> None:
+def test_help_chapters_are_paged_and_closed_without_changing_text(proved: Writer) -> None:
     look_up(proved)
     before = proved.text()
     proved.key(Key.Key_Right)
@@ -78,7 +78,7 @@ def test_chapters_are_turned_and_left_without_a_trace(proved: Writer) -> None:
     assert proved.text() == before
 
 
-def test_a_finger_opens_marks_and_writes(proved: Writer) -> None:
+def test_touch_opens_selects_and_inserts_code(proved: Writer) -> None:
     def touch(panel: Panel, place: int) -> None:
         proved.sees(lambda: len(panel._places) > place)
         at = panel._places[place][0].center().toPoint()
@@ -92,7 +92,7 @@ def test_a_finger_opens_marks_and_writes(proved: Writer) -> None:
     assert proved.text() == "G90G94G72F100\nG01"
 
 
-def test_nothing_is_looked_up_before_the_first_proof(writer: Writer) -> None:
+def test_code_help_is_unavailable_before_first_proof(writer: Writer) -> None:
     writer.new("early")
     writer.editor.code_list._help._book = None
     assert not writer.editor.code_list._help.open_choices()

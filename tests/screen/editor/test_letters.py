@@ -38,7 +38,7 @@ def shown(writer: Writer) -> None:
 
 
 @pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
-def test_a_program_is_written_and_saved_by_a_finger(
+def test_program_is_typed_and_saved_by_touch_only(
     writer: Writer, tmp_path: Path, size: tuple[int, int]
 ) -> None:
     writer.window.resize(*size)
@@ -65,7 +65,7 @@ def test_a_program_is_written_and_saved_by_a_finger(
     writer.sees((tmp_path / "touched.nc").exists)
 
 
-def test_every_key_writes_what_it_shows(writer: Writer) -> None:
+def test_every_letter_pad_key_types_its_label(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     signs = [key for key in KEYS if len(key) == 1]
@@ -74,7 +74,7 @@ def test_every_key_writes_what_it_shows(writer: Writer) -> None:
     assert set("GMXYZIJKRFSTDCPULAHNVBEOQW0123456789.-+/()}=~") <= set(signs)
 
 
-def test_what_is_asked_takes_the_keys(writer: Writer) -> None:
+def test_letter_pad_types_into_open_question(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     strike(writer, *"X1", "Enter", *"X2")
@@ -85,7 +85,7 @@ def test_what_is_asked_takes_the_keys(writer: Writer) -> None:
     assert writer.text() == "X1\nX2"
 
 
-def test_it_goes_away_and_the_path_is_seen_again(writer: Writer) -> None:
+def test_letter_pad_closes_and_path_is_visible_again(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     assert not writer.editor.path_view.isVisible()
@@ -100,7 +100,7 @@ def test_it_goes_away_and_the_path_is_seen_again(writer: Writer) -> None:
     assert writer.front == page_table.EDITOR
 
 
-def test_the_text_keeps_room_over_it(writer: Writer) -> None:
+def test_text_field_has_minimum_height_above_letter_pad(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     writer.window.grab()
@@ -108,7 +108,7 @@ def test_the_text_keeps_room_over_it(writer: Writer) -> None:
     assert writer.editor.text_field.geometry().bottom() < writer.editor.letter_pad.geometry().top()
 
 
-def test_a_finger_on_a_key_leaves_the_keyboard_where_it_is(writer: Writer) -> None:
+def test_touch_on_letter_pad_does_not_move_keyboard_focus(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     strike(writer, "X")

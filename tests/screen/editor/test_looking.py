@@ -38,7 +38,7 @@ def touch(writer: Writer, z: float, diameter: float) -> None:
     QTest.mouseClick(path, Qt.MouseButton.LeftButton, pos=at + QPoint(1, 2))
 
 
-def test_touching_the_path_leads_to_its_line(drawn: Writer) -> None:
+def test_touch_on_path_moves_cursor_to_its_line(drawn: Writer) -> None:
     touch(drawn, -0.5, 0.5)
     assert drawn.editor.text_field.cursor_line == 5
     touch(drawn, -1.5, 1.0)
@@ -46,13 +46,13 @@ def test_touching_the_path_leads_to_its_line(drawn: Writer) -> None:
     assert drawn.editor.text_field.hasFocus()
 
 
-def test_touching_nothing_leads_nowhere(drawn: Writer) -> None:
+def test_touch_on_empty_area_does_not_move_cursor(drawn: Writer) -> None:
     line = drawn.editor.text_field.cursor_line
     touch(drawn, -1.0, -1.4)
     assert drawn.editor.text_field.cursor_line == line
 
 
-def test_what_the_line_of_the_cursor_draws_is_marked(drawn: Writer) -> None:
+def test_path_of_cursor_line_is_highlighted(drawn: Writer) -> None:
     drawn.editor.move_cursor_to(6)
     picture = drawn.editor.path_view.picture
     assert picture is not None
@@ -62,7 +62,7 @@ def test_what_the_line_of_the_cursor_draws_is_marked(drawn: Writer) -> None:
     assert points == [pytest.approx(inch(-1, 0.5)), pytest.approx(inch(-2, 1.5))]
 
 
-def test_a_line_without_moves_marks_nothing(drawn: Writer) -> None:
+def test_line_without_moves_highlights_nothing(drawn: Writer) -> None:
     drawn.editor.move_cursor_to(2)
     drawn.sees(
         lambda: not any(len(range(*part)) for part in drawn.editor.path_view.panes[0].marked_point_ranges)
@@ -87,7 +87,7 @@ def test_a_taper_is_measured_by_keys(drawn: Writer) -> None:
     drawn.sees(lambda: drawn.prompt().startswith(text("editor.next-point")))
 
 
-def test_from_the_cross_to_the_line(drawn: Writer) -> None:
+def test_f3_moves_cursor_to_line_at_cross(drawn: Writer) -> None:
     drawn.editor.move_cursor_to(1)
     drawn.key(Key.Key_M, CTRL)
     path = drawn.editor.path_view
@@ -100,7 +100,7 @@ def test_from_the_cross_to_the_line(drawn: Writer) -> None:
     assert path.measurement is None
 
 
-def test_a_cross_beside_the_path_names_no_line(drawn: Writer) -> None:
+def test_cross_off_path_leads_to_no_line(drawn: Writer) -> None:
     drawn.key(Key.Key_M, CTRL)
     ruler = drawn.editor.path_view.measurement
     assert ruler is not None
@@ -110,7 +110,7 @@ def test_a_cross_beside_the_path_names_no_line(drawn: Writer) -> None:
     drawn.sees(lambda: begins(drawn.prompt(), "editor.cross-on-no-line"))
 
 
-def test_esc_goes_back_to_the_text(drawn: Writer) -> None:
+def test_esc_returns_from_path_view_to_text(drawn: Writer) -> None:
     drawn.key(Key.Key_M, CTRL)
     before = drawn.text()
     drawn.type("xz")  # no letter writes while one looks
@@ -120,7 +120,7 @@ def test_esc_goes_back_to_the_text(drawn: Writer) -> None:
     assert drawn.text() == before
 
 
-def test_zoom_keys_work_while_one_looks(drawn: Writer) -> None:
+def test_zoom_keys_work_in_path_view(drawn: Writer) -> None:
     drawn.key(Key.Key_M, CTRL)
     before = drawn.editor.path_view.first_projection
     drawn.key(Key.Key_Z)
@@ -134,7 +134,7 @@ def test_zoom_keys_work_while_one_looks(drawn: Writer) -> None:
     assert drawn.editor.path_view.first_projection == before
 
 
-def test_without_a_path_there_is_nothing_to_look_at(writer: Writer) -> None:
+def test_path_view_without_path_shows_message(writer: Writer) -> None:
     writer.new("empty")
     writer.key(Key.Key_M, CTRL)
     writer.sees(lambda: shows(writer.prompt(), "editor.no-path-yet"))

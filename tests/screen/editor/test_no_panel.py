@@ -20,7 +20,7 @@ def no_panel(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("key", [Key.Key_F3, Key.Key_F4])
-def test_no_key_opens_a_panel(no_panel: None, writer: Writer, key: Key) -> None:
+def test_typed_letters_open_no_panel(no_panel: None, writer: Writer, key: Key) -> None:
     writer.new("plain")
     assert type(writer.editor.editor_panel) is EditorPanel
     writer.key(key, SHIFT)

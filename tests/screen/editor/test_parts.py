@@ -48,7 +48,7 @@ def inks(field: ProgramTextField, line: int) -> list[tuple[str, str]]:
     return found
 
 
-def test_words_are_coloured_as_the_lexer_reads_them(field: ProgramTextField) -> None:
+def test_words_are_colored_as_lexer_reads_them(field: ProgramTextField) -> None:
     field.replace_text("g0 1X.5F.1(G05)T1", as_new=True)
     field.apply_theme()
     assert inks(field, 1) == [
@@ -60,7 +60,7 @@ def test_words_are_coloured_as_the_lexer_reads_them(field: ProgramTextField) -> 
     ]
 
 
-def test_statements_of_a_plane_are_no_comments(field: ProgramTextField) -> None:
+def test_plane_statements_are_not_colored_as_comments(field: ProgramTextField) -> None:
     field.replace_text("M19\n(~PLXC)\n(G02X.5 Y.2I.1J0F8)\n(X?)\n(END)\n(DONE)\nX1", as_new=True)
     field.apply_theme()
     assert inks(field, 2) == [("(~PLXC)", DARK_PALETTE.accent)]
@@ -74,7 +74,7 @@ def test_statements_of_a_plane_are_no_comments(field: ProgramTextField) -> None:
     assert inks(field, 6) == [("(DONE)", DARK_PALETTE.soft)]
 
 
-def test_a_plane_that_is_taken_out_leaves_comments(field: ProgramTextField) -> None:
+def test_lines_of_removed_plane_are_colored_as_comments(field: ProgramTextField) -> None:
     field.replace_text("(~PLXC)\n(X.5)", as_new=True)
     field.apply_theme()
     assert inks(field, 2) == [("X.5", DARK_PALETTE.text)]
@@ -82,7 +82,7 @@ def test_a_plane_that_is_taken_out_leaves_comments(field: ProgramTextField) -> N
     assert inks(field, 2) == [("(X.5)", DARK_PALETTE.soft)]
 
 
-def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: ProgramTextField) -> None:
+def test_unreadable_word_is_marked_until_it_is_fixed(field: ProgramTextField) -> None:
     field.replace_text("X1?", as_new=True)
     field.apply_theme()
     assert ("?", DARK_PALETTE.alarm) in inks(field, 1)
@@ -90,7 +90,7 @@ def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: ProgramTe
     assert DARK_PALETTE.alarm not in {ink for _text, ink in inks(field, 1)}
 
 
-def test_other_colours_reach_the_text(field: ProgramTextField) -> None:
+def test_new_theme_colors_are_applied_to_text(field: ProgramTextField) -> None:
     field.replace_text("G01", as_new=True)
     field.apply_theme()
     field.theme.set_palette(LIGHT_PALETTE)
@@ -100,7 +100,7 @@ def test_other_colours_reach_the_text(field: ProgramTextField) -> None:
 
 @pytest.mark.parametrize("asking", [True, False])
 @pytest.mark.parametrize(("width", "height", "u"), [(860, 390, 6.4), (1600, 700, 12.0), (3200, 1400, 24.0)])
-def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> None:
+def test_editor_layout_parts_do_not_overlap(width: int, height: int, u: float, asking: bool) -> None:
     at = make_editor_layout(width, height, u, has_question=asking)
     parts = [
         at.head_line,
@@ -117,7 +117,7 @@ def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> No
     assert all(p.w > 20 * u and p.h > 3 * u for p in parts)
 
 
-def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_program_versions_are_saved_in_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     journal = Journal.open_default()
     desk, executor = create_desk_and_executor(None, lambda: NO_OFFSETS, ManualClock(), journal)
@@ -141,11 +141,11 @@ def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     journal.close()
 
 
-def test_times_are_those_of_the_shop() -> None:
+def test_times_are_shown_in_local_time() -> None:
     assert format_local_time("2026-03-01T10:00:00.000Z").endswith(":00:00")
 
 
-def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: ProgramTextField) -> None:
+def test_sinumerik_words_are_colored_by_sinumerik_rules(field: ProgramTextField) -> None:
     field.highlighter.set_dialect(Dialect.SINUMERIK)
     field.replace_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", as_new=True)
     field.apply_theme()
@@ -161,7 +161,7 @@ def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: ProgramText
     assert ("H", DARK_PALETTE.alarm) in inks(field, 4)
 
 
-def test_another_language_colours_anew(field: ProgramTextField) -> None:
+def test_change_of_language_recolors_text(field: ProgramTextField) -> None:
     field.replace_text("G0X1(a)", as_new=True)
     before = inks(field, 1)
     field.highlighter.set_dialect(Dialect.SINUMERIK)
@@ -170,7 +170,7 @@ def test_another_language_colours_anew(field: ProgramTextField) -> None:
     assert inks(field, 1) == before
 
 
-def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
+def test_findings_are_touch_sized_on_smallest_screen(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
     panel = FindingList(ScreenTheme(DARK_PALETTE, 6.4), lambda _found: None, above)

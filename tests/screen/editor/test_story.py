@@ -27,7 +27,7 @@ from tests.texts import text as wording
 CTRL = Qt.KeyboardModifier.ControlModifier
 
 
-def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: Path, memory: Memory) -> None:
+def test_new_program_is_written_corrected_and_saved(writer: Writer, tmp_path: Path, memory: Memory) -> None:
     writer.key(Key.Key_F2)
     writer.type("first")
     writer.key(Key.Key_Return)
@@ -67,7 +67,7 @@ def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
 
 
-def test_what_was_edited_last_is_not_shown_with_an_offer(writer: Writer) -> None:
+def test_create_prompt_does_not_show_last_edited_text(writer: Writer) -> None:
     writer.edit("pin")
     writer.key(Key.Key_F10)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
@@ -82,7 +82,7 @@ def test_what_was_edited_last_is_not_shown_with_an_offer(writer: Writer) -> None
     writer.sees(lambda: writer.text() == "")
 
 
-def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
+def test_invalid_name_is_rejected_with_message(writer: Writer) -> None:
     writer.key(Key.Key_F2)
     writer.type("bad?name")
     writer.key(Key.Key_F3)
@@ -92,7 +92,7 @@ def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
 
 
-def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) -> None:
+def test_editor_does_not_open_without_program_or_name(writer: Writer) -> None:
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.prompt() == page_entry.NO_PROGRAM)
     assert writer.front == page_table.AUTOMATIC
@@ -101,7 +101,7 @@ def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) ->
 @pytest.mark.parametrize(
     "state", [MachineState.RUN, MachineState.HOLD, MachineState.SINGLE_BLOCK_STOP, MachineState.WAIT]
 )
-def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer, state: MachineState) -> None:
+def test_text_is_edited_while_loaded_program_runs_unchanged(writer: Writer, state: MachineState) -> None:
     writer.load("pin")
     loaded = writer.desk.program_loader.loaded
     writer.machine.now = replace(writer.machine.now, state=state, rpm_command=900.0, rpm_actual=900.0)
@@ -112,7 +112,7 @@ def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer,
     assert not writer.desk.window_state.can_start_here  # the palms are for the Automatic page
 
 
-def test_refused_while_a_slide_is_moved_by_hand(writer: Writer) -> None:
+def test_editor_does_not_open_while_axis_is_jogged(writer: Writer) -> None:
     writer.load("pin")
     writer.machine.now = replace(writer.machine.now, state=MachineState.JOG)
     writer.key(Key.Key_F3)
@@ -123,7 +123,9 @@ def test_refused_while_a_slide_is_moved_by_hand(writer: Writer) -> None:
 @pytest.mark.parametrize(
     ("command", "measured", "why"), [(900, 0, page_entry.SPINDLE_ON), (0, 80, page_entry.SPINDLE_COASTING)]
 )
-def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured: int, why: str) -> None:
+def test_editor_does_not_open_while_spindle_turns(
+    writer: Writer, command: int, measured: int, why: str
+) -> None:
     writer.load("pin")
     writer.machine.now = replace(writer.machine.now, rpm_command=command, rpm_actual=measured)
     writer.key(Key.Key_F3)
@@ -131,13 +133,13 @@ def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured
     assert writer.front == page_table.AUTOMATIC
 
 
-def test_the_palms_start_nothing_from_the_editor(writer: Writer) -> None:
+def test_palm_buttons_start_nothing_in_editor(writer: Writer) -> None:
     writer.edit("pin")
     writer.both_palms()
     assert CycleStart() not in writer.machine.posted
 
 
-def test_a_sample_asks_for_a_name_and_stays_as_it_was(writer: Writer, tmp_path: Path) -> None:
+def test_saving_sample_asks_for_name_and_leaves_sample_unchanged(writer: Writer, tmp_path: Path) -> None:
     before = (SAMPLES / "pin.nc").read_bytes()
     writer.edit("pin")
     assert writer.editor.head_line.heading.mark == "SAMPLE"
@@ -155,7 +157,7 @@ def test_a_sample_asks_for_a_name_and_stays_as_it_was(writer: Writer, tmp_path: 
     assert writer.desk.program_loader.loaded.name == "mine.nc"
 
 
-def test_esc_at_the_name_of_a_sample_goes_on_editing(writer: Writer, tmp_path: Path) -> None:
+def test_esc_at_name_of_sample_returns_to_editing(writer: Writer, tmp_path: Path) -> None:
     writer.edit("pin")
     writer.type("(MINE)")
     writer.key(Key.Key_F3)
@@ -167,7 +169,7 @@ def test_esc_at_the_name_of_a_sample_goes_on_editing(writer: Writer, tmp_path: P
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
 
 
-def test_find_counts_and_replace_all_is_one_step(writer: Writer) -> None:
+def test_find_counts_matches_and_replace_all_is_one_undo_step(writer: Writer) -> None:
     writer.new("feeds")
     writer.write("F100\nX1F1000\nZ1F100")
     writer.key(Key.Key_F, CTRL)
@@ -188,7 +190,7 @@ def test_find_counts_and_replace_all_is_one_step(writer: Writer) -> None:
     assert writer.text() == "F100\nX1F1000\nZ1F100"
 
 
-def test_replace_one_by_one(writer: Writer) -> None:
+def test_matches_are_replaced_one_at_a_time(writer: Writer) -> None:
     writer.new("feeds")
     writer.write("F1\nF1\nF1")
     writer.key(Key.Key_F4)
@@ -201,7 +203,7 @@ def test_replace_one_by_one(writer: Writer) -> None:
     assert writer.text().count("F1") == 1
 
 
-def test_go_to_a_line_and_what_is_no_line(writer: Writer) -> None:
+def test_go_to_line_rejects_invalid_line_number(writer: Writer) -> None:
     writer.edit("pin")
     writer.key(Key.Key_F5)
     writer.type("0")
@@ -257,7 +259,7 @@ def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> Non
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
 
 
-def test_typing_takes_the_question_back(writer: Writer) -> None:
+def test_typing_cancels_discard_question(writer: Writer) -> None:
     writer.new("kept")
     writer.write("X1")
     writer.key(Key.Key_F10)
@@ -269,7 +271,7 @@ def test_typing_takes_the_question_back(writer: Writer) -> None:
     assert writer.text() == "X1Z1"
 
 
-def test_esc_holds_what_a_station_has_started(writer: Writer) -> None:
+def test_esc_holds_cycle_started_at_station(writer: Writer) -> None:
     writer.edit("pin")
     writer.machine.now = replace(writer.machine.now, state=MachineState.RUN)
     writer.sees(lambda: writer.prompt() == messages.TEXT_NOT_RUNNING)
@@ -294,7 +296,7 @@ def test_an_empty_program_is_not_saved(writer: Writer) -> None:
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
 
 
-def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> None:
+def test_f1_saves_and_opens_main_menu(writer: Writer, tmp_path: Path) -> None:
     writer.new("menu")
     writer.write(GOOD)
     writer.key(Key.Key_F1)
@@ -304,7 +306,7 @@ def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> 
     assert writer.desk.prompt_notice == wording("editor.saved-not-loaded", name="menu.nc")
 
 
-def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer, tmp_path: Path) -> None:
+def test_viewing_program_leaves_loaded_program_unchanged(writer: Writer, tmp_path: Path) -> None:
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
@@ -357,7 +359,7 @@ def test_f1_saves_only_and_f3_loads_the_saved_text(writer: Writer, tmp_path: Pat
     assert "(CHANGED)" in source.text
 
 
-def test_every_page_says_that_the_saved_text_is_not_loaded(writer: Writer) -> None:
+def test_every_page_shows_that_saved_text_is_not_loaded(writer: Writer) -> None:
     writer.desk.storage_state.set_file_readers(lambda: "DIFFERENT", lambda: None)
     for page in (page_table.AUTOMATIC, page_table.PROGRAMS, page_table.MENU):
         writer.frame.open_page(page)
@@ -383,9 +385,7 @@ def test_another_document_does_not_show_the_findings_of_the_last_one(writer: Wri
     assert editor.live_proof.current_findings.error_count == 0  # before its own proof
 
 
-def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
-    writer: Writer, tmp_path: Path
-) -> None:
+def test_loaded_program_is_reloaded_when_its_file_changes(writer: Writer, tmp_path: Path) -> None:
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
     writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
@@ -404,7 +404,7 @@ def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
 
 
-def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer, tmp_path: Path) -> None:
+def test_f3_with_unknown_name_offers_new_program_and_creates_no_file(writer: Writer, tmp_path: Path) -> None:
     """It edits no other one, and nothing is there before it is said so."""
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
@@ -422,7 +422,7 @@ def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer,
     assert [path.name for path in tmp_path.glob("*.nc")] == ["mine.nc"]
 
 
-def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
+def test_f3_in_empty_program_list_opens_no_editor(writer: Writer) -> None:
     writer.frame.open_page(page_table.PROGRAMS)
     model = writer.desk.page_registry.find_model(ProgramListModel)
     assert model is not None
@@ -433,7 +433,7 @@ def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
     assert writer.desk.prompt_notice == wording("screen.no-program-marked")
 
 
-def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Writer, tmp_path: Path) -> None:
+def test_f3_at_file_question_edits_marked_or_typed_program(writer: Writer, tmp_path: Path) -> None:
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
@@ -450,7 +450,7 @@ def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Wri
     writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.name == "other.nc")
 
 
-def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None:
+def test_machine_key_letters_are_typed_and_switch_nothing(writer: Writer) -> None:
     writer.new("letters")
     posted = len(writer.machine.posted)
     writer.type("SOCHRDEAT/,.+-Z")
@@ -458,7 +458,7 @@ def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None
     assert len(writer.machine.posted) == posted
 
 
-def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> None:
+def test_editor_session_saves_text_and_versions(writer: Writer, tmp_path: Path, memory: Memory) -> None:
     writer.new("day")
     writer.write("G90G94G72F300\nT1\nM03S1000\nX1Z.1\nF5Z-.5\nF5X1.5\nM05\nF300X2Z1\nM30")
     writer.sees(lambda: writer.proved() and not writer.editor.finding_list.findings.error_count)

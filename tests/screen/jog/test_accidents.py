@@ -52,7 +52,7 @@ def stands(jog: JogBench, at: float, run_on: float = RUN_ON) -> None:
         (Key.Key_PageDown, 2, -1),
     ],
 )
-def test_each_arrow_moves_its_axis_while_it_is_held(jog: JogBench, key: Key, axis: int, sign: int) -> None:
+def test_each_arrow_jogs_its_axis_while_key_is_down(jog: JogBench, key: Key, axis: int, sign: int) -> None:
     jog.down(key)
     jog.run(1.0)
     speed = 15.0 if axis == 2 else SLOW
@@ -62,13 +62,13 @@ def test_each_arrow_moves_its_axis_while_it_is_held(jog: JogBench, key: Key, axi
     assert [place for at, place in enumerate(jog.shot.demand) if at != axis] == [0.0, 0.0]
 
 
-def test_the_release_ends_it_at_once(jog: JogBench) -> None:
+def test_key_release_stops_jog_at_once(jog: JogBench) -> None:
     at = moving(jog)
     jog.up(Key.Key_Left)
     stands(jog, at, 0.06 * SLOW)
 
 
-def test_the_pairs_of_a_repeating_key_neither_end_it_nor_begin_it_again(jog: JogBench) -> None:
+def test_auto_repeat_neither_stops_nor_restarts_jog(jog: JogBench) -> None:
     moving(jog)
     for _ in range(20):
         jog.repeats(Key.Key_Left)
@@ -80,7 +80,7 @@ def test_the_pairs_of_a_repeating_key_neither_end_it_nor_begin_it_again(jog: Jog
     stands(jog, at)
 
 
-def test_a_missed_release_ends_with_the_silence_of_the_key(jog: JogBench) -> None:
+def test_jog_with_missed_key_release_stops_on_key_timeout(jog: JogBench) -> None:
     moving(jog)
     jog.repeats(Key.Key_Left)
     jog.run(0.55)
@@ -88,7 +88,7 @@ def test_a_missed_release_ends_with_the_silence_of_the_key(jog: JogBench) -> Non
     assert shows(jog.prompt, "jog.key-silent")
 
 
-def test_the_window_that_loses_the_keyboard(jog: JogBench, qtbot: QtBot) -> None:
+def test_jog_stops_when_window_loses_keyboard_focus(jog: JogBench, qtbot: QtBot) -> None:
     at = moving(jog)
     other = QDialog()
     with qtbot.waitActive(other, timeout=LIMIT):
@@ -109,7 +109,7 @@ def test_the_window_that_loses_the_keyboard(jog: JogBench, qtbot: QtBot) -> None
     jog.up(Key.Key_Left)
 
 
-def test_a_dialog_of_the_window(jog: JogBench, qtbot: QtBot) -> None:
+def test_jog_stops_when_dialog_opens(jog: JogBench, qtbot: QtBot) -> None:
     at = moving(jog)
     dialog = QDialog(jog.window)
     dialog.setModal(True)
@@ -120,41 +120,41 @@ def test_a_dialog_of_the_window(jog: JogBench, qtbot: QtBot) -> None:
     dialog.deleteLater()
 
 
-def test_the_page_changes(jog: JogBench) -> None:
+def test_jog_stops_when_page_changes(jog: JogBench) -> None:
     at = moving(jog)
     jog.key(Key.Key_F8)
     assert jog.frame.current_page.NAME == page_table.TOOLS
     stands(jog, at)
 
 
-def test_the_increment_changes_while_held(jog: JogBench) -> None:
+def test_jog_stops_when_increment_changes(jog: JogBench) -> None:
     at = moving(jog)
     jog.key(Key.Key_F2)
     stands(jog, at)
     assert jog.page.model.jog_speeds.step_index == 0
 
 
-def test_the_speed_changes_while_held(jog: JogBench) -> None:
+def test_jog_stops_when_speed_changes(jog: JogBench) -> None:
     at = moving(jog)
     jog.key(Key.Key_F3)
     stands(jog, at)
 
 
 @pytest.mark.parametrize("key", [Key.Key_S, Key.Key_F7, Key.Key_T, Key.Key_Shift, Key.Key_Control])
-def test_any_other_key(jog: JogBench, key: Key) -> None:
+def test_jog_stops_on_any_other_key(jog: JogBench, key: Key) -> None:
     at = moving(jog)
     jog.key(key)
     stands(jog, at)
 
 
 @pytest.mark.parametrize("key", [Key.Key_H, Key.Key_Space, Key.Key_Escape, Key.Key_E])
-def test_what_a_hand_hits_in_a_hurry(jog: JogBench, key: Key) -> None:
+def test_jog_stops_on_hold_space_esc_and_estop_keys(jog: JogBench, key: Key) -> None:
     at = moving(jog)
     jog.key(key)
     stands(jog, at)
 
 
-def test_two_arrows_at_once(jog: JogBench) -> None:
+def test_jog_stops_when_two_arrows_are_down(jog: JogBench) -> None:
     at = moving(jog)
     jog.down(Key.Key_Up)
     stands(jog, at)
@@ -164,7 +164,7 @@ def test_two_arrows_at_once(jog: JogBench) -> None:
     jog.up(Key.Key_Up)
 
 
-def test_the_other_direction_while_moving(jog: JogBench) -> None:
+def test_jog_stops_on_opposite_arrow(jog: JogBench) -> None:
     at = moving(jog)
     jog.down(Key.Key_Right)
     stands(jog, at)
@@ -174,7 +174,7 @@ def test_the_other_direction_while_moving(jog: JogBench) -> None:
     jog.up(Key.Key_Right)
 
 
-def test_a_screen_that_stands_still(jog: JogBench) -> None:
+def test_jog_stops_when_screen_freezes(jog: JogBench) -> None:
     at = moving(jog)
     jog.run(2.0, screen=False)
     assert jog.shot.state is MachineState.IDLE
@@ -183,7 +183,7 @@ def test_a_screen_that_stands_still(jog: JogBench) -> None:
     assert jog.page.model.held_jog.active_jog is None
 
 
-def test_a_rapid_whose_shift_comes_up_first(jog: JogBench) -> None:
+def test_rapid_jog_stops_when_shift_is_released_first(jog: JogBench) -> None:
     jog.down(Key.Key_Shift)
     jog.down(Key.Key_Left, SHIFT)
     jog.run(0.4)
@@ -195,7 +195,7 @@ def test_a_rapid_whose_shift_comes_up_first(jog: JogBench) -> None:
     jog.up(Key.Key_Left)
 
 
-def test_arrows_in_an_entry_move_nothing(jog: JogBench) -> None:
+def test_arrows_in_entry_field_do_not_jog(jog: JogBench) -> None:
     jog.type("t")
     jog.down(Key.Key_Left)
     jog.run(0.5)
@@ -207,14 +207,14 @@ def test_arrows_in_an_entry_move_nothing(jog: JogBench) -> None:
     jog.up(Key.Key_Left)
 
 
-def test_a_chord_moves_nothing(jog: JogBench) -> None:
+def test_arrow_with_modifier_does_not_jog(jog: JogBench) -> None:
     jog.down(Key.Key_Left, Qt.KeyboardModifier.ControlModifier)
     jog.run(0.5)
     assert jog.shot.demand == (0.0, 0.0, 0.0)
     jog.up(Key.Key_Left)
 
 
-def test_the_soft_limit_ends_it_and_it_is_said(jog: JogBench) -> None:
+def test_jog_stops_at_soft_limit_with_message(jog: JogBench) -> None:
     jog.down(Key.Key_Right, SHIFT)
     jog.run(5.0)
     assert jog.shot.state is MachineState.IDLE
@@ -226,7 +226,7 @@ def test_the_soft_limit_ends_it_and_it_is_said(jog: JogBench) -> None:
     jog.up(Key.Key_Right)
 
 
-def test_with_the_drives_off_it_says_why(jog: JogBench) -> None:
+def test_jog_with_drives_off_shows_reason(jog: JogBench) -> None:
     jog.key(Key.Key_E)
     jog.run(0.1)
     twist_out(jog.window)
@@ -247,7 +247,7 @@ def target(jog: JogBench, number: int) -> QPoint:
     return controls[number].box.center().toPoint()
 
 
-def test_a_finger_moves_while_it_stays(jog: JogBench) -> None:
+def test_touch_jogs_while_target_is_pressed(jog: JogBench) -> None:
     left = target(jog, 1)
     QTest.mousePress(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=left)
     jog.run(0.5)
@@ -257,7 +257,7 @@ def test_a_finger_moves_while_it_stays(jog: JogBench) -> None:
     stands(jog, at)
 
 
-def test_a_finger_that_slides_off_the_target(jog: JogBench) -> None:
+def test_jog_stops_when_touch_leaves_target(jog: JogBench) -> None:
     QTest.mousePress(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 1))
     jog.run(0.5)
     at = jog.shot.demand[1]
@@ -266,14 +266,14 @@ def test_a_finger_that_slides_off_the_target(jog: JogBench) -> None:
     QTest.mouseRelease(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 2))
 
 
-def test_a_finger_and_a_key_at_once(jog: JogBench) -> None:
+def test_jog_stops_when_touch_and_key_are_down_together(jog: JogBench) -> None:
     at = moving(jog)
     QTest.mousePress(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 1))
     stands(jog, at)
     QTest.mouseRelease(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 1))
 
 
-def test_a_finger_that_asks_for_something_while_a_key_is_held(jog: JogBench) -> None:
+def test_jog_by_key_stops_when_touch_opens_question(jog: JogBench) -> None:
     at = moving(jog)
     jog.window.grab()
     box, *_ = jog.page.tool_panel._places[0]  # the tool's number
@@ -282,7 +282,7 @@ def test_a_finger_that_asks_for_something_while_a_key_is_held(jog: JogBench) -> 
     stands(jog, at)
 
 
-def test_a_finger_on_a_lamp_while_a_key_is_held(jog: JogBench) -> None:
+def test_jog_by_key_stops_when_lamp_is_touched(jog: JogBench) -> None:
     at = moving(jog)
     jog.window.grab()
     box, *_ = jog.frame.strip._places[0]  # single block
@@ -291,7 +291,7 @@ def test_a_finger_on_a_lamp_while_a_key_is_held(jog: JogBench) -> None:
 
 
 @pytest.mark.parametrize("size", [(1024, 600), (1280, 1024), (1920, 1080)])
-def test_every_target_fits_a_finger_and_none_lies_on_another(jog: JogBench, size: tuple[int, int]) -> None:
+def test_jog_targets_are_touch_sized_and_do_not_overlap(jog: JogBench, size: tuple[int, int]) -> None:
     jog.window.resize(*size)
     jog.run(0.02)
     jog.window.grab()
@@ -305,7 +305,7 @@ def test_every_target_fits_a_finger_and_none_lies_on_another(jog: JogBench, size
         assert min(box.width(), box.height()) >= 60  # 12.5 mm of the smallest panel
 
 
-def test_a_machine_without_c_has_no_targets_and_no_keys_for_it(no_c: JogBench) -> None:
+def test_machine_without_c_axis_has_no_c_targets_or_keys(no_c: JogBench) -> None:
     no_c.window.grab()
     assert len(no_c.page.jog_cross.controls) == 5 + 5 + 3 + 4
     no_c.down(Key.Key_PageUp)
@@ -315,7 +315,7 @@ def test_a_machine_without_c_has_no_targets_and_no_keys_for_it(no_c: JogBench) -
     assert no_c.shot.state is MachineState.IDLE
 
 
-def test_rapid_that_a_finger_selected_ends_with_a_jog_by_key(jog: JogBench) -> None:
+def test_rapid_selected_by_touch_ends_with_jog_by_key(jog: JogBench) -> None:
     model = jog.page.model
     model.toggle_rapid()
     jog.down(Key.Key_Left)
@@ -330,7 +330,7 @@ def test_rapid_that_a_finger_selected_ends_with_a_jog_by_key(jog: JogBench) -> N
     model.release_all()
 
 
-def test_rapid_that_a_finger_selected_holds_for_its_next_jog_alone(jog: JogBench) -> None:
+def test_rapid_selected_by_touch_applies_to_next_jog_only(jog: JogBench) -> None:
     model = jog.page.model
     model.toggle_rapid()
     model.press_direction("finger", "Z", -1)

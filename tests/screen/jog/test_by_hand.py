@@ -51,7 +51,7 @@ def turning(jog: JogBench) -> None:
     jog.until(lambda: abs(jog.shot.rpm_actual - 200.0) < 10.0 and jog.shot.state is MachineState.IDLE)
 
 
-def test_the_palms_start_the_spindle_and_nothing_else_does(jog: JogBench) -> None:
+def test_only_palm_buttons_start_spindle(jog: JogBench) -> None:
     chosen(jog)
     jog.run(0.5)
     assert (jog.shot.rpm_command, jog.shot.state) == (0.0, MachineState.IDLE)
@@ -63,7 +63,7 @@ def test_the_palms_start_the_spindle_and_nothing_else_does(jog: JogBench) -> Non
     assert text("jog.spindle-turns") in jog.prompt
 
 
-def test_one_palm_starts_nothing(jog: JogBench) -> None:
+def test_single_palm_button_starts_nothing(jog: JogBench) -> None:
     chosen(jog)
     jog.down(Key.Key_F11)
     jog.run(0.5)
@@ -74,7 +74,7 @@ def test_one_palm_starts_nothing(jog: JogBench) -> None:
     assert jog.shot.rpm_command == 0.0
 
 
-def test_palms_without_a_choice_start_neither_spindle_nor_program(jog: JogBench) -> None:
+def test_palm_buttons_without_selected_function_start_nothing(jog: JogBench) -> None:
     palms(jog)
     assert jog.shot.state is MachineState.IDLE
     jog.type("b")
@@ -83,7 +83,7 @@ def test_palms_without_a_choice_start_neither_spindle_nor_program(jog: JogBench)
     assert shows(jog.prompt, "jog.nothing-chosen")
 
 
-def test_it_runs_once(jog: JogBench) -> None:
+def test_selected_function_runs_once(jog: JogBench) -> None:
     turning(jog)
     jog.type("0")
     jog.until(lambda: jog.shot.rpm_actual == 0.0)
@@ -92,7 +92,7 @@ def test_it_runs_once(jog: JogBench) -> None:
     assert jog.shot.rpm_command == 0.0
 
 
-def test_what_is_jogged_away_has_to_be_chosen_again(jog: JogBench) -> None:
+def test_jogging_cancels_selected_function(jog: JogBench) -> None:
     chosen(jog)
     jog.down(Key.Key_Left)
     jog.run(0.5)
@@ -103,7 +103,7 @@ def test_what_is_jogged_away_has_to_be_chosen_again(jog: JogBench) -> None:
     assert jog.shot.rpm_command == 0.0
 
 
-def test_esc_takes_it_back(jog: JogBench) -> None:
+def test_esc_cancels_selected_function(jog: JogBench) -> None:
     chosen(jog)
     jog.key(Key.Key_Escape)
     palms(jog)
@@ -141,7 +141,9 @@ def by_switch(jog: JogBench) -> None:
         *((stop, on) for stop in (by_key, by_finger, by_estop, by_switch) for on in (False, True)),
     ],
 )
-def test_what_stops_it(jog: JogBench, stop: Callable[[JogBench], None], jogging: bool) -> None:
+def test_every_stop_action_stops_spindle(
+    jog: JogBench, stop: Callable[[JogBench], None], jogging: bool
+) -> None:
     turning(jog)
     if jogging:
         jog.down(Key.Key_Left)
@@ -156,7 +158,7 @@ def test_what_stops_it(jog: JogBench, stop: Callable[[JogBench], None], jogging:
     assert (jog.shot.demand, jog.shot.rpm_command) == (stands, 0.0)
 
 
-def test_stop_counts_while_the_spindle_speeds_up_in_its_line(jog: JogBench) -> None:
+def test_stop_acts_while_spindle_accelerates(jog: JogBench) -> None:
     chosen(jog)
     jog.run(0.4)
     jog.down(Key.Key_F11)
@@ -170,7 +172,7 @@ def test_stop_counts_while_the_spindle_speeds_up_in_its_line(jog: JogBench) -> N
     assert (jog.shot.rpm_command, jog.shot.state) == (0.0, MachineState.IDLE)
 
 
-def test_estop_released_starts_nothing(jog: JogBench) -> None:
+def test_estop_release_starts_nothing(jog: JogBench) -> None:
     turning(jog)
     by_estop(jog)
     jog.run(0.5)
@@ -181,7 +183,7 @@ def test_estop_released_starts_nothing(jog: JogBench) -> None:
     assert jog.shot.rpm_command == 0.0
 
 
-def test_with_the_drives_off_nothing_is_chosen(jog: JogBench) -> None:
+def test_function_cannot_be_selected_with_drives_off(jog: JogBench) -> None:
     by_estop(jog)
     jog.run(0.2)
     twist_out(jog.window)
@@ -192,7 +194,7 @@ def test_with_the_drives_off_nothing_is_chosen(jog: JogBench) -> None:
     assert shows(jog.prompt, "screen.drives-off-for-hands")
 
 
-def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
+def test_alarm_stops_spindle_and_blocks_selection(jog: JogBench) -> None:
     turning(jog)
     jog.executor.handle_failure(RuntimeError("made by the test"))
     jog.run(0.3)
@@ -202,7 +204,7 @@ def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
     assert jog.shot.rpm_command == 0.0
 
 
-def test_a_held_feed_hold_lets_nothing_start(jog: JogBench) -> None:
+def test_feed_hold_blocks_start(jog: JogBench) -> None:
     chosen(jog)
     assert jog.desk.desk_control.station_panel is not None
     jog.desk.desk_control.station_panel.press_hold()
@@ -214,7 +216,7 @@ def test_a_held_feed_hold_lets_nothing_start(jog: JogBench) -> None:
 
 
 @pytest.mark.parametrize("page", [Key.Key_F8, Key.Key_F1])
-def test_leaving_takes_back_what_was_ready_and_leaves_what_turns(jog: JogBench, page: Key) -> None:
+def test_leaving_page_cancels_ready_line_and_leaves_spindle_running(jog: JogBench, page: Key) -> None:
     turning(jog)
     jog.type("2")
     proved(jog)
@@ -225,7 +227,7 @@ def test_leaving_takes_back_what_was_ready_and_leaves_what_turns(jog: JogBench, 
     assert jog.shot.prepared_digest == ""
 
 
-def test_a_key_held_while_the_page_changes(jog: JogBench) -> None:
+def test_key_down_through_page_change_does_not_jog(jog: JogBench) -> None:
     turning(jog)
     jog.down(Key.Key_Left)
     jog.run(0.5)
@@ -239,7 +241,7 @@ def test_a_key_held_while_the_page_changes(jog: JogBench) -> None:
     assert jog.shot.demand == stands
 
 
-def test_a_rapid_whose_shift_is_let_go_does_not_go_on_slowly(jog: JogBench) -> None:
+def test_rapid_does_not_continue_slowly_after_shift_is_released(jog: JogBench) -> None:
     turning(jog)
     jog.down(Key.Key_Left, SHIFT)
     jog.run(0.3)
@@ -250,9 +252,7 @@ def test_a_rapid_whose_shift_is_let_go_does_not_go_on_slowly(jog: JogBench) -> N
     assert (jog.shot.demand, jog.shot.state) == (stands, MachineState.IDLE)
 
 
-def test_a_window_that_loses_the_keyboard_ends_the_jog_and_takes_nothing_up(
-    jog: JogBench, qtbot: QtBot
-) -> None:
+def test_loss_of_keyboard_focus_ends_jog_without_resuming(jog: JogBench, qtbot: QtBot) -> None:
     turning(jog)
     jog.down(Key.Key_Left)
     jog.run(0.5)
@@ -270,7 +270,7 @@ def test_a_window_that_loses_the_keyboard_ends_the_jog_and_takes_nothing_up(
     assert (jog.shot.demand, jog.shot.state) == (stands, MachineState.IDLE)
 
 
-def test_c_is_not_jogged_while_it_turns(jog: JogBench) -> None:
+def test_c_axis_does_not_jog_while_spindle_turns(jog: JogBench) -> None:
     turning(jog)
     jog.down(Key.Key_PageUp)
     jog.run(0.5)
@@ -278,7 +278,7 @@ def test_c_is_not_jogged_while_it_turns(jog: JogBench) -> None:
     jog.up(Key.Key_PageUp)
 
 
-def test_the_collet_is_not_opened_while_it_turns(jog: JogBench) -> None:
+def test_collet_does_not_open_while_spindle_turns(jog: JogBench) -> None:
     turning(jog)
     jog.type("6")
     proved(jog)
@@ -287,7 +287,7 @@ def test_the_collet_is_not_opened_while_it_turns(jog: JogBench) -> None:
     assert "collet" in jog.shot.outputs
 
 
-def test_coolant_comes_on_by_the_palms_and_goes_off_by_a_key(jog: JogBench) -> None:
+def test_coolant_starts_by_palm_buttons_and_stops_by_key(jog: JogBench) -> None:
     jog.type("b3")
     proved(jog)
     assert "coolant" not in jog.shot.outputs
@@ -299,7 +299,7 @@ def test_coolant_comes_on_by_the_palms_and_goes_off_by_a_key(jog: JogBench) -> N
     assert "coolant" not in jog.shot.outputs
 
 
-def test_a_collet_that_is_ready_to_open_is_so_no_more_when_the_spindle_waits(jog: JogBench) -> None:
+def test_ready_collet_opening_is_canceled_when_spindle_waits(jog: JogBench) -> None:
     turning(jog)
     by_switch(jog)
     jog.until(lambda: jog.shot.rpm_actual == 0.0)
@@ -311,7 +311,7 @@ def test_a_collet_that_is_ready_to_open_is_so_no_more_when_the_spindle_waits(jog
     assert "collet" in jog.shot.outputs
 
 
-def test_the_collet_opens_and_closes_by_the_palms(jog: JogBench) -> None:
+def test_palm_buttons_open_and_close_collet(jog: JogBench) -> None:
     jog.type("b6")
     proved(jog)
     palms(jog)
@@ -333,7 +333,7 @@ def test_the_collet_opens_and_closes_by_the_palms(jog: JogBench) -> None:
 @pytest.mark.parametrize(
     ("typed", "said"), [("4000", "ENTER MORE THAN 0"), ("-5", "ENTER MORE THAN 0"), ("", "REJECTED")]
 )
-def test_a_speed_that_is_none(jog: JogBench, typed: str, said: str) -> None:
+def test_invalid_spindle_speed_is_rejected(jog: JogBench, typed: str, said: str) -> None:
     jog.type("b9")
     jog.enter(typed)
     assert said in jog.prompt
@@ -343,7 +343,7 @@ def test_a_speed_that_is_none(jog: JogBench, typed: str, said: str) -> None:
     assert jog.page.model.manual_functions.entered_rpm == 0.0
 
 
-def test_every_target_is_a_fingertip(jog: JogBench) -> None:
+def test_manual_function_targets_are_touch_sized(jog: JogBench) -> None:
     jog.type("b")
     jog.run(0.1)
     for panel, least in (
@@ -357,7 +357,7 @@ def test_every_target_is_a_fingertip(jog: JogBench) -> None:
             assert min(each.box.width(), each.box.height()) >= least - 1e-6, each.box
 
 
-def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
+def test_function_is_selected_and_speed_entered_by_touch(jog: JogBench) -> None:
     def touch(panel: QWidget, at: QPointF) -> None:
         QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=at.toPoint())
 
@@ -377,5 +377,5 @@ def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
     assert jog.shot.rpm_command == 300.0
 
 
-def test_every_language_says_it() -> None:
+def test_every_language_has_codes_for_manual_functions() -> None:
     assert set(CODES_BY_LANGUAGE) == {"omniturn", "sinumerik", "klartext"}

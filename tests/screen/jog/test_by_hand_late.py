@@ -40,7 +40,7 @@ def mill(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Itera
     built.store.close()
 
 
-def test_on_a_mill_the_speed_shown_is_the_one_that_starts(mill: JogBench) -> None:
+def test_mill_spindle_starts_at_displayed_speed(mill: JogBench) -> None:
     """M3 has no S of its own: one that was typed and not run is not what the spindle gets."""
     hand = mill.page.model.manual_functions
     mill.type("b9")
@@ -61,7 +61,7 @@ def test_on_a_mill_the_speed_shown_is_the_one_that_starts(mill: JogBench) -> Non
     assert mill.shot.rpm_command == hand.start_speed_rpm == 3000.0
 
 
-def test_stop_counts_before_the_screen_has_seen_the_start(jog: JogBench) -> None:
+def test_stop_acts_before_screen_sees_start(jog: JogBench) -> None:
     chosen(jog)
     jog.run(0.5)
     jog.executor.post(CycleStart())  # the palms, and 0 before another snapshot
@@ -70,9 +70,7 @@ def test_stop_counts_before_the_screen_has_seen_the_start(jog: JogBench) -> None
     assert (jog.shot.rpm_command, jog.shot.state) == (0.0, MachineState.IDLE)
 
 
-def test_a_program_that_began_while_jog_was_opened_does_not_begin_there_again(
-    jog: JogBench, tmp_path: Path
-) -> None:
+def test_program_begun_while_jog_page_opens_is_not_restarted(jog: JogBench, tmp_path: Path) -> None:
     part = tmp_path / "A.NC"
     part.write_text("G90G94F300\nX1Z.1\nM30\n")
     jog.key(Key.Key_F1)
@@ -96,7 +94,7 @@ def test_a_program_that_began_while_jog_was_opened_does_not_begin_there_again(
     assert jog.shot.start_refusal == wording("jog.no-line-ready")
 
 
-def test_nothing_is_ready_beside_the_question_for_a_size(jog: JogBench) -> None:
+def test_palm_buttons_start_nothing_while_size_is_asked(jog: JogBench) -> None:
     """The operator has a micrometer on the part: the palms start nothing then."""
     jog.type("t")
     jog.enter("1")

@@ -30,7 +30,7 @@ def moves(jog: JogBench, seconds: float = 1.0) -> bool:
     return jog.shot.demand != before or jog.shot.state in {MachineState.JOG, MachineState.HOMING}
 
 
-def test_an_arrow_pressed_and_released_in_a_stall_does_nothing(jog: JogBench) -> None:
+def test_arrow_pressed_and_released_in_stall_does_not_jog(jog: JogBench) -> None:
     late_down(jog, Key.Key_Right)
     jog.window.set_late(is_late=True)
     jog.up(Key.Key_Right)
@@ -39,7 +39,7 @@ def test_an_arrow_pressed_and_released_in_a_stall_does_nothing(jog: JogBench) ->
     assert told(jog, StartingAction.JOG)
 
 
-def test_an_arrow_held_through_the_end_of_a_stall_jogs_only_when_pressed_again(jog: JogBench) -> None:
+def test_arrow_down_through_stall_jogs_only_after_new_press(jog: JogBench) -> None:
     late_down(jog, Key.Key_Right)
     jog.repeats(Key.Key_Right)
     assert not moves(jog)
@@ -50,7 +50,7 @@ def test_an_arrow_held_through_the_end_of_a_stall_jogs_only_when_pressed_again(j
     jog.rests()
 
 
-def test_a_late_step_is_none_and_the_step_that_was_chosen_late_counts(jog: JogBench) -> None:
+def test_late_step_is_dropped_and_late_step_selection_counts(jog: JogBench) -> None:
     jog.window.set_late(is_late=True)
     jog.key(Key.Key_F2)
     assert jog.page.model.jog_speeds.step_index == 0
@@ -61,7 +61,7 @@ def test_a_late_step_is_none_and_the_step_that_was_chosen_late_counts(jog: JogBe
     assert moves(jog)
 
 
-def test_a_late_second_key_still_ends_what_is_held(jog: JogBench) -> None:
+def test_late_second_key_stops_active_jog(jog: JogBench) -> None:
     jog.down(Key.Key_Right)
     assert moves(jog, 0.2)
     late_down(jog, Key.Key_Up)
@@ -69,21 +69,21 @@ def test_a_late_second_key_still_ends_what_is_held(jog: JogBench) -> None:
     assert not moves(jog)
 
 
-def test_a_late_finger_jogs_nothing(jog: JogBench) -> None:
+def test_late_touch_does_not_jog(jog: JogBench) -> None:
     jog.window.set_late(is_late=True)
     jog.page.model.press_direction("finger Z1", "Z", 1)
     jog.window.set_late(is_late=False)
     assert not moves(jog)
 
 
-def test_a_late_rapid_is_none_when_shift_is_let_go(jog: JogBench) -> None:
+def test_late_rapid_does_not_start_after_shift_is_released(jog: JogBench) -> None:
     jog.window.set_late(is_late=True)
     jog.down(Key.Key_Right, SHIFT)
     jog.window.set_late(is_late=False)
     assert not moves(jog)
 
 
-def test_home_is_asked_late_and_never_begun_late(lost: JogBench) -> None:
+def test_late_home_key_asks_and_does_not_start_homing(lost: JogBench) -> None:
     lost.window.set_late(is_late=True)
     lost.key(Key.Key_Home)
     assert lost.desk.confirm_key == "Enter"
@@ -96,7 +96,7 @@ def test_home_is_asked_late_and_never_begun_late(lost: JogBench) -> None:
     assert moves(lost, 0.2)
 
 
-def test_the_letter_of_an_axis_homes_nothing_late(lost: JogBench) -> None:
+def test_late_axis_letter_does_not_start_homing(lost: JogBench) -> None:
     lost.key(Key.Key_Home)
     read(lost.desk)
     late_down(lost, Key.Key_X)
@@ -104,7 +104,7 @@ def test_the_letter_of_an_axis_homes_nothing_late(lost: JogBench) -> None:
     assert told(lost, StartingAction.HOME)
 
 
-def test_a_late_key_selects_no_handwheel_and_lets_it_go(wheeled: JogBench) -> None:
+def test_late_key_deselects_handwheel_but_does_not_select_it(wheeled: JogBench) -> None:
     late_down(wheeled, Key.Key_V)
     wheeled.run(0.3)
     assert wheeled.shot.wheel == ""
@@ -119,7 +119,7 @@ def test_a_late_key_selects_no_handwheel_and_lets_it_go(wheeled: JogBench) -> No
     assert wheeled.shot.wheel == ""
 
 
-def test_a_late_letter_still_asks_for_its_value(jog: JogBench) -> None:
+def test_late_letter_opens_value_entry(jog: JogBench) -> None:
     jog.window.set_late(is_late=True)
     jog.type("t")
     jog.window.set_late(is_late=False)

@@ -55,7 +55,7 @@ def cut(jog: JogBench) -> float:
     return min(least)
 
 
-def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> None:
+def test_wear_correction_between_parts_changes_next_part(jog: JogBench, tmp_path: Path) -> None:
     jog.store.offsets.tool_offsets.change_row(1, "touched off", {"x": -1.0 * INCH, "z": -2.0 * INCH}).result(
         60
     )
@@ -74,7 +74,7 @@ def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> N
     assert cut(jog) - first == pytest.approx(-0.001 * INCH, abs=1e-6)
 
 
-def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBench, tmp_path: Path) -> None:
+def test_correction_at_program_stop_applies_to_next_repeat(jog: JogBench, tmp_path: Path) -> None:
     """Gauged at M00 with Cycle Repeat on: this part ends as it began, the next one has the new wear."""
     jog.store.offsets.tool_offsets.change_row(1, "touched off", {"x": -1.0 * INCH, "z": -2.0 * INCH}).result(
         60
@@ -114,7 +114,7 @@ def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBe
     assert jog.shot.parts == 2
 
 
-def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> None:
+def test_f8_is_rejected_during_cycle(jog: JogBench, tmp_path: Path) -> None:
     jog.store.offsets.tool_offsets.change_row(1, "touched off", {"x": -1.0 * INCH, "z": -2.0 * INCH}).result(
         60
     )

@@ -20,7 +20,7 @@ def given(jog: JogBench) -> None:
 
 
 @pytest.mark.parametrize("key", [Key.Key_N, Key.Key_Escape])
-def test_undo_belongs_to_the_chosen_tool_and_no_keeps_its_offset(jog: JogBench, key: Key) -> None:
+def test_undo_applies_to_selected_tool_and_no_leaves_its_offset(jog: JogBench, key: Key) -> None:
     given(jog)
     before = jog.store.offsets.tool_offsets.read_rows()
     jog.key(Key.Key_F4)
@@ -95,7 +95,7 @@ def test_a_touch_beyond_the_travel_is_questioned(jog: JogBench) -> None:
     assert jog.store.offsets.tool_offsets.read_rows()[1].z == -50.0
 
 
-def test_a_master_is_asked_and_its_followers_are_named(jog: JogBench) -> None:
+def test_change_of_master_asks_and_names_its_followers(jog: JogBench) -> None:
     given(jog)
     jog.store.offsets.tool_offsets.change_row(7, "set", {"x": 1.0, "z": 1.0}).result(60)
     jog.desk.offset_book.read_store()
@@ -113,7 +113,7 @@ def test_a_master_is_asked_and_its_followers_are_named(jog: JogBench) -> None:
     assert jog.store.offsets.tool_offsets.read_rows()[1].master
 
 
-def test_a_large_touch_of_the_master_names_its_followers_and_n_moves_none(jog: JogBench) -> None:
+def test_n_at_large_master_touch_changes_no_offset(jog: JogBench) -> None:
     given(jog)
     jog.store.offsets.tool_offsets.set_master_tool(1, "master").result(60)
     jog.desk.offset_book.read_store()
@@ -145,7 +145,7 @@ def test_a_follower_that_would_leave_the_travel_is_named(jog: JogBench) -> None:
     assert jog.prompt == text("offsets.suspicious-master", changes=change, others="T2")
 
 
-def test_undo_after_undo_names_the_older_change_of_the_same_tool(jog: JogBench) -> None:
+def test_second_undo_names_older_change_of_same_tool(jog: JogBench) -> None:
     given(jog)
     jog.key(Key.Key_F4)
     jog.confirm()
@@ -162,7 +162,7 @@ def begins_with_undo(jog: JogBench, tool: str) -> bool:
     return shows(jog.prompt, "offsets.undo", row=tool, change=Pattern(".*"))
 
 
-def test_a_question_about_an_offset_that_has_changed_since_does_nothing(jog: JogBench) -> None:
+def test_answer_about_offset_changed_meanwhile_does_nothing(jog: JogBench) -> None:
     given(jog)
     jog.type("x")
     jog.enter("-1.2")

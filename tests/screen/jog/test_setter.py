@@ -53,7 +53,7 @@ def hold(bench: JogBench, key: Key, seconds: float = 20.0) -> None:
     bench.run(0.1)
 
 
-def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench) -> None:
+def test_new_tool_is_set_by_two_setter_touches_and_return(setter: JogBench) -> None:
     choose(setter, 3)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
@@ -74,7 +74,7 @@ def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench)
     assert shows(setter.desk.offset_book.read_history(OffsetKind.TOOL)[0].why, "jog.reason-setter", way="Z−")
 
 
-def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_is_asked_once(setter: JogBench) -> None:
+def test_setter_shows_difference_and_asks_once_if_it_is_large(setter: JogBench) -> None:
     given(setter, 2, ToolRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
     choose(setter, 2)
     put(setter, ABOVE)
@@ -99,7 +99,7 @@ def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_is_asked_once(
     assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx(TIP[0] * INCH, abs=0.002)
 
 
-def test_a_figure_that_is_typed_changes_nothing_of_what_was_found(setter: JogBench) -> None:
+def test_typed_value_does_not_change_measured_values(setter: JogBench) -> None:
     given(setter, 2, ToolRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
     choose(setter, 2)
     put(setter, ABOVE)
@@ -111,7 +111,7 @@ def test_a_figure_that_is_typed_changes_nothing_of_what_was_found(setter: JogBen
     assert setter.page.entry_panel.entry_texts.change_text == before
 
 
-def test_letting_go_finds_nothing_and_the_next_press_begins_anew(setter: JogBench) -> None:
+def test_early_release_measures_nothing_and_next_press_starts_over(setter: JogBench) -> None:
     choose(setter, 3)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
@@ -125,7 +125,7 @@ def test_letting_go_finds_nothing_and_the_next_press_begins_anew(setter: JogBenc
     assert shows(setter.prompt, "jog.return-keeps-found")
 
 
-def test_another_key_and_another_page_end_it(setter: JogBench) -> None:
+def test_another_key_or_page_ends_setter_touch(setter: JogBench) -> None:
     choose(setter, 3)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
@@ -151,7 +151,7 @@ def test_another_key_and_another_page_end_it(setter: JogBench) -> None:
     ("quadrant", "ways"),
     [(1, "X+ Z+"), (2, "X+ Z−"), (3, "X− Z−"), (4, "X− Z+"), (5, "Z+"), (6, "X+"), (7, "Z−"), (8, "X−")],
 )
-def test_the_tip_says_which_way(setter: JogBench, quadrant: int, ways: str) -> None:
+def test_tip_quadrant_sets_allowed_touch_directions(setter: JogBench, quadrant: int, ways: str) -> None:
     given(setter, 2, ToolRow(x=1.0, z=1.0, quadrant=quadrant))
     choose(setter, 2)
     keys = {"X−": Key.Key_Up, "X+": Key.Key_Down, "Z−": Key.Key_Left, "Z+": Key.Key_Right}
@@ -167,7 +167,7 @@ def test_the_tip_says_which_way(setter: JogBench, quadrant: int, ways: str) -> N
         setter.key(Key.Key_Escape)
 
 
-def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
+def test_round_tip_is_set_to_nose_center(setter: JogBench) -> None:
     """Quadrant 9: the centre stands a nose radius, here .03 in, before the face."""
     given(setter, 2, ToolRow(x=0.1 * INCH, z=1.0, quadrant=9, nose_radius=0.03 * INCH))
     choose(setter, 2)
@@ -179,7 +179,7 @@ def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
     assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
 
 
-def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:
+def test_setter_touch_is_rejected_before_any_motion(setter: JogBench) -> None:
     setter.key(Key.Key_P)
     assert shows(setter.prompt, "jog.which-tool")
     given(setter, 2, ToolRow(x=1.0, z=1.0))
@@ -200,7 +200,7 @@ def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:
     assert text("jog.input-on-already").upper() in setter.prompt.upper()
 
 
-def test_a_lathe_without_a_setter_says_so(jog: JogBench) -> None:
+def test_lathe_without_setter_shows_message(jog: JogBench) -> None:
     jog.key(Key.Key_P)
     assert shows(jog.prompt, "jog.no-setter")
 
@@ -208,7 +208,7 @@ def test_a_lathe_without_a_setter_says_so(jog: JogBench) -> None:
 # --- buttons beside the slides ------------------------------------------------------------------------------
 
 
-def test_a_button_jogs_while_it_is_held(setter: JogBench) -> None:
+def test_jog_button_jogs_while_pressed(setter: JogBench) -> None:
     hands(setter).set_input("jog_z_plus", True)
     setter.run(0.5)
     assert setter.shot.state is MachineState.JOG
@@ -219,7 +219,7 @@ def test_a_button_jogs_while_it_is_held(setter: JogBench) -> None:
     setter.until(lambda: setter.shot.state is MachineState.IDLE, 0.5)
 
 
-def test_it_stops_though_the_screen_stands_still(setter: JogBench) -> None:
+def test_button_release_stops_jog_while_screen_is_frozen(setter: JogBench) -> None:
     """The executor sees the button come up by itself: within ticks, not within the lease."""
     hands(setter).set_input("jog_z_plus", True)
     setter.run(0.5)
@@ -228,7 +228,7 @@ def test_it_stops_though_the_screen_stands_still(setter: JogBench) -> None:
     assert setter.shot.velocity == pytest.approx(0.0, abs=0.05)
 
 
-def test_one_that_is_down_when_the_page_opens_moves_nothing(setter: JogBench) -> None:
+def test_button_pressed_before_page_opens_does_not_jog(setter: JogBench) -> None:
     setter.key(Key.Key_F8)
     setter.run(0.1)
     hands(setter).set_input("jog_z_plus", True)
@@ -244,7 +244,7 @@ def test_one_that_is_down_when_the_page_opens_moves_nothing(setter: JogBench) ->
     assert setter.shot.state is MachineState.JOG
 
 
-def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> None:
+def test_two_buttons_or_button_with_key_do_not_jog(setter: JogBench) -> None:
     hands(setter).set_input("jog_z_plus", True)
     setter.run(0.2)
     hands(setter).set_input("jog_x_minus", True)
@@ -263,7 +263,7 @@ def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> N
     setter.until(lambda: setter.shot.state is MachineState.IDLE, 0.5)
 
 
-def test_rapid_is_the_button_beside_it(setter: JogBench) -> None:
+def test_jog_button_with_rapid_button_moves_at_rapid(setter: JogBench) -> None:
     hands(setter).set_input("jog_rapid", True)
     setter.run(0.05)
     hands(setter).set_input("jog_z_plus", True)
@@ -274,7 +274,7 @@ def test_rapid_is_the_button_beside_it(setter: JogBench) -> None:
     assert setter.shot.state is MachineState.IDLE  # it does not go on slowly
 
 
-def test_a_button_touches_off_as_a_key_does(setter: JogBench) -> None:
+def test_jog_button_touches_off_like_a_key(setter: JogBench) -> None:
     choose(setter, 3)
     put(setter, ABOVE)
     setter.key(Key.Key_P)

@@ -64,7 +64,7 @@ def rows(jog: JogBench) -> dict[int, object]:
     return dict(jog.desk.offset_book.tool_offsets)
 
 
-def test_a_diameter(jog: JogBench) -> None:
+def test_skim_cut_measures_diameter(jog: JogBench) -> None:
     x = cut(jog)
     goes(jog, Key.Key_Right)
     assert step(jog) is SkimCutStep.RETRACT  # the spindle still turns
@@ -91,8 +91,8 @@ def test_a_diameter(jog: JogBench) -> None:
     assert rows(jog) == {}
 
 
-def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) -> None:
-    test_a_diameter(jog)
+def test_skim_cut_of_set_tool_shows_old_and_new_and_saves_reason(jog: JogBench) -> None:
+    test_skim_cut_measures_diameter(jog)
     jog.key(Key.Key_F5)
     jog.enter(".4")
     jog.key(Key.Key_F6)
@@ -109,7 +109,7 @@ def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) ->
     assert jog.store.offsets.read_history(limit=1)[0].why == "skim cut Ø .3"
 
 
-def test_a_face(jog: JogBench) -> None:
+def test_skim_cut_measures_face(jog: JogBench) -> None:
     begun(jog, "z")
     spindle(jog)
     goes(jog, Key.Key_Left, 0.5)
@@ -122,7 +122,7 @@ def test_a_face(jog: JogBench) -> None:
     assert jog.page.model.tool_setting.touch_off.touch_position_mm == pytest.approx(z, abs=1e-6)
 
 
-def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> None:
+def test_x_motion_after_cut_cancels_skim_cut(jog: JogBench) -> None:
     cut(jog)
     goes(jog, Key.Key_Right)
     goes(jog, Key.Key_Down, 0.3)
@@ -137,7 +137,7 @@ def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> N
     assert rows(jog) == {}
 
 
-def test_x_that_moves_while_the_size_is_asked(jog: JogBench) -> None:
+def test_x_motion_during_size_question_cancels_skim_cut(jog: JogBench) -> None:
     cut(jog)
     jog.type("0")
     jog.until(lambda: jog.page.model.tool_setting.question_name != "")
@@ -171,7 +171,7 @@ def moving(jog: JogBench) -> str:
 
 
 @pytest.mark.parametrize("how", [no_spindle, x_last, moving])
-def test_what_is_no_cut(jog: JogBench, how: Callable[[JogBench], str]) -> None:
+def test_invalid_skim_cut_is_rejected_with_reason(jog: JogBench, how: Callable[[JogBench], str]) -> None:
     begun(jog)
     said = how(jog)
     if how is moving:
@@ -198,7 +198,7 @@ def measuring(jog: JogBench) -> None:
 
 
 @pytest.mark.parametrize("until", [in_the_cut, away, measuring])
-def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[JogBench], None]) -> None:
+def test_esc_cancels_skim_cut_without_changes(jog: JogBench, until: Callable[[JogBench], None]) -> None:
     until(jog)
     jog.key(Key.Key_Escape)
     assert step(jog) is SkimCutStep.OFF
@@ -208,7 +208,7 @@ def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[Jog
 
 
 @pytest.mark.parametrize("until", [away, measuring])
-def test_estop_gives_it_up(jog: JogBench, until: Callable[[JogBench], None]) -> None:
+def test_estop_cancels_skim_cut(jog: JogBench, until: Callable[[JogBench], None]) -> None:
     until(jog)
     jog.desk.station_keys.press_estop()
     jog.run(0.3)
@@ -216,7 +216,7 @@ def test_estop_gives_it_up(jog: JogBench, until: Callable[[JogBench], None]) -> 
     assert rows(jog) == {}
 
 
-def test_leaving_the_page_gives_it_up(jog: JogBench) -> None:
+def test_leaving_page_cancels_skim_cut(jog: JogBench) -> None:
     cut(jog)
     jog.key(Key.Key_F8)
     jog.key(Key.Key_F1)
@@ -225,7 +225,7 @@ def test_leaving_the_page_gives_it_up(jog: JogBench) -> None:
     assert rows(jog) == {}
 
 
-def test_without_a_tool_or_a_home_it_is_refused(lost: JogBench) -> None:
+def test_skim_cut_is_rejected_without_tool_or_home(lost: JogBench) -> None:
     lost.type("c")
     assert shows(lost.prompt, "jog.which-tool")
     lost.type("t")

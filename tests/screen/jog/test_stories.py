@@ -24,7 +24,7 @@ def step_to(jog: JogBench, key: Key, step: int, presses: int) -> None:
         jog.rests()
 
 
-def test_steps_lead_to_a_position(jog: JogBench) -> None:
+def test_steps_add_up_to_position(jog: JogBench) -> None:
     step_to(jog, Key.Key_Down, 0, 3)  # .3
     step_to(jog, Key.Key_Down, 1, 2)  # .02
     step_to(jog, Key.Key_Up, 2, 1)  # .001 back
@@ -36,7 +36,7 @@ def test_steps_lead_to_a_position(jog: JogBench) -> None:
     assert jog.frame.readout_line.status.position.axes[0].value == "0.31950"
 
 
-def test_a_step_that_is_held_is_one_step(jog: JogBench) -> None:
+def test_step_key_held_down_makes_one_step(jog: JogBench) -> None:
     jog.key(Key.Key_F2)
     jog.down(Key.Key_Left)
     for _ in range(40):
@@ -46,7 +46,7 @@ def test_a_step_that_is_held_is_one_step(jog: JogBench) -> None:
     assert jog.shot.demand[1] == pytest.approx(-0.1 * INCH, abs=1e-9)
 
 
-def test_a_step_is_cut_short_by_the_page_and_that_is_said(jog: JogBench) -> None:
+def test_page_change_interrupts_step_with_message(jog: JogBench) -> None:
     jog.key(Key.Key_F2)
     jog.key(Key.Key_Left)
     jog.run(0.1)
@@ -64,7 +64,7 @@ def touch(jog: JogBench, key: str, answer: str) -> None:
     jog.saved()
 
 
-def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
+def test_two_tools_are_set_by_touch_off(jog: JogBench) -> None:
     """T1 at home, T2 1 in nearer in X and .5 in further in Z; the figures are worked out by hand."""
     jog.type("t")
     jog.enter("1")
@@ -99,7 +99,7 @@ def set_two(jog: JogBench) -> None:
     jog.enter("1")
 
 
-def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> None:
+def test_new_touch_shows_old_and_new_offset_and_can_be_undone(jog: JogBench) -> None:
     set_two(jog)
     jog.type("x")
     jog.type("1")
@@ -117,7 +117,7 @@ def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> 
     assert jog.store.offsets.tool_offsets.read_rows()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
 
 
-def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
+def test_master_moves_all_followers_or_is_set_alone(jog: JogBench) -> None:
     set_two(jog)
     jog.type("m")
     jog.confirm()
@@ -142,7 +142,7 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     assert jog.store.offsets.tool_offsets.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
 
 
-def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
+def test_touch_off_is_active_at_once_for_loaded_tool(jog: JogBench) -> None:
     """The position display goes by the new offset as soon as it is saved."""
     set_two(jog)
     jog.key(Key.Key_F1)
@@ -158,7 +158,7 @@ def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
     assert jog.frame.readout_line.status.tool_text == "T1"
 
 
-def test_fields_of_a_tool(jog: JogBench) -> None:
+def test_tool_fields_are_entered_on_jog_page(jog: JogBench) -> None:
     set_two(jog)
     touch(jog, "n", ".4/25.4")
     touch(jog, "q", "3")
@@ -199,7 +199,9 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
         ),
     ],
 )
-def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer: str, why: str) -> None:
+def test_invalid_value_is_rejected_and_question_stays_open(
+    jog: JogBench, key: str, answer: str, why: str
+) -> None:
     set_two(jog)
     before = jog.store.offsets.tool_offsets.read_rows()
     jog.type(key)
@@ -210,7 +212,7 @@ def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer:
     assert jog.page.model.tool_setting.question_name
 
 
-def test_without_a_tool_it_asks_for_one(jog: JogBench) -> None:
+def test_touch_off_without_tool_asks_for_tool(jog: JogBench) -> None:
     jog.type("x")
     assert jog.prompt == text("jog.which-tool")
     jog.type("t")
@@ -221,7 +223,7 @@ def test_without_a_tool_it_asks_for_one(jog: JogBench) -> None:
 # --- homing ------------------------------------------------------------------------------------------------
 
 
-def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> None:
+def test_homing_asks_once_and_homes_axes_in_order(lost: JogBench) -> None:
     assert lost.prompt == text("jog.not-homed-jog-slowly", axes="X AND Z")
     lost.key(Key.Key_Home)
     assert begins(lost.prompt, "jog.home", first="Z, THEN X")
@@ -249,7 +251,7 @@ def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> Non
     assert lost.prompt == text("jog.nothing-to-home")
 
 
-def test_one_axis_alone(lost: JogBench) -> None:
+def test_single_axis_is_homed_alone(lost: JogBench) -> None:
     lost.key(Key.Key_Home)
     lost.type("x")  # sooner than anybody has read the question
     lost.run(0.2)
@@ -261,7 +263,7 @@ def test_one_axis_alone(lost: JogBench) -> None:
     assert not lost.shot.homed[1]
 
 
-def test_another_key_takes_the_question_back(lost: JogBench) -> None:
+def test_another_key_cancels_homing_question(lost: JogBench) -> None:
     lost.key(Key.Key_Home)
     lost.key(Key.Key_Escape)
     lost.key(Key.Key_Home)

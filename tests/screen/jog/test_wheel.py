@@ -50,7 +50,7 @@ def selected(jog: JogBench, axis: str = "X") -> None:
 
 
 @pytest.mark.parametrize("axis", ["X", "Z"])
-def test_a_notch_is_a_thousandth(wheeled: JogBench, axis: str) -> None:
+def test_handwheel_notch_moves_one_thousandth(wheeled: JogBench, axis: str) -> None:
     selected(wheeled, axis)
     assert shows(wheeled.prompt, "jog.wheel-moves", axis=axis)
     notches(wheeled, 5)
@@ -62,7 +62,7 @@ def test_a_notch_is_a_thousandth(wheeled: JogBench, axis: str) -> None:
     assert wheeled.shot.demand == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 
-def test_a_finger_round_the_drawn_wheel(wheeled: JogBench) -> None:
+def test_touch_drag_turns_drawn_handwheel(wheeled: JogBench) -> None:
     selected(wheeled)
     wheeled.page.jog_cross.grab()  # drawing places the controls
     box = wheeled.page.jog_cross.controls[-1].box
@@ -84,7 +84,7 @@ def test_a_finger_round_the_drawn_wheel(wheeled: JogBench) -> None:
     assert wheeled.shot.demand[0] == pytest.approx(25 * THOU, abs=1.1 * THOU)  # a quarter of a hundred clicks
 
 
-def test_unselected_it_turns_nothing(wheeled: JogBench) -> None:
+def test_unselected_handwheel_moves_nothing(wheeled: JogBench) -> None:
     notches(wheeled, 20)
     wheeled.run(0.3)
     selected(wheeled)
@@ -108,14 +108,14 @@ def stays(wheeled: JogBench) -> None:
     assert wheeled.shot.demand == at
 
 
-def test_leaving_the_page_ends_it(wheeled: JogBench) -> None:
+def test_leaving_page_deselects_handwheel(wheeled: JogBench) -> None:
     selected(wheeled)
     notches(wheeled, 5)
     wheeled.key(Key.Key_F1)
     stays(wheeled)
 
 
-def test_a_dialog_in_front_ends_it(wheeled: JogBench, qtbot: QtBot) -> None:
+def test_dialog_deselects_handwheel(wheeled: JogBench, qtbot: QtBot) -> None:
     selected(wheeled)
     notches(wheeled, 5)
     dialog = QDialog(wheeled.window)
@@ -128,14 +128,14 @@ def test_a_dialog_in_front_ends_it(wheeled: JogBench, qtbot: QtBot) -> None:
     stays(wheeled)
 
 
-def test_a_screen_that_stands_still_ends_it(wheeled: JogBench) -> None:
+def test_frozen_screen_deselects_handwheel(wheeled: JogBench) -> None:
     selected(wheeled)
     wheeled.run(0.6, screen=False)
     assert wheeled.shot.wheel_ended == text("jog.page-silent")
     stays(wheeled)
 
 
-def test_an_entry_ends_it(wheeled: JogBench) -> None:
+def test_value_entry_deselects_handwheel(wheeled: JogBench) -> None:
     selected(wheeled)
     wheeled.type("t")
     wheeled.run(0.1)
@@ -144,7 +144,7 @@ def test_an_entry_ends_it(wheeled: JogBench) -> None:
     stays(wheeled)
 
 
-def test_an_arrow_while_it_turns_stops_both(wheeled: JogBench) -> None:
+def test_arrow_pressed_while_handwheel_turns_stops_both(wheeled: JogBench) -> None:
     selected(wheeled, "Z")
     wheeled.key(Key.Key_F2)  # .0001
     wheeled.run(0.3)
@@ -156,7 +156,7 @@ def test_an_arrow_while_it_turns_stops_both(wheeled: JogBench) -> None:
     assert shows(wheeled.prompt, "jog.wheel-off-because", why=text("jog.key-while-turned").upper())
 
 
-def test_the_step_key_changes_the_click(wheeled: JogBench) -> None:
+def test_step_key_changes_handwheel_notch_distance(wheeled: JogBench) -> None:
     selected(wheeled)
     wheeled.key(Key.Key_F2)
     wheeled.run(0.3)
@@ -168,14 +168,14 @@ def test_the_step_key_changes_the_click(wheeled: JogBench) -> None:
     assert wheeled.shot.wheel == ""
 
 
-def test_without_one_the_key_says_so_and_nothing_is_drawn(jog: JogBench) -> None:
+def test_machine_without_handwheel_shows_message_and_draws_none(jog: JogBench) -> None:
     jog.key(Key.Key_V)
     assert jog.prompt == text("jog.no-wheel")
     assert not jog.page.model.is_wheel_shown
 
 
 @pytest.mark.parametrize("high", [314, 361])
-def test_every_target_fits_a_finger_on_the_smallest_screen(wheeled: JogBench, high: int) -> None:
+def test_handwheel_targets_are_touch_sized_on_smallest_screen(wheeled: JogBench, high: int) -> None:
     """314 pixels are what a yellow row leaves to the page, 361 what it has without one."""
     wheeled.window.resize(1024, 600)
     pad = wheeled.page.jog_cross
@@ -187,7 +187,7 @@ def test_every_target_fits_a_finger_on_the_smallest_screen(wheeled: JogBench, hi
         assert pad.find_full_area().contains(control.box)
 
 
-def test_two_yellow_rows_leave_a_fingertip_to_every_target(
+def test_handwheel_targets_are_touch_sized_with_two_notice_rows(
     wheeled: JogBench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """They were 43 pixels each without a key on them, and left 21 to what is held."""
@@ -209,7 +209,7 @@ def test_two_yellow_rows_leave_a_fingertip_to_every_target(
         assert pad.find_full_area().contains(control.box)
 
 
-def test_in_a_low_pad_one_row_goes_through_steps_and_speeds(wheeled: JogBench) -> None:
+def test_low_pad_has_one_row_for_rapid_step_and_speed(wheeled: JogBench) -> None:
     wheeled.window.resize(1024, 600)
     pad, speeds = wheeled.page.jog_cross, wheeled.page.model.jog_speeds
     pad.resize(394, 314)

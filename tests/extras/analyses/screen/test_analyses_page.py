@@ -11,7 +11,7 @@ from tests.texts import shows, text
 __all__ = ["desk", "played"]
 
 
-def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
+def test_f8_opens_the_analyses_page(hands: Hands) -> None:
     frozen(hands)
     hands.key(Key.Key_F8)
     page = hands.frame.current_page

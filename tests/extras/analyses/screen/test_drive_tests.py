@@ -73,7 +73,7 @@ def test_the_first_press_asks_and_moves_nothing(jog: JogBench, page: DriveTestPa
     assert page.model.held_jog.requested_direction is None
 
 
-def test_held_to_its_end_it_is_kept_and_told_in_figures(
+def test_completed_drive_test_is_recorded_with_results(
     qtbot: QtBot, jog: JogBench, page: DriveTestPage
 ) -> None:
     asked_and_held(jog)
@@ -109,7 +109,7 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     assert not page.model.make_drawing().has_equal_axes
 
 
-def test_kept_down_after_its_end_it_plays_no_second_one(jog: JogBench, page: DriveTestPage) -> None:
+def test_key_held_down_after_the_end_starts_no_second_test(jog: JogBench, page: DriveTestPage) -> None:
     asked_and_held(jog)
     jog.run(4.0)
     assert jog.shot.drive_test.number == 1
@@ -120,7 +120,7 @@ def test_kept_down_after_its_end_it_plays_no_second_one(jog: JogBench, page: Dri
     assert "HOLD" in page.find_pending_question()
 
 
-def test_the_release_ends_it(jog: JogBench, page: DriveTestPage) -> None:
+def test_key_release_ends_the_drive_test(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     asked_and_held(jog)
     assert jog.shot.state is MachineState.JOG
@@ -129,9 +129,7 @@ def test_the_release_ends_it(jog: JogBench, page: DriveTestPage) -> None:
     assert page.model.results is None
 
 
-def test_the_pairs_of_a_repeating_key_do_not_end_it_and_its_silence_does(
-    jog: JogBench, page: DriveTestPage
-) -> None:
+def test_key_repeat_does_not_end_the_test_but_its_absence_does(jog: JogBench, page: DriveTestPage) -> None:
     jog.key(Key.Key_F2)
     jog.key(Key.Key_F2)
     asked_and_held(jog)  # the series of sines takes 12 s
@@ -145,7 +143,7 @@ def test_the_pairs_of_a_repeating_key_do_not_end_it_and_its_silence_does(
 
 
 @pytest.mark.parametrize("key", [Key.Key_F2, Key.Key_F3, Key.Key_H, Key.Key_Escape, Key.Key_Up, Key.Key_R])
-def test_any_other_key_ends_it(jog: JogBench, page: DriveTestPage, key: Key) -> None:
+def test_any_other_key_ends_the_drive_test(jog: JogBench, page: DriveTestPage, key: Key) -> None:
     ramp(jog)
     asked_and_held(jog)
     jog.key(key)
@@ -153,7 +151,7 @@ def test_any_other_key_ends_it(jog: JogBench, page: DriveTestPage, key: Key) -> 
     assert page.model.held_jog.active_jog is None
 
 
-def test_the_window_that_loses_the_keyboard_ends_it(jog: JogBench, page: DriveTestPage, qtbot: QtBot) -> None:
+def test_losing_keyboard_focus_ends_the_drive_test(jog: JogBench, page: DriveTestPage, qtbot: QtBot) -> None:
     ramp(jog)
     asked_and_held(jog)
     other = QDialog()
@@ -166,7 +164,7 @@ def test_the_window_that_loses_the_keyboard_ends_it(jog: JogBench, page: DriveTe
     assert page.model.held_jog.active_jog is None
 
 
-def test_a_screen_that_stands_still_ends_it(jog: JogBench, page: DriveTestPage) -> None:
+def test_hung_screen_ends_the_drive_test(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     asked_and_held(jog)
     jog.run(0.6, screen=False)
@@ -175,7 +173,7 @@ def test_a_screen_that_stands_still_ends_it(jog: JogBench, page: DriveTestPage) 
     assert page.model.results is None
 
 
-def test_another_page_ends_it(jog: JogBench, page: DriveTestPage) -> None:
+def test_changing_the_page_ends_the_drive_test(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     asked_and_held(jog)
     jog.frame.open_page(page_table.SCOPE)
@@ -183,7 +181,7 @@ def test_another_page_ends_it(jog: JogBench, page: DriveTestPage) -> None:
     assert page.model.held_jog.requested_direction is None
 
 
-def test_a_finger_asks_and_then_holds(jog: JogBench, page: DriveTestPage) -> None:
+def test_touch_asks_first_and_then_runs_while_pressed(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     jog.run(0.1)
     box = next(
@@ -203,7 +201,7 @@ def test_a_finger_asks_and_then_holds(jog: JogBench, page: DriveTestPage) -> Non
 # --- refusals -----------------------------------------------------------------------------------------------
 
 
-def test_it_has_no_rapid(jog: JogBench, page: DriveTestPage) -> None:
+def test_drive_test_has_no_rapid(jog: JogBench, page: DriveTestPage) -> None:
     jog.key(Key.Key_Right)
     jog.down(Key.Key_Right, SHIFT)
     jog.run(0.3)
@@ -212,7 +210,7 @@ def test_it_has_no_rapid(jog: JogBench, page: DriveTestPage) -> None:
     assert jog.shot.demand == (0.0, 0.0, 0.0)
 
 
-def test_with_the_estop_in_it_says_so(jog: JogBench, page: DriveTestPage) -> None:
+def test_drive_test_in_estop_is_rejected_with_a_message(jog: JogBench, page: DriveTestPage) -> None:
     jog.key(Key.Key_E)
     jog.run(0.3)
     jog.key(Key.Key_Right)
@@ -235,7 +233,7 @@ def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
     assert lost.shot.drive_test.number == 0
 
 
-def test_no_room_is_told_before(jog: JogBench, page: DriveTestPage) -> None:
+def test_insufficient_travel_is_reported_before_the_test(jog: JogBench, page: DriveTestPage) -> None:
     assert jog.desk.machine.machine is not None
     travel = jog.desk.machine.machine.find_axis("Z").travel
     assert travel is not None

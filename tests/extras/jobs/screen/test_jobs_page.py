@@ -96,7 +96,7 @@ def loaded(day: Day, program: str) -> None:
     assert day.shot.state is MachineState.IDLE
 
 
-def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
+def test_job_queue_is_completed_without_automatic_starts(day: Day) -> None:
     added(day, "peg.nc", "2")
     added(day, "cap.nc", "5")
     assert rows(day) == [("peg.nc\n", "0/2"), ("cap.nc\n", "0/5")]
@@ -137,7 +137,7 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     assert day.desk.page_registry.find_notice(day.shot) is None
 
 
-def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
+def test_missing_tool_is_reported_in_the_queue(day: Day) -> None:
     added(day, "cap.nc", "50")
 
     def lacking() -> list[str]:
@@ -160,7 +160,7 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
     day.sees(lambda: wording("screen.tool-complete") in model(day).make_table(day.shot).rows[0].cells)
 
 
-def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
+def test_tool_tip_changed_since_the_last_run_is_reported(day: Day) -> None:
     day.store.runs.record_start("peg.nc").result(60)
     started = day.store.runs.read_records()[0].started
     assert started is not None
@@ -177,7 +177,7 @@ def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
     assert re.fullmatch(pattern("screen.another-tip", **tips), told)
 
 
-def test_moved_noted_removed_and_cleared(day: Day) -> None:
+def test_job_is_moved_annotated_removed_and_cleared(day: Day) -> None:
     added(day, "peg.nc", "2")
     added(day, "cap.nc", "5")
     day.key(Key.Key_F5)
@@ -196,7 +196,7 @@ def test_moved_noted_removed_and_cleared(day: Day) -> None:
     day.sees(lambda: rows(day) == [("peg.nc\n", "0/2")])
 
 
-def test_a_note_is_typed_by_a_finger_on_the_smallest_screen(day: Day) -> None:
+def test_note_is_typed_by_touch_on_the_smallest_screen(day: Day) -> None:
     day.window.resize(1024, 600)
     added(day, "peg.nc", "2")
     day.key(Key.Key_F8)
@@ -216,7 +216,7 @@ def test_a_note_is_typed_by_a_finger_on_the_smallest_screen(day: Day) -> None:
     day.sees(lambda: rows(day)[0][0] == "peg.nc\nprep")
 
 
-def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
+def test_job_is_not_loaded_while_a_program_runs(day: Day) -> None:
     added(day, "cap.nc", "5")
     day.key(Key.Key_Escape)
     day.palms()
@@ -234,7 +234,7 @@ def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
 
 
 @pytest.mark.parametrize("text", ["0", "1.5", "abc", "99999999"])
-def test_a_count_that_is_none_is_refused_and_asked_again(day: Day, text: str) -> None:
+def test_invalid_part_count_is_rejected_and_asked_again(day: Day, text: str) -> None:
     opened(day)
     day.key(Key.Key_F3)
     day.enter(text)
@@ -242,7 +242,7 @@ def test_a_count_that_is_none_is_refused_and_asked_again(day: Day, text: str) ->
     assert watch(day).jobs == ()
 
 
-def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
+def test_part_counter_uses_the_count_of_the_job(day: Day) -> None:
     added(day, "peg.nc", "3")
     loaded(day, "peg.nc")
     day.key(Key.Key_F10)
@@ -251,7 +251,7 @@ def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
     assert day.desk.program_runs.part_counter.final_count == 3
 
 
-def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
+def test_missing_job_program_is_reported(day: Day, tmp_path: Path) -> None:
     added(day, "cap.nc", "5")
     (tmp_path / "home" / "programs" / "cap.nc").unlink()
     day.key(Key.Key_F2)
@@ -259,7 +259,7 @@ def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
     assert watch(day).active_job is None
 
 
-def test_without_a_store_nothing_is_queued_and_that_is_said(day: Day) -> None:
+def test_queue_is_disabled_and_reports_why_without_a_store(day: Day) -> None:
     watch(day).parts_watch.parts_book.use_store(None, "THE DISK IS GONE")
     day.run(0.05)
     opened(day)
@@ -269,7 +269,7 @@ def test_without_a_store_nothing_is_queued_and_that_is_said(day: Day) -> None:
     assert model(day).make_table(day.shot).notes == ("THE DISK IS GONE",)
 
 
-def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_other(day: Day) -> None:
+def test_job_program_that_is_not_loaded_is_proved_and_loaded(day: Day) -> None:
     added(day, "peg.nc", "3")
     loaded(day, "peg.nc")
     opened(day)
@@ -283,13 +283,13 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     day.sees(lambda: day.desk.program_runs.part_counter.count_text == "0/3")
 
 
-def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:
+def test_empty_queue_says_how_to_add_a_job(day: Day) -> None:
     opened(day)
     day.key(Key.Key_F4)
     assert begins(day.prompt, "screen.no-job-waits")
 
 
-def test_what_is_asked_of_a_job_is_answered_before_another_key_acts(day: Day) -> None:
+def test_open_job_prompt_must_be_completed_before_another_key_acts(day: Day) -> None:
     """F4 while the count of a new job is typed had asked for the count of the marked one."""
     added(day, "cap.nc", "5")
     day.key(Key.Key_F3)

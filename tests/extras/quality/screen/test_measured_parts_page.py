@@ -148,7 +148,7 @@ def test_a_feature_is_entered_once(day: Day) -> None:
         ((".5", ".001", "-.001", "1", "0", "11"), "1 to 10 parts"),
     ],
 )
-def test_a_feature_that_cannot_be_is_refused_and_stays_to_be_mended(
+def test_invalid_feature_is_rejected_and_stays_open_for_correction(
     day: Day, fields: tuple[str, ...], why: str
 ) -> None:
     feature(day, *fields)
@@ -157,7 +157,7 @@ def test_a_feature_that_cannot_be_is_refused_and_stays_to_be_mended(
     assert sheet(day).title == "FEATURE"
 
 
-def test_half_a_number_is_refused(day: Day) -> None:
+def test_fractional_interval_is_rejected(day: Day) -> None:
     section(day, FEATURES)
     day.key(Key.Key_F2)
     day.enter("spigot")
@@ -167,7 +167,7 @@ def test_half_a_number_is_refused(day: Day) -> None:
     assert shows(day.prompt, "measure.no-whole-number")
 
 
-def test_the_same_name_twice_is_refused(day: Day) -> None:
+def test_duplicate_feature_name_is_rejected(day: Day) -> None:
     spigot(day)
     feature(day, ".3", ".001", "-.001", "1", "0", "1")
     day.sees(lambda: shows(day.prompt, "measure.feature-exists"))
@@ -188,14 +188,14 @@ def test_a_feature_is_removed_after_asking(day: Day) -> None:
 # --- readings and correction ------------------------------------------------------------------------------
 
 
-def test_readings_are_kept_and_judged(day: Day) -> None:
+def test_readings_are_stored_and_judged(day: Day) -> None:
     spigot(day)
     parts(day, 2)
     measured(day, ".5004", ".5012")
     day.sees(lambda: cells(day) == [("SPIGOT", "Ø 0.50000", "2", "Ø 0.50120", "+0.00120", "TOO LARGE")])
 
 
-def test_a_size_that_is_far_off_is_asked_about(day: Day) -> None:
+def test_size_far_from_nominal_asks_for_confirmation(day: Day) -> None:
     spigot(day)
     parts(day, 1)
     section(day, READINGS)
@@ -207,7 +207,7 @@ def test_a_size_that_is_far_off_is_asked_about(day: Day) -> None:
     assert shows(day.prompt, "measure.size-not-deviation")
 
 
-def test_a_reading_is_taken_out(day: Day) -> None:
+def test_reading_can_be_removed(day: Day) -> None:
     spigot(day)
     parts(day, 1)
     measured(day, ".5004")
@@ -217,7 +217,7 @@ def test_a_reading_is_taken_out(day: Day) -> None:
     day.sees(lambda: cells(day)[0][3] == "")
 
 
-def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
+def test_correction_is_applied_like_a_typed_offset_and_can_be_undone(day: Day) -> None:
     """Mean Ø .5012: half of .0012 off as a diameter, .0003 at the offset; then undone."""
     spigot(day)
     parts(day, 2)
@@ -239,7 +239,7 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
     assert day.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0
 
 
-def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -> None:
+def test_effect_of_a_correction_is_shown_before_it_is_applied(day: Day) -> None:
     """The peg's diameter is .5 as programmed; .0006 less of wear makes it .4994. Nothing is changed."""
     spigot(day)
     parts(day, 2)
@@ -281,7 +281,7 @@ def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
     assert shown.make_chart().plots == ()
 
 
-def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
+def test_parts_made_before_a_correction_do_not_propose_another(day: Day) -> None:
     spigot(day)
     parts(day, 1)
     measured(day, ".5012")
@@ -306,7 +306,7 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     assert day.prompt.startswith("T1 X −0.00030: SPIGOT 0.50060 → 0.50030")
 
 
-def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
+def test_offset_changed_elsewhere_is_not_undone(day: Day) -> None:
     spigot(day)
     parts(day, 1)
     measured(day, ".5012")
@@ -320,7 +320,7 @@ def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
     assert day.store.offsets.tool_offsets.read_rows()[1].wear_z == 0.01
 
 
-def test_without_readings_there_is_no_proposal(day: Day) -> None:
+def test_readings_are_required_for_a_proposal(day: Day) -> None:
     spigot(day)
     section(day, READINGS)
     day.key(Key.Key_F8)
@@ -331,7 +331,7 @@ def test_without_readings_there_is_no_proposal(day: Day) -> None:
     assert shows(day.prompt, "measure.no-gauge")
 
 
-def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
+def test_readings_are_exported_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
     spigot(day)
     parts(day, 1)
     measured(day, ".5004")
@@ -345,7 +345,7 @@ def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
 # --- the sample plan --------------------------------------------------------------------------------------
 
 
-def test_the_plan_asks_at_part_end_and_parts_go_on(day: Day) -> None:
+def test_measuring_plan_prompts_at_part_end_and_parts_continue(day: Day) -> None:
     spigot(day, every="2")
     parts(day, 1)
     assert not shows(day.prompt, "measure.measure-part")
@@ -359,7 +359,7 @@ def test_the_plan_asks_at_part_end_and_parts_go_on(day: Day) -> None:
     day.sees(lambda: not shows(day.prompt, "measure.measure-part"))
 
 
-def test_parts_wait_for_the_plan_when_asked(day: Day) -> None:
+def test_parts_wait_for_the_measurement_if_the_plan_requires_it(day: Day) -> None:
     spigot(day, every="2")
     day.key(Key.Key_F5)
     day.key(Key.Key_F1)
@@ -414,7 +414,7 @@ def life(day: Day, limit: str, *, stops: bool = True) -> None:
         day.sees(lambda: cells(day)[0][3] == "STOP")
 
 
-def test_a_spent_tool_stops_the_next_part_and_a_fresh_insert_lets_it_go(day: Day) -> None:
+def test_expired_tool_blocks_the_next_part_until_the_insert_is_changed(day: Day) -> None:
     life(day, "2")
     day.key(Key.Key_F1)
     day.key(Key.Key_F2)
@@ -440,14 +440,14 @@ def test_a_spent_tool_stops_the_next_part_and_a_fresh_insert_lets_it_go(day: Day
         assert connection.execute("SELECT number, parts FROM insert_changes").fetchall() == [(1, 2)]
 
 
-def test_without_the_stop_it_is_only_told(day: Day) -> None:
+def test_expired_tool_without_the_stop_is_only_reported(day: Day) -> None:
     life(day, "1", stops=False)
     parts(day, 2)
     day.key(Key.Key_Escape)
     assert day.prompt.startswith(wording("measure.life-is-gone", number=1, words="2 of 1 parts · "))
 
 
-def test_minutes_are_those_at_feed(day: Day) -> None:
+def test_tool_minutes_count_feed_time(day: Day) -> None:
     """.4 in of Z and .1 in of radius at 60 in/min are half a second."""
     parts(day, 2)
     section(day, LIFE)
@@ -460,7 +460,7 @@ def test_minutes_are_those_at_feed(day: Day) -> None:
 
 
 @pytest.mark.parametrize(("limit", "why"), [("2.5", "whole number"), ("-1", "0 to 1000000 parts")])
-def test_a_limit_that_is_none(day: Day, limit: str, why: str) -> None:
+def test_invalid_tool_life_limit_is_rejected(day: Day, limit: str, why: str) -> None:
     section(day, LIFE)
     day.enter(limit)
     assert why in day.prompt
@@ -469,7 +469,7 @@ def test_a_limit_that_is_none(day: Day, limit: str, why: str) -> None:
 # --- trends -----------------------------------------------------------------------------------------------
 
 
-def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
+def test_trends_show_the_parts_made(day: Day, tmp_path: Path) -> None:
     parts(day, 3)
     section(day, TRENDS)
     day.sees(lambda: "3 parts" in cells(day)[0][1])
@@ -496,7 +496,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     assert texts(day)["AVAILABILITY"] >= ran  # the clock on the wall goes on
 
 
-def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
+def test_reading_is_stored_only_while_the_readings_are_shown(day: Day) -> None:
     """Of which feature and part it is must be seen when it comes."""
 
     class Sent(NoGauge):

@@ -17,9 +17,7 @@ from drivers.wakeups import ManualClock
 from tests.attached import attached
 
 
-def test_a_feature_is_corrected_by_what_this_machine_has(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_correction_choices_depend_on_the_machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """D offsets are OmniTurn's, wear a lathe's; a mill's tool life is in its tool table."""
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     found = {}

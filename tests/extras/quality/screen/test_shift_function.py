@@ -24,7 +24,7 @@ def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
     return page.table_panel.table.rows[row].cells
 
 
-def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> None:
+def test_shift_report_is_created_and_saved(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
     assert isinstance(page, SpecialPage)

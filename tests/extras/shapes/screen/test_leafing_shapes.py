@@ -12,7 +12,7 @@ from tests.screen.test_leafing import MANY, SMALL, above, chosen_rows, leaf_keys
 __all__ = ["above"]
 
 
-def test_a_finger_comes_to_every_shape(above: QWidget) -> None:
+def test_every_shape_can_be_reached_by_touch(above: QWidget) -> None:
     touched: list[int] = []
     panel = ShapeRowsPanel(ScreenTheme(DARK_PALETTE, SMALL), lambda row, _column: touched.append(row), above)
     panel.resize(260, 300)

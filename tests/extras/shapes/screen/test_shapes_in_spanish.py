@@ -22,7 +22,7 @@ __all__ = ["spanish"]
         ("F", "DIÁMETRO INICIAL"),
     ],
 )
-def test_a_refusal_of_a_shape_calls_its_field_as_the_form_does(spanish: Hands, key: str, told: str) -> None:
+def test_spanish_error_names_the_field_as_the_form_does(spanish: Hands, key: str, told: str) -> None:
     form = ShapeForm(SHAPES_BY_KEY[key], ProgramSettings())
     assert tr(form.current_error).startswith(f"{told} falta: ")
     assert tr(SHAPES_BY_KEY[key].name) not in {"", SHAPES_BY_KEY[key].name}

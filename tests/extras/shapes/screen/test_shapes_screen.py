@@ -53,7 +53,7 @@ def drilled(writer: Writer) -> Writer:
     return writer
 
 
-def test_a_hole_is_written_and_the_text_is_one_step_back(writer: Writer) -> None:
+def test_hole_is_written_and_can_be_undone_in_one_step(writer: Writer) -> None:
     drilled(writer)
     assert writer.text().splitlines()[-1] == "M30"
     writer.key(Key.Key_F10)
@@ -63,7 +63,7 @@ def test_a_hole_is_written_and_the_text_is_one_step_back(writer: Writer) -> None
     assert writer.text().startswith("G90G94F300G72(HEAD")
 
 
-def test_the_path_follows_every_key(writer: Writer) -> None:
+def test_displayed_path_follows_every_key(writer: Writer) -> None:
     """Before anything is written: the text that is proved is the one that the form would make."""
     opened(writer).type("n")
     writer.key(Key.Key_F2)
@@ -84,7 +84,7 @@ def test_the_path_follows_every_key(writer: Writer) -> None:
     writer.sees(lambda: writer.editor.mode is EditorMode.TEXT and not deepest())
 
 
-def test_what_is_wrong_is_said_and_nothing_is_written(writer: Writer) -> None:
+def test_error_is_shown_and_the_text_is_unchanged(writer: Writer) -> None:
     opened(writer).type("n")
     writer.key(Key.Key_F2)
     before = writer.text()
@@ -99,7 +99,7 @@ def test_what_is_wrong_is_said_and_nothing_is_written(writer: Writer) -> None:
     assert writer.text() == before
 
 
-def test_the_cursor_opens_the_shape_that_it_stands_in(writer: Writer) -> None:
+def test_shape_at_the_cursor_is_opened(writer: Writer) -> None:
     drilled(writer)
     writer.key(Key.Key_F10)
     writer.editor.move_cursor_to(5)
@@ -110,7 +110,7 @@ def test_the_cursor_opens_the_shape_that_it_stands_in(writer: Writer) -> None:
     assert form.entered_texts["DEEP"] == ".6"
 
 
-def test_lines_changed_by_hand_are_written_over_only_when_asked(writer: Writer) -> None:
+def test_manually_changed_lines_are_overwritten_only_on_request(writer: Writer) -> None:
     drilled(writer)
     writer.key(Key.Key_F10)
     writer.editor.move_cursor_to(6)
@@ -126,7 +126,7 @@ def test_lines_changed_by_hand_are_written_over_only_when_asked(writer: Writer) 
     writer.sees(lambda: "G04F2" not in writer.text())
 
 
-def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
+def test_shape_is_opened_filled_in_and_written_by_touch(writer: Writer) -> None:
     opened(writer)
     touch(writer, shapes_of(writer).rows_panel, ROWS)
     writer.sees(lambda: shapes_of(writer).model.form is not None)
@@ -142,7 +142,7 @@ def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
     assert form.entered_texts == {"DIA": "9"}
 
 
-def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> None:
+def test_estop_key_works_in_the_shape_form(writer: Writer) -> None:
     opened(writer)
     press = QKeyEvent(QEvent.Type.KeyPress, Key.Key_ScrollLock, Qt.KeyboardModifier.NoModifier)
     stop = writer.window.keyboard_filter._find_stop(press)
@@ -152,7 +152,7 @@ def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> Non
     assert shapes_of(writer).model.form is None
 
 
-def test_another_language_has_no_shapes(writer: Writer) -> None:
+def test_unsupported_language_offers_no_shapes(writer: Writer) -> None:
     writer.new("other.h")
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: shows(writer.editor.prompt_text(), "shapes.no-shapes-in-language"))
@@ -161,7 +161,7 @@ def test_another_language_has_no_shapes(writer: Writer) -> None:
     assert [key.name for key in writer.editor.head_line.panel_keys] == ["Calculators"]
 
 
-def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> None:
+def test_rows_and_keys_are_large_enough_for_touch_at_1024x600(writer: Writer) -> None:
     writer.window.resize(1024, 600)
     opened(writer).type("n")
     view = shapes_of(writer)
@@ -182,7 +182,7 @@ def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> No
         assert view.sketch_panel.find_full_area().contains(box)
 
 
-def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> None:
+def test_touch_targets_over_the_text_open_their_function(writer: Writer) -> None:
     writer.new("shaped")
     head = writer.editor.head_line
     head.grab()
@@ -205,7 +205,7 @@ def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> No
     assert writer.editor.is_keyboard_shown
 
 
-def test_what_is_longer_than_its_place_is_turned_by_a_finger(qtbot: QtBot) -> None:
+def test_truncated_text_is_scrolled_by_touch(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
     panel = ShapeLinesPanel(ScreenTheme(DARK_PALETTE, 6.4), above)
@@ -224,7 +224,7 @@ def test_what_is_longer_than_its_place_is_turned_by_a_finger(qtbot: QtBot) -> No
     assert panel.grab().toImage() == turned()
 
 
-def test_the_list_is_one_key_from_a_form(writer: Writer) -> None:
+def test_shape_list_is_one_key_from_a_form(writer: Writer) -> None:
     """A finger has no Esc: from the form that the cursor opened, other shapes were behind the number pad."""
     drilled(writer)
     writer.key(Key.Key_F10)
@@ -239,7 +239,7 @@ def test_the_list_is_one_key_from_a_form(writer: Writer) -> None:
     assert writer.text() == before
 
 
-def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> None:
+def test_long_labels_wrap_to_two_lines_and_are_not_cut(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
     look = ScreenTheme(DARK_PALETTE, 6.4)
@@ -263,7 +263,7 @@ def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> 
     assert "TOOL" in drawn
 
 
-def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
+def test_unset_and_choice_values_are_not_drawn_as_typed_text(qtbot: QtBot) -> None:
     """A question mark stood in the entry as if somebody had typed it, and a bar behind a choice."""
     above = QWidget()
     qtbot.addWidget(above)
@@ -285,7 +285,7 @@ def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
     assert image("◂ INCH ▸") != typed
 
 
-def test_what_is_said_of_the_lines_leaves_no_half_line_below(qtbot: QtBot) -> None:
+def test_remarks_leave_no_half_visible_program_line(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
     panel = ShapeLinesPanel(ScreenTheme(DARK_PALETTE, 6.4), above)

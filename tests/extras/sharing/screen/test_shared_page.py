@@ -78,7 +78,7 @@ def opened(day: Day) -> None:
     day.sees(lambda: day.page == "SHARED PROGRAMS")
 
 
-def test_what_is_newer_is_compared_and_taken_when_asked(
+def test_newer_program_is_compared_and_copied_on_request(
     day: Day, sharing: ProgramSharing, tmp_path: Path
 ) -> None:
     peg = tmp_path / "home" / "programs" / "peg.nc"
@@ -120,7 +120,7 @@ def test_a_program_that_runs_is_not_replaced(day: Day, sharing: ProgramSharing, 
     assert (tmp_path / "home" / "programs" / "peg.nc").read_text() == PEG
 
 
-def test_what_both_have_changed_is_kept_by_f3(
+def test_f3_resolves_a_conflict_with_the_local_version(
     day: Day, sharing: ProgramSharing, other: ProgramSharing, tmp_path: Path
 ) -> None:
     mine = PEG.replace("S2000", "S1500")
@@ -140,7 +140,7 @@ def test_what_both_have_changed_is_kept_by_f3(
     assert other.synchronize().states_by_program == {"peg.nc": "newer"}
 
 
-def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
+def test_unreachable_location_is_shown_and_logged_once(
     day: Day, sharing: ProgramSharing, tmp_path: Path
 ) -> None:
     (tmp_path / "shop").rename(tmp_path / "unmounted")
@@ -159,7 +159,7 @@ def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
     day.sees(lambda: day.prompt.startswith(wording("screen.refused", why="the folder")))
 
 
-def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: ProgramSharing) -> None:
+def test_change_to_the_loaded_program_is_reported_once(day: Day, sharing: ProgramSharing) -> None:
     assert day.desk.program_choice.load_by_name("peg")
     day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
     heard = SharingResultHandler(day.desk, day.journal)
@@ -179,7 +179,7 @@ def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Pro
     assert day.desk.prompt_notice == ""
 
 
-def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
+def test_page_without_a_location_explains_how_to_set_one(day: Day) -> None:
     opened(day)
     assert model(day).make_table().notes == (NO_LOCATION_MESSAGE,)
     day.key(Key.Key_F2)
@@ -188,7 +188,9 @@ def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
     assert day.prompt == NO_LOCATION_MESSAGE
 
 
-def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: ProgramSharing) -> None:
+def test_location_that_never_responds_is_reported_and_queues_nothing(
+    day: Day, sharing: ProgramSharing
+) -> None:
     """A dead network drive: the look waits for ever. The page says so behind 30 s, and queues nothing."""
     model(day).get_waiting_time_s = lambda: 29.0
     assert not any(shows(note, "screen.share-silent") for note in model(day).make_table().notes)
