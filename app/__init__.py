@@ -1,2 +1,5 @@
 VERSION = "0.1.0"
-"""Version by Semantic Versioning, stated only here. The build reads it from this file (pyproject.toml)."""
+"""Version number according to Semantic Versioning.
+
+It is defined only here, and the build reads it from this file (pyproject.toml).
+"""

@@ -15,7 +15,10 @@ _log = logging.getLogger(__name__)
 DEFAULT_LIMIT_S = 3.0  # s, default limit of a step
 
 WaitFunction = Callable[[str, threading.Event, float], bool]
-"""Wait for the end of the step of this name for so many seconds at most; returns whether it has ended."""
+"""Function that waits for the step with this name to end, up to a timeout in seconds.
+
+It returns whether the step has ended.
+"""
 
 
 def wait_for_end(_name: str, end_event: threading.Event, seconds: float) -> bool:

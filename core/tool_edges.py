@@ -24,7 +24,7 @@ TIP_DIRECTIONS = {
 }
 
 FIRST_NAMED_TOOL = 32_768
-"""Numbers from here on stand for tools by a name that the table does not have."""
+"""First number for tools whose name is not in the tool table."""
 
 
 class NamedTool(int):

@@ -126,7 +126,7 @@ def _require_pin(store: Store, row: UserRow) -> None:
 
 
 OpenStore = Callable[[], AbstractContextManager["Store"]]
-"""Opens the store of this installation for a command."""
+"""Function that opens the store of this installation for a command."""
 
 
 def get_permitted_user(open_store: OpenStore, args: argparse.Namespace, *acts: ProtectedChange) -> str:

@@ -22,7 +22,7 @@ argparse._ = str  # type: ignore[attr-defined]
 
 _DEFAULT_WIDTH = 80  # characters
 PRE_COMMAND_OPTIONS = ("machine", "program", "offsets")
-"""Options of the screen."""
+"""Names of the options for the operator screen."""
 OPTIONS_WITH_VALUE = frozenset(f"--{name}" for name in PRE_COMMAND_OPTIONS)
 FLAG_OPTIONS = frozenset({"--version", "--demo", "--kiosk", "--help", "-h"})
 

@@ -54,8 +54,11 @@ CORE_COMMANDS: Mapping[str, str] = {
     "where": "list the folders and files that TurnDesk uses",
     "help": "explain a command and its options",
 }
-"""Subcommands with their help. Each has a module with add_parser(subparsers) and run(args) -> exit status.
-The help of all of them imports none."""
+"""Core subcommands with their help texts.
+
+Each subcommand has a module with add_parser(subparsers) and run(args), which returns the exit status.
+Listing the help imports none of these modules.
+"""
 
 NO_DISPLAY_TEXT = """\
 turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:

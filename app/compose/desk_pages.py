@@ -283,7 +283,7 @@ PAGES: tuple[RegisterPage, ...] = (
     _register_busy_notice,
     register_scope_page,
 )
-"""All pages of a desk. A page comes after the pages that it needs."""
+"""Register functions of all pages, ordered so that each page follows the pages that it needs."""
 
 
 def get_program_folder() -> Path:

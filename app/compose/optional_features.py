@@ -33,7 +33,7 @@ FEATURE_NAMES = (
     *("access", "quality", "jobs", "pendant", "mtconnect", "office", "sharing", "analyses", "scheduler"),
     *("shapes", "drawings", "convert", "tool_tables"),
 )
-"""All optional features. A feature comes after the features that it needs."""
+"""Names of all optional features, ordered so that each feature follows the features that it needs."""
 
 ReportFunction = Callable[[str], None]
 CloseFunction = Callable[[], None]

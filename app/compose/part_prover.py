@@ -31,9 +31,12 @@ if TYPE_CHECKING:
     from core.proving.proof_report import PartReport
 
 ReadShapes = Callable[[], Mapping[int, "ToolShape"]]
-"""The shapes of tools, by T, as they are when it is called; on the worker."""
+"""Function that returns the current tool shapes by T number. It is called on the worker thread."""
 ReadStoredPart = Callable[[str], StoredPart]
-"""What is kept of a program's part, by its name; on the worker."""
+"""Function that returns the stored part settings of a program, by program name.
+
+It is called on the worker thread.
+"""
 
 _log = logging.getLogger(__name__)
 

@@ -21,7 +21,10 @@ _log = logging.getLogger(__name__)
 CLOSE_TIMEOUT_S = 2.0  # Seconds that closing waits for the work in progress.
 ResultT = TypeVar("ResultT")
 ProgressCallback = Callable[[float], None]
-"""Told how far slow work has come; it may raise AbandonedError, which has to be let through."""
+"""Function that receives the progress of slow work.
+
+It may raise AbandonedError, which the caller must not catch.
+"""
 FailureCallback = Callable[[str], None]
 
 

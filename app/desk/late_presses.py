@@ -112,7 +112,7 @@ STARTING_COMMANDS: Mapping[type[Command], tuple[StartingAction, StartRule]] = {
     commands.SetFeedOverride: (StartingAction.OVERRIDE, _is_override_increase),
     commands.ConfirmStart: (StartingAction.START_AT_LINE_1, _begins_at_line_1),
 }
-"""Commands that start something, and when."""
+"""Commands that can start an action, each with the action and the rule that decides whether it starts."""
 
 HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
     {
@@ -134,7 +134,7 @@ HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
         commands.PrepareStart,
     }
 )
-"""All other commands. They start nothing without one of the commands that start."""
+"""All other commands. They start an action only together with a command from STARTING_COMMANDS."""
 
 
 def find_starting_action(command: Command, snapshot: Snapshot) -> StartingAction | None:

@@ -28,4 +28,4 @@ MODE_PROMPTS = {
     EditorMode.HISTORY: messages.VERSION_LIST_HINT,
     EditorMode.CODES: messages.CODE_LIST_HINT,
 }
-"""What the prompt line says while nothing else is to be said."""
+"""Text of the prompt line in each editor mode when no other message is shown."""

@@ -238,7 +238,10 @@ CORRECTION_FIELDS = {
     OffsetKind.TOOL: frozenset({"wear_x", "wear_z", "remark"}),
     OffsetKind.MILL_TOOL: frozenset({"dl", "dr", "dr2"}),
 }
-"""Fields of a tool that are corrections; of a secondary offset all are."""
+"""Fields that count as corrections, by kind of tool table.
+
+All fields of a secondary offset are corrections.
+"""
 
 _RIGHTS_BY_KIND = {
     OffsetKind.TOOL: ProtectedChange.TOOLS,

@@ -25,7 +25,10 @@ from core.store.store_rows import OffsetKind
 
 PARTS_NOT_STORED = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
 ReadFeatureData = Callable[[Store, str], Any]
-"""What an optional feature reads of the store for a program, on the worker. Raises StoreError."""
+"""Function with which an optional feature reads its data for a program from the store.
+
+It is called on the worker thread and raises StoreError.
+"""
 MAX_ROWS = 1000  # maximum number of readings, cycles and stops
 
 

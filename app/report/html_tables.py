@@ -54,7 +54,7 @@ DRAWING_STYLE = """
 .insert{fill:#e8b923;fill-opacity:.85;stroke:#7a5d00;stroke-width:1}
 .control{fill:#b3261e}
 """.replace("\n", "")
-"""Of the drawings alone."""
+"""CSS for the drawings only."""
 
 _PRINT_CSS = """
 @media print{body{margin:0}
@@ -63,7 +63,7 @@ section:first-of-type{break-before:auto}}
 """.replace("\n", "")
 
 PAGE_STYLE = _PAGE_CSS + DRAWING_STYLE + _PRINT_CSS
-"""Of a page in a browser."""
+"""CSS for a page in a browser."""
 
 PAPER_COLORS = """
 body{color:#1a1d21;font-size:12px}
@@ -82,7 +82,7 @@ pre{background-color:#f2f4f6}
 .error b{color:#b3261e}
 .warning b{color:#b26a00}
 """.replace("\n", "")
-"""Of a PDF: what the HTML of Qt knows of it."""
+"""CSS for a PDF, limited to the properties that Qt supports in HTML."""
 
 
 _CONTENT_POLICY = "default-src 'none'; style-src 'unsafe-inline'"

@@ -15,7 +15,7 @@ from core.part.turned_part import PartedPiece
 from core.proving.tip_moves import TipMove
 
 PointMm = tuple[float, float]
-"""Z and r, mm."""
+"""Point with Z and radius, in mm."""
 
 
 @dataclass(slots=True)

@@ -68,7 +68,10 @@ class AutomaticLayout(NamedTuple):
 HEAD, HEAD_MOVES = 7.4, 10.2  # Units: height of the low readouts.
 
 LOW_WINDOW_HEIGHT_PX = 700
-"""px: a lower window has smaller rows above and below its page, so that its targets fit a finger."""
+"""Window height in pixels below which the rows above and below the page are smaller.
+
+This leaves room for touch targets.
+"""
 
 
 def find_unit_px(width_px: int, height_px: int) -> float:

@@ -175,7 +175,7 @@ NEVER_PERMITTED = (
     "lowering the spindle speed limit",
     "running a program that has been proved",
 )
-"""What no level ever stands in the way of."""
+"""Actions that no access level can block."""
 
 
 def get_required_level(change: ProtectedChange) -> AccessLevel:

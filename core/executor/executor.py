@@ -60,7 +60,7 @@ TICK_PAUSE_S = 0.01  # s from the end of one tick to the start of the next
 _ESTOP_ALARM_CODES = frozenset({"power-lost", "spindle-off"})  # alarms that the E-stop chain causes
 _STALL_INTERVAL_S = 0.2  # s between two ticks that show a stalled computer
 _STALE_PRESS_S = 0.5  # s after which a key press must not start a motion
-"""Commands that begin a motion, or switch the drives on."""
+"""Age of a key press, in seconds, above which it must not start a motion or enable the drives."""
 _LOGGED_OVERRIDE_CHANGE = 0.1  # smallest change of the feed override that is logged
 _MAX_COMMANDS_PER_TICK = 100  # commands handled in one tick at most
 _POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOMING}

@@ -25,7 +25,10 @@ from core.message import Message
 from core.tool_edges import format_edge_name
 
 StoreFunction = Callable[[InterruptedJob | None], None]
-"""Takes what is to be kept of the program under way, None: nothing. It must only put it into a queue."""
+"""Function that receives the state to store for the running program, or None for an empty state.
+
+It must only put the state into a queue.
+"""
 
 _RECORD_INTERVAL_S = 1.0  # s between two notes while the program runs
 _MOVED_DISTANCE_MM = 0.01  # mm or degrees; smaller changes count as the same position

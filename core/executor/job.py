@@ -27,7 +27,7 @@ from core.machine.machine_model import Machine
 from core.message import Message
 
 WARNING_PREFIX = "WARNING: "
-"""What an announcement of something that a proof has warned of begins with."""
+"""Start of an announcement about a warning from a proof."""
 
 
 class ProgramPass(NamedTuple):

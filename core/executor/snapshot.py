@@ -124,7 +124,7 @@ class StartAction(StrEnum):
 
 
 MDI_ACTIONS = frozenset({StartAction.MDI_LINE, StartAction.RETRACT})
-"""What is no run of the program."""
+"""Actions of Cycle Start that do not run the program."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,7 +55,7 @@ _JOINT_TOLERANCE_MM = 5 * JOIN_TOLERANCE_MM
 # mm of parts that may remain unused after the end of the path.
 _MAX_UNUSED_MM = 0.02
 ZSpan = tuple[float, float]
-"""From where to where along the way, mm."""
+"""Start and end of a span along the path, in mm."""
 _MIN_SPAN_MM = 0.001  # mm; half of what is visible on a workpiece
 _TOUCH = 1e-6  # mm; a line that is deeper than a wall by less is on the wall
 _INFINITE_MM = float("inf")

@@ -16,9 +16,9 @@ FULL_TURN_RAD = 2 * math.pi
 # the control's resolution of 1.27 µm.
 SAME_POINT_TOLERANCE_MM = 1e-6
 Point = tuple[float, float]
-"""X as a radius, Z; mm."""
+"""Point with X as a radius and Z, in mm."""
 BoundingBox = tuple[float, float, float, float]
-"""Least x, greatest x, least z, greatest z; mm."""
+"""Minimum X, maximum X, minimum Z and maximum Z, in mm."""
 # mm. Curves that are closer than this touch. Offsets of tangent elements have this accuracy, and a machine
 # cannot show a nanometer.
 TOUCH_TOLERANCE_MM = 1e-6

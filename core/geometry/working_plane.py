@@ -18,7 +18,7 @@ from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, compute_exac
 from core.geometry.virtual_mill import PlaneMove
 
 AxisOrder = tuple[int, int, int]
-"""Columns of X Y Z: the two that a plane lies in, from the first to the second, and the third."""
+"""Column indexes of X, Y and Z: the first and second axis of the plane, and the third axis."""
 
 XY_ORDER: AxisOrder = (0, 1, 2)
 YZ_ORDER: AxisOrder = (1, 2, 0)
@@ -166,12 +166,12 @@ class HelixMove:
 
 
 CurvedMove = HelixMove | PivotMove | PlaneMove
-"""A way on which the axes do not run in proportion, unless it is ``is_straight`` after all.
+"""Move on which the axes do not move proportionally, unless ``is_straight`` is True.
 
-All tell ``length`` (what the feed counts: mm, or ``is_feed_in_degrees`` where rotary axes are meant),
-``compute_machine_positions`` positions (k, axes) at fractions (k,) from 0 to 1, without a jump, where the
-tool is on the ``compute_workpiece_points`` (k, 3) at machine positions, and the fraction
-``get_critical_fraction`` to where the axes turn most for the way.
+``length`` is the length that the feed counts, in mm, or in degrees if ``is_feed_in_degrees``.
+``compute_machine_positions`` returns positions (k, axes) at fractions (k,) from 0 to 1, without jumps.
+``compute_workpiece_points`` returns the tool positions (k, 3) at machine positions.
+``get_critical_fraction`` returns the fraction at which the axes turn most per path length.
 """
 
 

@@ -23,7 +23,7 @@ _LATHE_AXES = 3
 
 
 PassFactory = Callable[[Setup], InterpreterPass]
-"""One more pass through a text that has been read."""
+"""Function that makes another interpreter pass through a program that has already been read."""
 
 
 def _omniturn(source: ProgramSource, strict: bool) -> PassFactory:
@@ -120,7 +120,7 @@ def _refusal(dialect: Dialect, setup: Setup) -> RejectedPass | None:
 
 
 DIALECT_NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
-"""What sentences call them."""
+"""Names of the program languages in messages."""
 
 
 @cache

@@ -29,7 +29,7 @@ _KINDS: Mapping[str, type | tuple[type, ...]] = {
     "whole": bool,
     "files": dict,
 }
-"""Keys of an entry, and what their values are."""
+"""Types of the values of an entry, by key."""
 
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 

@@ -74,7 +74,10 @@ class ProgramError(Exception):
 
 
 PROGRAM_STOP_ASSUMPTION = "axis position after a program stop"
-"""What rests on a place that a program has read behind a stop, where a hand may have moved the axes."""
+"""Assumption for an axis position that a program reads after a stop.
+
+An operator can jog the axes during the stop.
+"""
 
 
 def add_assumptions(finding: Diagnostic, *assumed: str) -> Diagnostic:

@@ -41,7 +41,7 @@ class Operation(NamedTuple):
 
 Formula = Number | Parameter | Operation
 INDEX_OPERATION = "indices"
-"""The operation that stands for several indices of one element; it has no value of its own."""
+"""Name of the operation for several indexes of one element. The operation has no value."""
 FUNCTION_OPERATIONS = {
     "SIN": "sine",
     "COS": "cosine",
@@ -53,7 +53,7 @@ FUNCTION_OPERATIONS = {
     "LN": "natural logarithm",
     "EXP": "exponential",
 }
-"""Functions that have the same name in every language."""
+"""Formula functions with the same name in every program language, by name."""
 
 
 def split_index(index: Formula) -> tuple[Formula, ...]:

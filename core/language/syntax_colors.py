@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 PLAIN_STATE = 0
-"""The state that a line hands on to the next where nothing goes on."""
+"""State that a line passes to the next line if no block or comment continues."""
 
 
 class SyntaxKind(StrEnum):

@@ -11,7 +11,7 @@ from core.key_declaration import KeyRange, Pair, declare_key, make_key_table
 _Table = TypeVar("_Table")
 RED, AMBER, GREEN, BUZZER = "lamp_red", "lamp_amber", "lamp_green", "lamp_buzzer"
 LAMP_NAMES = (RED, AMBER, GREEN, BUZZER)
-"""Outputs of [io.out] that the control lights by itself, where the machine file has them."""
+"""Outputs of [io.out] that the control switches automatically if the machine file defines them."""
 LAMP_PREFIX = "lamp_"
 BLINK_HALF_PERIOD_S = 0.5  # s that a blinking lamp is on, and off
 
@@ -116,4 +116,4 @@ MACHINE_SIGNALS = {
     "part": MachineSignal(AMBER, False, 0.5, (523, 659, 784), "PART FINISHED, NO CYCLE RUNNING"),
     "runs": MachineSignal(GREEN, False, 0.0, (), "CYCLE RUNNING"),
 }
-"""By the kind of what happens, as it is announced (MQTT, web hook) too."""
+"""Machine signal for each kind of event. The kind is also used in MQTT and web hook announcements."""

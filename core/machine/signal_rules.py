@@ -12,7 +12,7 @@ from core.secret_values import format_toml_value
 from core.table_schema import DriverDeclaration, FileFinding, FileValues, MachineFileReading
 
 DEVICE_PREFIXES = ("pendant.",)
-"""What begins the addresses at devices that an optional feature reads."""
+"""Prefixes of device addresses that optional features read."""
 
 # Codes of the language and the outputs they switch.
 REQUIRED_OUTPUTS = {

@@ -302,7 +302,7 @@ class MoveSeries(Protocol):
 
 
 BlockGroup = list[Any] | MoveSeries
-"""Blocks one by one, or a row."""
+"""Single blocks as a list, or a move series."""
 
 
 def split_into_batches(

@@ -22,14 +22,14 @@ IntArray = npt.NDArray[np.intp]
 RealArray = TypeVar("RealArray", FloatArray, npt.NDArray[np.float32])
 
 DEFAULT_COLUMNS = 900
-"""How many columns a field begins with at most; it may divide into twice as many."""
+"""Maximum number of columns with which a field begins. It can divide into up to twice as many."""
 DEFAULT_RAYS = 720
 
 _TOUCH = 1e-7  # mm; thinner material counts as none
 _SHOULDER_HEIGHT_MM = 0.05  # mm; a larger step between two fine columns is a shoulder
 _MIN_DIVISION_MM = 0.002  # mm; least distance of a division from the edge of a column
 ColumnEnds = tuple[float, float]
-"""Of a column: from and to which Z."""
+"""Start and end Z of a column."""
 
 
 class RemovedMaterial(NamedTuple):

@@ -21,7 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _TINY = 1e-12
 MAX_CHORD_ERROR_MM = 0.002
-"""How far a chord may lie off its curve, mm."""
+"""Maximum distance in mm between a chord and its curve."""
 _AXIS_TOLERANCE_MM = 1e-6  # mm
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
-"""Z and r, mm."""
+"""Point with Z and radius, in mm."""
 
 _FIRST_MODE = 1.8751**2  # constant of a beam clamped at one end
 _SOUND = 3.5e6  # mm/s, √(E/ρ) of brass; the value for steel and aluminum is 5.0e6

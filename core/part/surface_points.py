@@ -22,7 +22,7 @@ IntArray = npt.NDArray[np.intp]
 CellIndices = tuple[IntArray, IntArray]
 
 MISSING_RADIUS = np.float32(-1e6)
-"""r of a point that is not there, pixels: it falls out of every picture."""
+"""Radius of a missing point, in pixels. The point is outside every picture."""
 
 _SLOPE = 2.0  # slope between columns below which a step is a cone or an arc and not a shoulder
 _GAP = 0.7  # pixels

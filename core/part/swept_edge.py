@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
-"""Z and r, mm."""
+"""Point with Z and radius, in mm."""
 
 _UPRIGHT = 1e-9  # mm; a narrower side does not bound a column
 

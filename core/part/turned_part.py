@@ -19,13 +19,16 @@ from core.part.stock import Stock
 from core.part.swept_edge import Columns, FloatArray, Point
 
 DEFAULT_COLUMN_WIDTH_MM = 0.008
-"""Width of a column, mm, up to ``_MAX_COLUMNS`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
+"""Default column width in mm, for up to ``_MAX_COLUMNS`` columns.
+
+A shoulder is off by at most 0.004 mm (.00016 in).
+"""
 _MAX_COLUMNS = 40_000  # columns; 320 mm
 _TOUCH = 1e-6  # mm; thinner material counts as none
 _PROFILE_TOLERANCE_MM = 0.004  # mm of tolerance of a reported profile
 _STEEP_RATIO = 8.0  # column widths; a larger step between two columns is a shoulder
 ProfilePoints = list[tuple[float, float]]
-"""Z and r, mm, Z falling: from the face towards the chuck."""
+"""Points of Z and radius in mm, with Z falling from the face toward the chuck."""
 
 
 def simplify_polyline(points: FloatArray, tolerance: float) -> FloatArray:

@@ -31,7 +31,7 @@ _SHORTEST = 0.25  # mm
 _STRAIGHT = 0.006  # mm of r along a diameter, or of Z along a shoulder; profiles have a tolerance of 0.004
 _FAR = 6.35  # mm; features further apart are not matched
 FINE_COLUMN_WIDTH_MM = 0.001
-"""Width of a column of the part, mm, where parts are compared: a shoulder is off by .00002 in at most."""
+"""Column width in mm for comparing parts. A shoulder is off by at most .00002 in."""
 FEATURE_TOLERANCE_MM = 0.0012  # mm; smaller differences are ignored
 
 

@@ -28,7 +28,7 @@ _MATERIAL_CHECKS = frozenset(
     {"rapid-into-stock", "feed-into-holder", "holder-into-stock", "through-part", "neighbour-tool"}
 )
 MaterialRadii = tuple[FloatArray, FloatArray]
-"""Lowest and highest radius of each column's layers, mm."""
+"""Lowest and highest radius of the layers of each column, in mm."""
 _COPY_INTERVAL = 16  # initial number of blocks between two copies
 _MAX_COPIES = 96
 _MAX_BYTES = 96e6  # bytes of all copies

@@ -24,9 +24,10 @@ from core.proving.prove_program import ReportProgress, prove
 from core.proving.tip_moves import ProgramStep, StepConverter, TipMove
 
 MAX_MOVES = 50_000
-"""Of a longer program the part is made when somebody has said its stock: a million take half a minute.
+"""Number of moves above which the part is made only if the stock is specified.
 
-On the desk, where it would be in the way of a machine, never: ``part_history``.
+A million moves take half a minute. On the operator screen, long programs are never made because they would
+slow the machine: see ``part_history``.
 """
 
 _CHECK_INTERVAL = 200  # moves between two calls of ``check_canceled``
@@ -81,7 +82,7 @@ _WEAKER_CHECKS = {
     "drill-without-limit": {"no-speed-limit"},
     "arc-loop": {"arc-over-half"},
 }
-"""By check of the part: the warnings, found without the stock, that say the same with less certainty."""
+"""Warnings found without the stock, by the part check that reports the same problem with more certainty."""
 
 
 def _remove_weaker_findings(report: Iterable[Diagnostic], findings: Iterable[Diagnostic]) -> list[Diagnostic]:

@@ -74,7 +74,7 @@ class ProgramBranch:
 
 
 _Node = tuple[ProgramBranch, int]
-"""A way right before one of its forks; behind the last one, up to its end."""
+"""Branch and the index of a fork right after this point. After the last fork, it is the end of the branch."""
 
 
 def find_cycle_time_range(first_branch: ProgramBranch) -> ValueRange:
@@ -168,8 +168,11 @@ def _enclosing_subroutine(program: Program, line_index: int) -> int:
 
 MAX_BRANCHES = 400
 MAX_BRANCH_WORK = 200_000
-"""Blocks of all ways but the first together; three times those of the first where that is more. A motion from
-rest to rest is as much work as a hundred blocks."""
+"""Maximum work for all branches except the first, in blocks.
+
+The limit is three times the work of the first branch if that is more. A motion from rest to rest counts as
+100 blocks.
+"""
 
 _SPAN = 100
 

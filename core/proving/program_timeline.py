@@ -47,7 +47,7 @@ from core.proving.spindle_forecast import (
 
 
 BlockGroup = list[Block] | StraightMoveSeries
-"""Blocks one after the other that have come one by one, or as a series."""
+"""Consecutive blocks, either single or as a move series."""
 
 
 class PendingBlocks:
@@ -90,7 +90,7 @@ class PendingBlocks:
 
 
 TimedBlock = tuple[Block, float, float]
-"""A block with its start and end on the program's clock, s."""
+"""Block with its start and end time on the program clock, in seconds."""
 
 
 class MotionSpan(NamedTuple):

@@ -23,7 +23,10 @@ from core.proving.part_simulation import PartSimulation
 from core.proving.tip_moves import StepConverter, TipMove
 
 TOUCH_TOLERANCE_MM = 0.1
-"""mm of metal, in r and in Z, up to which a tool only touches the part: feed marks, the braking of a stop."""
+"""Depth of stock in mm, in radius and in Z, up to which a tool only touches the part.
+
+It allows for feed marks and the braking distance of a stop.
+"""
 
 SECOND_START_OFFSET_MM = (
     7.3  # mm, offset of a second start position, chosen to differ from all programmed positions
@@ -34,7 +37,7 @@ _MAX_MOVES = 60  # largest number of moves that are checked
 _JOG_DISTANCE_MM = 500.0  # mm, distance of a jog that moves a tool clear
 
 IterStartBlocks = Callable[[tuple[float, ...]], Iterable[Block]]
-"""The blocks of what is started, from these axis positions on, machine mm."""
+"""Function that returns the blocks of a start from these axis positions, in machine mm."""
 
 
 class CollisionBody(Enum):

@@ -17,7 +17,7 @@ from core.interpreter.shared.modal_state import ModalState
 from core.part.swept_edge import Point
 
 FAST_FEED_MM_S = 100 * 25.4 / 60
-"""mm/s; what moves by G94 at this or more goes to a place and cuts nothing."""
+"""Feed in mm/s from which a G94 move is positioning and does not cut."""
 
 _CHORD = 0.001  # mm of deviation from an arc
 _MOVE_PIECES = 16  # pieces of a move in a plane, which is curved in the axes
@@ -56,7 +56,7 @@ class TipMove(NamedTuple):
 
 
 MachineXZ = tuple[float, float]
-"""What brings X and Z of a block to its place from part zero, mm."""
+"""X and Z offset from block coordinates to part zero, in mm."""
 
 
 _ON_AXIS = 0.05  # mm
@@ -70,7 +70,9 @@ class LiveToolStep(NamedTuple):
 
 
 ProgramStep = TipMove | LiveToolStep | Block
-"""What the part sees of a program: a move of X and Z, one of a live tool, or a block that does not move."""
+"""Step of a program that the part sees: a tip move of X and Z, a live tool move, or a block without
+motion.
+"""
 
 
 class StepConverter:

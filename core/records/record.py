@@ -25,7 +25,7 @@ _LATEST = 250_000_000_000.0  # s since 1970, in the year 9892, near the end of P
 AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
 _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
 MAX_RECORD_BYTES = 512 * BYTES_PER_MB
-"""The most that a record may have, packed or unpacked; five minutes at 1 kHz have 50 MB."""
+"""Maximum size of a record in bytes, packed or unpacked. Five minutes at 1 kHz need 50 MB."""
 
 DEFAULT_VELOCITY_SPAN_S = 0.008  # s
 ACCELERATION_SPAN_S = 0.032  # s

@@ -18,7 +18,7 @@ from core.tool_edges import format_edge_name
 
 SCHEMA_CHANGED_MESSAGE = "the database schema differs from the schema that TurnDesk created"
 TABLES_USED_BY_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
-"""The tables of what programs are proved with."""
+"""Store tables with data used in proving programs."""
 _DEFAULT_REMEDY = "enter the data again, or restore a backup"
 _REMEDY = {
     "part_counts": "count the parts and enter the number, or restore a backup",

@@ -41,7 +41,10 @@ _MAX_MESSAGES = 1000  # SQLite reports damaged pages first
 _INDEX = re.compile(r"\bindex \S+$")
 _VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_checksums.KEY_COLUMNS)})\b"
 _REPAIRABLE_PATTERN = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
-"""What opening mends: an index is made anew from its table, and a value of a wrong type has no good sum."""
+"""Pattern of damage that opening a store repairs.
+
+An index is rebuilt from its table, and a value of the wrong type has no valid checksum.
+"""
 
 
 def load_migrations() -> tuple[str, ...]:

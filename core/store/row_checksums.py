@@ -32,7 +32,7 @@ KEY_COLUMNS = {
     "runs": "program",
     "part_features": "id",
 }
-"""What is looked through whenever a store is opened: tables, and the column that tells their rows apart."""
+"""Tables that are checked whenever a store is opened, with the column that identifies a row."""
 
 HISTORY_KEY_COLUMNS = {
     "offset_changes": "id",
@@ -50,11 +50,14 @@ HISTORY_KEY_COLUMNS = {
     "shared_versions": "id",
     "shared_here": "program",
 }
-"""What grows for years: looked at entry by entry when it is read, and as a whole by ``verify``."""
+"""Tables that grow for years, with the column that identifies a row.
+
+Each entry is checked when it is read, and ``verify`` checks the whole table.
+"""
 
 CHECKSUMMED_TABLES = KEY_COLUMNS | HISTORY_KEY_COLUMNS
 FIRST_CHECKSUM_VERSION = 11
-"""The version that brought sums."""
+"""Store version that introduced checksums."""
 
 _SINCE = dict.fromkeys(("runs", "part_features", *HISTORY_KEY_COLUMNS), 15) | dict.fromkeys(
     (

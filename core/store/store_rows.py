@@ -36,7 +36,7 @@ TOOL_HANDS = ("right", "left", "neutral")
 _ROUNDING = 1e-9  # in
 OFFSET_NUMBERS = range(1, 33)
 TOOL_ROW_NUMBERS = frozenset(make_row_number(tool, edge) for tool in OFFSET_NUMBERS for edge in EDGE_NUMBERS)
-"""Numbers of the tables of tools: T, and their further cutting edges."""
+"""Row numbers of the tool tables: the T numbers and their further cutting edges."""
 ZERO_CODES = range(54, 60)
 MILL_TOOL_NUMBERS = range(1, 1000)
 PRESET_NUMBERS = range(1, 100)  # preset 0 is specified in the machine file

@@ -150,4 +150,4 @@ MISSING_OBJECT_EFFECTS = {
     0x60C0: "interpolation sub-mode: the drive uses its own setting",
     0x60C2: "interpolation time: set this time to sync_ms with the drive vendor's software",
 }
-"""What it means that a drive has no such object, where it can be done without."""
+"""Effect of a missing optional drive object, by object index."""

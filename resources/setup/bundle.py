@@ -28,7 +28,10 @@ from resources.setup.packages.reproducible_archives import normalize_member
 from resources.setup.sbom import Component, build_sbom, build_system_component
 
 GLIBC_MINOR_VERSIONS = {"x86_64": 34, "aarch64": 39}
-"""The newest glibc, as 2.n, for which packages are taken: that of Qt's, which needs the newest."""
+"""Newest minor version n of glibc 2.n for which packages are selected, by processor.
+
+Qt needs the newest glibc.
+"""
 _OLD_NAMES = ("manylinux1", "manylinux2010", "manylinux2014")
 _TEXTS = Path("/usr/share/common-licenses")  # where Debian and Ubuntu have the licences that packages share
 _LICENCES = ("GPL-3", "LGPL-3")

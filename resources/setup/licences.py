@@ -32,7 +32,7 @@ COMPATIBLE = frozenset(
         *("LGPL-3.0-only", "MPL-2.0"),  # of a library that is used as it is and can be exchanged
     }
 )
-"""Licences, by their SPDX names, under which a package may be used by TurnDesk and passed on with it."""
+"""SPDX names of licenses under which TurnDesk may use a package and distribute it."""
 _NAMES = {
     "Apache 2.0": "Apache-2.0",
     "Apache License, Version 2.0": "Apache-2.0",

@@ -21,16 +21,16 @@ from typing import Any
 SETUP_FOLDER = Path(__file__).parent
 PROJECT_FOLDER = SETUP_FOLDER.parents[1]
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
-"""The versions of Python for which the packages are locked and tried."""
+"""Python versions for which the packages are locked and tested."""
 # The tests' first: what the others share with them has the same versions then.
 EXTRAS_BY_SET: dict[str, tuple[str, ...]] = {
     "tests": ("dev",),
     "desk": ("canopen", "shop", "postgresql"),
     "scheduler": ("scheduler",),
 }
-"""The locked files and the optional dependencies that are in them."""
+"""Optional dependencies in each locked file, by file."""
 INSTALLER_SET = "installer"
-"""The locked file of pip itself, which goes along where no network is."""
+"""Name of the locked file for pip itself, which is bundled for installation without a network."""
 _HEAD = """\
 # Python packages at the versions that were tested together, with the SHA-256 of every file of them.
 # Made from pyproject.toml by `python -m resources.setup.lock`; not to be changed by hand.

@@ -39,7 +39,7 @@ TEST_COMMANDS: Sequence[tuple[str, str]] = (
     ("the screen for 20 s", "QT_QPA_PLATFORM=offscreen timeout 20 turndesk --demo; test $? = 124"),
     ("the group for real-time priority", "getent group machine"),
 )
-"""What is tried after the installation and after the upgrade, as shell commands."""
+"""Shell commands that are tested after installation and after an upgrade, each with a description."""
 
 
 def build_earlier_package(package: Path, folder: Path) -> Path:

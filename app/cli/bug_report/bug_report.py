@@ -35,7 +35,7 @@ _MOST_BYTES = 200_000  # of a program, a machine file or a crash file
 _PACKAGES = ("PySide6-Essentials", "numpy", "pyqtgraph", "pyserial", "canopen", "python-can", "psycopg")
 _DISPLAY = ("XDG_SESSION_TYPE", "QT_QPA_PLATFORM", "LANG")
 _WITH_NAMES = ("who", "program", "person")
-"""Columns of the store that contain names of users and programs, in any table."""
+"""Columns of any store table that contain user names or program names."""
 
 
 class ReportPart(NamedTuple):

@@ -15,12 +15,12 @@ _COMMENTS = re.compile(
     r"[^\n]*?(?=(?:\s+(?:MM|INCH))?\s*$)",
     re.IGNORECASE | re.MULTILINE,
 )
-"""Comments, strings, structure lines and program names of the three languages."""
+"""Pattern of comments, strings, structure lines and program names in the three program languages."""
 _STRING = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'')
 _TABLE = re.compile(r"^\s*\[\[?\s*([\w.\"'-]+)")
 _TERMINAL = re.compile(r"[A-Za-z_:-]{0,8}\d[\w.:-]{0,8}")
 _NETWORK = ("sharing", "announce", "status_page", "mtconnect", "office", "http", "mqtt")
-"""Tables of the machine file in which every string may name a computer, a person or a folder."""
+"""Machine file tables in which any string can name a computer, a person or a folder."""
 
 
 def mask_program_texts(text: str) -> str:

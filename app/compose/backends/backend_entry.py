@@ -24,7 +24,7 @@ BACKENDS = {
     "grblhal": "grblhal_backend",
     "hal": "hal_backend",
 }
-"""By the word in machine.backend the module of this room with its ``BACKEND``."""
+"""Module in this package that defines BACKEND, by the value of machine.backend."""
 
 NO_PRIORITY_TEXT = (
     "without real-time priority"  # start of the warning for drives that need each setpoint on time

@@ -18,7 +18,10 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
 
 ProveLine = Callable[[str, Snapshot, ProgressCallback], tuple[Job, ProvedJob]]
-"""From a line and the machine as it stands to its job and its proof; called on the worker."""
+"""Function that makes the job and its proof from a line and the current machine snapshot.
+
+It is called on the worker thread.
+"""
 
 
 def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:

@@ -24,7 +24,7 @@ PROGRAM_EXTENSIONS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h",
 
 
 AcceptsName = Callable[[str], bool]
-"""Whether a file of this name is one of those that are wanted."""
+"""Function that returns whether a file with this name is to be included."""
 
 
 def is_program_name(name: str) -> bool:

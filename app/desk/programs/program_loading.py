@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 ApproachLegs = tuple[tuple[float, float, bool], ...]
-"""A path in machine X and Z, mm, with whether each leg is a rapid."""
+"""Path as legs of machine X in mm, machine Z in mm, and whether the leg is a rapid."""
 
 
 class FirstMoveResult(NamedTuple):

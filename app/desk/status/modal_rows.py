@@ -73,7 +73,7 @@ _RESET_CODES = {
     "distance": "G90",
     "feed": "G94",
 }
-"""What SINUMERIK has in force before the first block, and behind the end of a program."""
+"""Codes that are active in SINUMERIK before the first block and after the end of a program."""
 
 
 def _left_by_program(modal: ModalState) -> dict[str, str]:

@@ -22,12 +22,15 @@ from app.desk.background_work import describe_error
 from core.message import Message
 
 AUDIO_PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
-"""Programs that play a file: PipeWire's, PulseAudio's, ALSA's, that of macOS. The first that can does."""
+"""Commands that play a file with PipeWire, PulseAudio, ALSA or macOS.
+
+The first command that works is used.
+"""
 SAMPLE_RATE_HZ = 22_050  # Samples per second.
 TONE, RAMP = 0.2, 0.01  # Seconds of one tone, and of its ramp at the beginning and end.
 _PLAY_TIMEOUT_S = 10.0  # Seconds.
 PlaySound = Callable[[bytes], None]
-"""Plays a WAV file to its end. Raises OSError or ValueError with a sentence."""
+"""Function that plays a WAV file to its end. It raises OSError or ValueError with a complete sentence."""
 
 
 def make_tone_wav(frequencies_hz: Sequence[int], volume: int) -> bytes:

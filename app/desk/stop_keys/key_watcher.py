@@ -24,7 +24,10 @@ from app.desk.stop_keys.stop_records import (
 )
 
 STOP_KEY_CODES = {127: StopKind.HOLD, 78: StopKind.ESTOP}
-"""X's codes of Pause and Scroll Lock on the keyboard of a PC, whatever a layout makes of them."""
+"""X key codes of Pause and Scroll Lock on a PC keyboard, with the stop that each key triggers.
+
+The codes do not depend on the keyboard layout.
+"""
 
 
 class KeyWatcher:

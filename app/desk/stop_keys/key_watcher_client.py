@@ -16,7 +16,10 @@ from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, NO_FOCUS, FocusRec
 from core.process_environment import make_module_environment
 
 OpenStopChannel = Callable[[], socket.socket | None]
-"""Open a line to the control for stops; None where the control has none."""
+"""Function that opens a connection to the control for stops.
+
+It returns None if the control does not provide one.
+"""
 _END_TIMEOUT_S = 2.0  # Seconds.
 _MAX_SENT = 64  # Number of presses.
 

@@ -328,7 +328,7 @@ def _from_segment(p: tuple[float, float], a: tuple[float, float], b: tuple[float
 TrialFunction = Callable[
     [str, DrawingPlan, ProgressCallback], tuple[DrawingComparison | None, tuple[str, ...]]
 ]
-"""A program that was made of a drawing is proved, and its part held against it."""
+"""Function that proves a program made from a drawing and compares its part with the drawing."""
 
 
 def skip_trial(

@@ -23,7 +23,10 @@ from core.message import Message
 from core.store.store_rows import ToolRow
 
 LastStartReader = Callable[[str], tuple[str, dict[int, ToolRow]]]
-"""When a program was started last, and its tools as they were then; on the worker."""
+"""Function that returns the time of the last start of a program and its tools at that time.
+
+It is called on the worker thread.
+"""
 
 
 def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps) -> None:

@@ -190,7 +190,10 @@ class JobsFunction(PageFunction):
 
 
 ProveFunction = Callable[[str, ProgressCallback], ProvedJob]
-"""A program by its name, with the offsets of now; on the worker. Raises ValueError with a sentence."""
+"""Function that proves a program, given by name, with the current offsets.
+
+It is called on the worker thread and raises ValueError with a complete sentence.
+"""
 MAX_PROOFS = 20
 
 

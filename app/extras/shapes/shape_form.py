@@ -31,7 +31,7 @@ from core.extras.shapes.threads.thread_values import get_series, list_classes_fo
 from core.sketch import Sketch
 
 POINT_COLUMNS = ("X", "Z", "C", "R", "A")
-"""Of a point: diameter, Z, chamfer, radius, arc (+ by G02, − by G03)."""
+"""Column headings of a point: diameter, Z, chamfer, radius and arc (positive for G02, negative for G03)."""
 _PARTS = ("x", "z", "chamfer", "radius", "arc")
 _NAMES = frozenset("0123456789./#-MX")  # characters for the names of sizes
 _LONGEST = 24
@@ -387,7 +387,10 @@ def translate_choice(field: ShapeField, choice: str) -> str:
 
 
 ShowForm = Callable[[ShapeForm], str | None]
-"""Shows what a form has worked out, and returns the whole text; None when the form is no longer open."""
+"""Function that shows the calculated values of a form and returns the whole text.
+
+It returns None if the form is closed.
+"""
 
 
 class AddedForm(ABC):

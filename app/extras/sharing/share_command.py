@@ -450,4 +450,4 @@ OUTPUTS = (
     SHARE_KEEP_OUTPUT,
 )
 PRECEDING_COMMAND = "store verify --json"
-"""The command that the commands of this feature follow in the reference."""
+"""Command that precedes the commands of this feature in the command reference."""

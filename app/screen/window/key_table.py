@@ -62,7 +62,7 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_X, NO_MODIFIER): "X",
 }
 MENU_KEYS = {"J": "Step back"}
-"""Letters of the main menu that are called otherwise, by what they do where a part is played."""
+"""Main menu letters whose key has another name, with the name of its action during part playback."""
 REPEATING_KEYS = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
     | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step forward"}
@@ -72,7 +72,7 @@ _STOP_KEYS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}
 STOP_LETTERS = frozenset(_STOP_KEYS.values())
 NO_KEY = "No"  # N while a question is open, and its touch target. It only closes the question.
 AUTOMATIC_KEYS = frozenset({"A", "C", "O", "P", "S", "/"})
-"""Keys that change how a cycle runs: keys of the Automatic page alone."""
+"""Keys that change how a cycle runs. They work only on the Automatic page."""
 YES_KEY = "Yes"  # The key that means yes, and its touch target on the prompt line.
 # Signs that need Shift on some keyboards and not on others.
 _SIGN_KEYS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}

@@ -35,7 +35,10 @@ from core.interpreter.shared.elementary_blocks import Block, BlockKind, needs_sp
 from core.interpreter.shared.modal_state import ModalState
 
 PathMotion = SetpointMotion | ControllerMotion
-"""What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
+"""Source of motion for blocks from rest to rest.
+
+It is either TurnDesk's setpoints or a controller that plans the motion.
+"""
 
 _READ_AHEAD_BLOCKS = 400  # blocks read in one tick at most, so that a long program does not delay key presses
 _MAX_ACTIONS_PER_TICK = 50  # actions executed in one tick at most

@@ -31,7 +31,7 @@ _JUMPS: Mapping[str, tuple[bool, tuple[str, ...], int]] = {
     "break": (False, ("endwhile", "endrepeat", "while"), 1),
     "continue": (False, ("endwhile", "endrepeat", "while"), 0),
 }
-"""O words that jump: whether backward, to which of these keywords, and how many lines after it."""
+"""Jumps of O words: whether backward, the target keywords, and the number of lines after the target."""
 _KEYWORDS = frozenset({"if", "while", "repeat", "call"})
 
 

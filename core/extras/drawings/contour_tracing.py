@@ -16,7 +16,7 @@ from core.geometry.lines_and_arcs import Arc, BoundingBox, Element, Line, Point,
 from core.message import Message
 
 DEFAULT_GAP_MM = 0.02
-"""mm: ends nearer than this are joined."""
+"""Default distance in mm within which two ends are joined."""
 _AXIS = 1e-6  # mm
 _CELLS, _IN_A_CELL = 64, 8  # number of cells along Z for the search of ends; elements in one cell
 _SQUARE = 0.02  # cosine

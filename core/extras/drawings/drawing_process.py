@@ -19,7 +19,10 @@ _CHILD = "core.extras.drawings.drawing_child"
 _LOOK = 0.1  # s between two checks whether the drawing is still needed
 
 CancelCheck = Callable[[float], None]
-"""Called with the seconds that reading has taken; what it raises ends the process."""
+"""Function that receives the reading time so far, in seconds.
+
+Any exception that it raises ends the process.
+"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,14 +28,17 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
 _UNITS = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 13: 0.001, 14: 100.0}
-"""mm, by $INSUNITS."""
+"""Length of one drawing unit in mm, by the value of $INSUNITS."""
 _CENTRE = ("CENT", "CENTRE", "AXIS", "MITTE", "MITTEL", "ACHS", "EJE", "AXE", "CHAIN", "DASHDOT", "ISO04")
 _SOLID = {"3DFACE", "3DSOLID", "MESH", "BODY", "SURFACE", "REVOLVEDSURFACE", "EXTRUDEDSURFACE", "POLYMESH"}
 _FLAT = 1e-6  # units; largest distance from the drawing plane
 _DEEPEST = 16  # largest nesting depth of blocks
 
 ElementReader = Callable[[Any, float], Iterator[Element]]
-"""Of an entity, and how near arcs shall come to a curve."""
+"""Function that returns the elements of an entity.
+
+The second argument is the maximum deviation of the arcs from a curve.
+"""
 
 
 def read_dxf(path: Path, data: bytes) -> Drawing:

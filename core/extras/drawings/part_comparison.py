@@ -16,7 +16,10 @@ from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
 from core.geometry.lines_and_arcs import Arc, Element
 
 DEFAULT_TOLERANCE_MM = 0.02
-"""mm of a radius; less is what the steps of the control and of the drawing come to."""
+"""Default tolerance of the radius, in mm.
+
+Smaller differences come from the resolution of the control and the drawing.
+"""
 _STEP = 0.01  # mm along Z
 _WALL = 0.02  # mm, permitted shift of a shoulder
 _CHORD = 0.0005  # mm

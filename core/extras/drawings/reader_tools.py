@@ -23,7 +23,7 @@ class CurvePoint(NamedTuple):
 
 
 CurveFunction = Callable[[float], CurvePoint]
-"""By a parameter from 0 to 1."""
+"""Function that returns the curve point for a parameter from 0 to 1."""
 
 
 def fit_arcs(curve: CurveFunction, tolerance: float, min_pieces: int = 1) -> Iterator[Element]:

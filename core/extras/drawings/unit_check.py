@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from core.extras.drawings.contour_tracing import ElementGroup
 
 UNIT_SIZES_MM = {"MM": 1.0, "INCH": 25.4}
-"""The units that a user can choose, mm."""
+"""Units that a user can choose, each with its length in mm."""
 
 
 def detect_wrong_unit(

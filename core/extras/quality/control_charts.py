@@ -327,7 +327,10 @@ CONTROL_RULES: dict[int, tuple[str, Callable[[ZoneArray], Iterator[int]]]] = {
         lambda z: _runs(z, 8, lambda s: bool((np.abs(s) > 1.0).all())),
     ),
 }
-"""By Nelson's number: in words, and the points at which it is broken. 1, 5, 6 are Western Electric's too."""
+"""Nelson rules by number, each with its text and a function that finds the violations.
+
+Rules 1, 5 and 6 are also Western Electric rules.
+"""
 
 
 class QualityError(CodedError, ValueError):

@@ -75,7 +75,7 @@ CUTTING_DATA = {
     "TITANIUM": CuttingData(150, 35, 0.8, 0.02, 2200),
     "PLASTIC": CuttingData(800, 200, 1.5, 0.06, 300),
 }
-"""In the order in which they are offered."""
+"""Cutting data by material, in the order in which the materials are offered."""
 CONSERVATIVE_DATA = CuttingData(250, 45, 0.8, 0.02, 3200)  # conservative values for an unspecified material
 
 _SPEED = {

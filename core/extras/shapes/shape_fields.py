@@ -14,7 +14,7 @@ from core.part.tool_shape import ToolShape
 
 FieldValue = float | str
 FieldValues = Mapping[str, FieldValue]
-"""By the word of the field; lengths in the unit of the program, diameters as diameters."""
+"""Field values by field word. Lengths are in the program unit, and diameters are diameters."""
 ValueProposal = Callable[[FieldValues, "ProgramSettings"], FieldValue | None]
 
 

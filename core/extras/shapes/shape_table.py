@@ -67,7 +67,7 @@ CALCULATORS_BY_KEY: dict[str, Shape] = {
     "D": THREADING_TEMPLATE,
     "B": BAR_FEED_TEMPLATE,
 }
-"""Calculators and templates: forms that write lines without a comment."""
+"""Calculators and templates by key. These forms write lines without a comment."""
 
 SINUMERIK_CALCULATORS: dict[str, Shape] = {
     "T": TAPER_CALCULATOR,
@@ -81,7 +81,7 @@ SINUMERIK_CALCULATORS: dict[str, Shape] = {
 }
 
 CALCULATORS_BY_DIALECT = {Dialect.OMNITURN: CALCULATORS_BY_KEY, Dialect.SINUMERIK: SINUMERIK_CALCULATORS}
-"""By the language of the program."""
+"""Calculators and templates by key, for each program language."""
 
 
 def _labelled(shape: Shape) -> Shape:
@@ -108,7 +108,7 @@ SINUMERIK_SHAPES: dict[str, Shape] = {
 }
 
 SHAPES_BY_DIALECT = {Dialect.OMNITURN: SHAPES_BY_KEY, Dialect.SINUMERIK: SINUMERIK_SHAPES}
-"""By the language of the program."""
+"""Shape forms by key, for each program language."""
 
 _BY_NAME = {
     dialect: {shape.name: shape for shape in table.values()} for dialect, table in SHAPES_BY_DIALECT.items()

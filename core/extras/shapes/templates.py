@@ -115,7 +115,10 @@ SINUMERIK_HEAD_SHAPE = replace(
     write_lines=_sinumerik,
     fields=tuple(each for each in HEAD_SHAPE.fields if each.word != "RAPID"),
 )
-"""The same for a control that knows its rapid: zero offset, plane, unit of F too."""
+"""Program head for SINUMERIK, without a rapid speed.
+
+It sets the zero offset, the plane and the unit, including the unit of F.
+"""
 
 
 V60_DEPTH_FACTOR = 0.6134  # depth of a 60-degree thread in pitches, ISO 68-1

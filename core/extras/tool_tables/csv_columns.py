@@ -10,7 +10,7 @@ from core.extras.tool_tables.tool_entry import DIAMETER_FIELD, TABLE_FIELDS
 
 NUMBER, X_DIAMETER, NOSE_DIAMETER = "number", "x_diameter", "nose_diameter"
 FIELD_NAMES = (NUMBER, *TABLE_FIELDS, DIAMETER_FIELD, X_DIAMETER, NOSE_DIAMETER)
-"""The fields that a column can have; ``x`` with the option for X, ``x_diameter`` always as a diameter."""
+"""Fields that a column can have. ``x`` follows the option for X, and ``x_diameter`` is always a diameter."""
 
 # Names without their unit, in lower case, without blanks and signs.
 _NAMES: Mapping[str, Sequence[str]] = {

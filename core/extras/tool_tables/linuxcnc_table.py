@@ -14,7 +14,7 @@ from core.message import Message
 from core.store.store_rows import FieldValue
 
 QUADRANT_BY_ORIENTATION = {1: 4, 2: 3, 3: 2, 4: 1, 5: 5, 6: 8, 7: 7, 8: 6, 9: 9}
-"""Tip quadrant by orientation Q."""
+"""TurnDesk tip quadrant by the LinuxCNC tool orientation Q."""
 ORIENTATION_BY_QUADRANT = {quadrant: orientation for orientation, quadrant in QUADRANT_BY_ORIENTATION.items()}
 
 _LENGTHS = {"X": "x", "Z": "z", "D": DIAMETER_FIELD}

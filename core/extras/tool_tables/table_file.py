@@ -32,7 +32,7 @@ FORMATS: Mapping[str, TableFormat] = {
     "mach": TableFormat("Mach tool table", (".dat",), csv_table.read_tools),
     "csv": TableFormat("CSV", (".csv", ".txt", ".tsv"), csv_table.read_tools),
 }
-"""The formats that can be read, by the word of the option --from."""
+"""Readable table formats, by the value of the option --from."""
 
 
 def find_format(name: str) -> str:

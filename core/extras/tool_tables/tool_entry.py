@@ -31,9 +31,12 @@ TABLE_FIELDS: Mapping[str, RowField] = {
     **{name: FIELDS_BY_KIND[OffsetKind.TOOL][name] for name in OFFSET_FIELDS},
     **FIELDS_BY_KIND[OffsetKind.SHAPE],
 }
-"""The fields that a table can set. Wear and the master mark are never imported."""
+"""Fields that a tool table can set. Wear and the master mark are never imported."""
 DIAMETER_FIELD = "d"
-"""The pseudo field D: the nose diameter of a turning tool, or the diameter of a rotating tool, in mm."""
+"""Name of the pseudo field D.
+
+It holds the nose diameter of a turning tool or the diameter of a rotating tool, in mm.
+"""
 
 MM_PER_UNIT = {"in": MM_PER_INCH, "mm": 1.0}
 _MOST_SHOWN = 10  # mistakes in one error text

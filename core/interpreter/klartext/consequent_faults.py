@@ -59,7 +59,10 @@ _ALL_CODES = _TOOL_CODES | _PATH_CODES | _CYCLE_CODES | _PLANE_CODES | _VALUE_CO
 _MISSING_CODES = frozenset(
     {NOT_SUPPORTED, M_FUNCTION_UNDEFINED, TOOL_UNKNOWN, CYCLE_UNKNOWN, PROBE_MISSING, FILE_MISSING}
 )
-"""What control, machine or shop lacks: the same wherever it stands, so it is told at its first place."""
+"""Codes for functions, tools and files that the control or machine does not have.
+
+These errors do not depend on the line and are reported only at the first place.
+"""
 
 _SPINDLE = frozenset({3, 4, 13, 14})
 _CALLS = frozenset({89, 99})  # M functions that call a cycle

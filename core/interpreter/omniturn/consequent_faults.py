@@ -29,7 +29,7 @@ _SETS = (
     (r"G35", frozenset({"thread-lead-range", "coarse-order"})),
     (r"M1[23]", frozenset({"collet-open"})),
 )
-"""Words of a refused line, and the errors of later lines that may follow from it."""
+"""Patterns of words on a rejected line, with the errors that can follow on later lines."""
 
 
 class ConsequentFaultFilter:

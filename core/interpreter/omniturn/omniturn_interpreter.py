@@ -104,7 +104,10 @@ def _first_line(program: Program, log: DiagnosticLog, *, block_delete: bool) -> 
 
 _LOOKAHEAD_LINES = 8
 LONG_PROGRAM_LINE_COUNT = 200
-"""Lines from which on moves are made in series where there is no loop either; fewer gain nothing."""
+"""Minimum number of lines for which moves are made in series without a loop.
+
+Shorter programs gain nothing.
+"""
 
 
 class Interpreter(InterpreterPass):

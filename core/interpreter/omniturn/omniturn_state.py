@@ -63,7 +63,7 @@ class ContourState:
 
 
 HIGH_FEED_MM_PER_REV = 0.05 * MM_PER_INCH * (1 + 1e-9)
-"""Feed, mm/rev, above which F003 was hardly meant and F.003 was."""
+"""Feed in mm/rev above which F003 was probably a mistake for F.003."""
 
 
 class State:

@@ -12,8 +12,11 @@ from core.language.omniturn.plane_switching_lines import PlaneLine
 from core.message import Message, fill_template
 
 PlainMove = tuple[float | None, float | None, float | None, int, bool]
-"""A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
-whether one of the numbers has a fifth decimal. Most lines of a long program."""
+"""Line of G00 or G01 with at most X, Z and F, as most lines of a long program.
+
+It contains X, Z and F as written, then 0 or 1 for the code (-1 if absent), and whether any number has a
+fifth decimal.
+"""
 
 _ARC, _LOCK, _MODE = ActionKind.ARC, ActionKind.SPINDLE_LOCK, ActionKind.MODE  # Read for every line.
 _FEED, _LIMIT = FMeaning.FEED, SMeaning.SPEED_LIMIT
@@ -122,7 +125,7 @@ class Statement:
 
 
 ExecutableLine = PlainMove | Statement | None
-"""A line to run: a move of plain numbers, anything else, or nothing at all."""
+"""Line to execute: a plain move, another statement, or None for a line without content."""
 
 # --- reading: sort the words of a line and reject conflicts
 

@@ -25,8 +25,11 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 FEED, THREAD, STILL, FACE, SIDE, PER_REV, REVERSE = 1, 2, 4, 8, 16, 32, 64
-"""Bits of ``move_kind``: it feeds; it is a thread; C is held while it moves; it mills the face or the side;
-it feeds by the revolution; the spindle turns as M04. None of them: a rapid."""
+"""Bits of ``move_kind``.
+
+They mean feed move, thread, stationary C axis, face milling, side milling, feed per revolution, and spindle
+direction M04. A rapid has no bit set.
+"""
 
 SAME_POINT_MM = 1e-5  # mm
 _TOLERANCE_MM = 0.05  # mm

@@ -17,7 +17,10 @@ from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 
 MAX_VISIT_COUNT = 20_000
-"""Visits that are told apart; more are made by nobody who wants to go on in one of them."""
+"""Maximum number of visits of a line that restart distinguishes.
+
+A line with more visits cannot be chosen by visit number.
+"""
 
 _PROGRESS_INTERVAL = 2000
 

@@ -75,7 +75,10 @@ class FlowLevel(NamedTuple):
 
 
 FlowPosition = tuple[FlowLevel, ...]
-"""The main program, then each call in it that is under way; empty: the main program, and no loop."""
+"""Flow levels from the main program to the active call.
+
+An empty tuple means the main program outside any loop.
+"""
 
 
 class Checkpoint(NamedTuple):
@@ -145,7 +148,7 @@ class FunctionStep(NamedTuple):
 
 
 ApproachStep = StraightLeg | AxesLeg | CAxisMove | FunctionStep
-"""What leads from where the slides stand to where a program goes on."""
+"""Step of the approach from the current axis positions to the restart point."""
 
 
 class PassStart(NamedTuple):

@@ -83,7 +83,7 @@ class AdjustedMoveFactory(ABC):
 
 STRAIGHT_KINDS = frozenset({BlockKind.RAPID, BlockKind.FEED})
 CONTOUR_KINDS = STRAIGHT_KINDS | {BlockKind.ARC}
-"""What may meet in a corner, and what a nose can be beside."""
+"""Block kinds that can meet in a corner and that nose compensation can follow."""
 
 # --- corners
 

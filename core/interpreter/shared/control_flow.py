@@ -10,7 +10,7 @@ from core.language.diagnostics import Diagnostic
 from core.message import Message
 
 ENDLESS_LOOP_CODE = "endless-loop"
-"""The code of a loop that never ends, in every language."""
+"""Error code of an endless loop, in every program language."""
 
 RoutineType = TypeVar("RoutineType")
 

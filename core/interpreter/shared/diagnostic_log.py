@@ -14,11 +14,17 @@ MAX_FINDINGS_PER_KIND = 100
 MAX_REPEAT_COUNT = 10_000
 
 REPEATABLE_CODES = frozenset({"finer-than-step", "dwell-too-short", "comment-in-loop", "n-word"})
-"""What is wrong in the same way in line after line: told once, where it is first, with its count."""
+"""Codes of findings that recur on many lines.
+
+Each is reported once, at its first line, with the number of occurrences.
+"""
 
 _STYLE_CODES = frozenset({"g-digits", "m-digits", "tool-number", "g-unknown", "m-unknown", "unknown-letter",
     "other-control", "character", "comma", "letter-o", "letter-l"})  # fmt: skip
-"""Habits of an author: from ``_FEW`` on of one form, they are one finding with its count."""
+"""Codes of programming habits.
+
+From ``_FEW`` findings of the same form on, they are reported as one finding with a count.
+"""
 
 _FEW = 5
 _DIGITS = re.compile(r"[0-9.]+")

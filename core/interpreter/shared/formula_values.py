@@ -11,7 +11,7 @@ from core.language.formulas import Formula, Number, Operation, Parameter
 from core.message import Message
 
 MissingValueFactory = Callable[[int, str], ProgramError]
-"""Makes the error to raise of the column at which an operation stands and of why it has no value."""
+"""Function that makes the error for an operation without a value, from its column and the reason."""
 
 
 def compute_formula(
@@ -106,4 +106,4 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "smaller": min,
     "larger": max,
 }
-"""What each operation of a formula does; angles in degrees."""
+"""Function of each formula operation, by name. Angles are in degrees."""

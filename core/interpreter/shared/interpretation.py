@@ -19,13 +19,13 @@ from core.message import Message
 
 MAX_BLOCK_COUNT = 5_000_000
 MAX_LINE_COUNT = 10_000_000
-"""More of either is made by no program that anybody means to run."""
+"""Maximum number of executed lines in a program. No usable program has more."""
 
 MAX_LINE_COUNT_WITHOUT_BLOCK = 200_000
-"""A loop that reckons so long and moves nothing never ends."""
+"""Number of lines without motion after which a loop is treated as endless."""
 
 MAX_CALL_DEPTH = 16
-"""Subroutines that may call each other in a chain."""
+"""Maximum depth of nested subroutine calls."""
 
 
 class ToolUsage:

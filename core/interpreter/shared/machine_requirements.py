@@ -32,7 +32,7 @@ SPINDLE_ORIENTATION = "orient"
 PLANE_SWITCHING = "plane"
 ADDITIONAL_AXES = "axes"
 BUILDER_M_PREFIX = "M"
-"""Before the number of an M function that nothing on this machine answers."""
+"""Prefix of the number of an M function that this machine does not implement."""
 
 _WORDS = {
     ARC_MOTION: "arcs",

@@ -88,7 +88,7 @@ from core.message import Message
 
 _PROGRAM_END_CODES = frozenset({2, 17, 30})
 _LINES_AFTER_ERROR = 20_000
-"""Lines that are gone through behind the first error, for others that it may hide."""
+"""Number of lines that are checked after the first error, to find errors that it hides."""
 
 
 class Interpreter(LinePass[LexedBlock]):

@@ -38,7 +38,7 @@ _CONTOUR_CYCLES = frozenset(range(20, 30)) | {39}  # contour cycles, which also 
 _TEXT_CYCLES = frozenset({12, 14})  # cycles whose lines name a program or labels
 _PRESET, _PRESET_NUMBER = 247, 339
 PREDEFINED_WORD = "PREDEF"
-"""What a parameter of a cycle holds that GLOBAL DEF has told."""
+"""Value of a cycle parameter that GLOBAL DEF defines."""
 _DATUM, _MIRROR, _ROTATION, _SCALE = 7, 8, 10, 11
 
 
@@ -309,7 +309,7 @@ REQUIRED_PATTERN_WORDS = {
     "CIRC": ("X", "Y", "D", "NUM"),
     "PITCHCIRC": ("X", "Y", "D", "STEP", "NUM"),
 }
-"""The words that each form needs."""
+"""Words that each pattern form requires."""
 
 
 def read_pattern_definition(cursor: LineCursor, column: int) -> PatternDefinition:

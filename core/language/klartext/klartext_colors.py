@@ -44,7 +44,7 @@ _TO_BLANK = re.compile(r"\S*")
 
 
 BLOCK_GOES_ON, COMMENT_GOES_ON = 1, 2
-"""What a line that ends with ~ hands on to the next."""
+"""States that a line ending with ~ passes to the next line, for a block or a comment that continues."""
 
 
 def color_line(text: str, state_before: int = PLAIN_STATE) -> tuple[list[ColoredSpan], int]:

@@ -117,4 +117,4 @@ CYCLE_ALTERNATIVES: Mapping[int, str] = {
     **dict.fromkeys((230, 231, 232, 233), _FACE),
     **dict.fromkeys((262, 263, 264, 265, 267), _THREAD),
 }
-"""What to use instead of a cycle that is refused by its number."""
+"""Replacements for unsupported cycles, by cycle number."""

@@ -125,7 +125,7 @@ def parse_line(number: int, text: str) -> KlartextLine:
 
 
 CONTINUATION_SIGN = "~"
-"""Ends a line whose block goes on in the next one; it stands behind the comment where there is one."""
+"""Sign that ends a line if its block continues on the next line. It follows any comment."""
 
 
 def _node(cursor: LineCursor) -> Node | None:

@@ -67,7 +67,7 @@ _FORMS = {
     "DEP PLCT": _Form((*_POLAR, "R"), ("R",)),
 }
 PATH_FORMS = tuple(_FORMS)
-"""Every path function by the words that it begins with."""
+"""All path functions, each as the words at the start of its line."""
 
 _KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|[NT][XYZ]|R)(?=\s*[+\-0-9.,Q])")
 

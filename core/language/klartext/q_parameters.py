@@ -36,10 +36,10 @@ _PARAMETER = re.compile(r"(Q[LR]?)\s*([0-9]{1,4})(?![0-9])")
 _TIMES, _POWER = 40, 60
 
 MAX_FEED_VALUE = 99999.0
-"""A feed of a cycle from which on it is a rapid; FMAX is written so too."""
+"""Cycle feed at or above which the control uses rapid traverse. FMAX is also stored as this value."""
 
 TOOL_FEED_VALUE = -1.0
-"""FAUTO in a cycle: the feed of the last TOOL CALL."""
+"""Value of FAUTO in a cycle. It means the feed of the last TOOL CALL."""
 
 KLARTEXT_GRAMMAR = FormulaGrammar(
     number_pattern=re.compile(rf"{NUMBER_PATTERN}(?:E[+-]?[0-9]{{1,3}})?"),
@@ -70,10 +70,10 @@ KLARTEXT_GRAMMAR = FormulaGrammar(
         "AUTO": TOOL_FEED_VALUE,
     },
 )
-"""Formulas behind ``Qn =``."""
+"""Grammar of formulas after ``Qn =``."""
 
 MAX_PARAMETER_NUMBERS = {"Q": 1999, "QL": 499, "QR": 499}
-"""The highest number of each kind of parameter."""
+"""Highest number of each kind of Q parameter."""
 
 _EQUALS = re.compile(r"=")
 _COLON = re.compile(r":?")
@@ -93,7 +93,7 @@ _TEXT_PARAMETER = re.compile(r'"|QS')
 _TEXT_FUNCTIONS = re.compile(r"(?:TONUMB|INSTR|STRLEN|STRCOMP)(?![A-Z])")
 _FREE_TABLE_FUNCTIONS = frozenset({26, 27, 28})
 CONDITION_OPERATOR = "?"
-"""Behind the letters of a parameter: 1 where it has a value, else 0."""
+"""Suffix of a parameter kind in a condition. The condition is 1 if the parameter has a value, otherwise 0."""
 _IGNORED_FUNCTIONS = {15: "PRINT", 16: "F-PRINT", 38: "SEND"}
 _MACHINE_BUILDER_FUNCTIONS = {
     19: "PLC (sends values to the machine builder's PLC)",

@@ -10,7 +10,7 @@ from core.language.omniturn.plane_switching_lines import is_program_end, lex_pla
 from core.language.syntax_colors import PLAIN_STATE, ColoredSpan, SyntaxKind
 
 PLANE_STATE = 1
-"""The state that a line within a switched plane hands on."""
+"""State that a line within a switched plane passes to the next line."""
 
 _KIND_BY_LETTER = {
     **dict.fromkeys(("G", "M"), SyntaxKind.CODE),

@@ -7,10 +7,10 @@ from typing import NamedTuple
 from core.language.diagnostics import Diagnostic
 
 WHOLE_NUMBER_LETTERS = frozenset({"T", "D", "P", "LS", "}"})
-"""Words whose number counts something: whole and unsigned."""
+"""Words whose value is a count, which must be whole and unsigned."""
 
 LETTERS_WITHOUT_NUMBER = frozenset({"LF", "RF", "P", "C", "O"})
-"""Words that may stand without a number."""
+"""Words that can have no number."""
 
 VALUE_RANGES: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("X", "Z", "I", "K", "U", "A", "R", "C"), (-10_000.0, 10_000.0)),
@@ -26,7 +26,7 @@ VALUE_RANGES: dict[str, tuple[float, float]] = {
     "G": (0.0, 99.0),
     "M": (0.0, 99.0),
 }
-"""Words of the language, and between what their numbers must lie in any unit."""
+"""Words of the OmniTurn language, with the lowest and highest value in any unit."""
 
 
 class Word(NamedTuple):

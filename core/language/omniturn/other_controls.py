@@ -13,7 +13,7 @@ from core.language.line_reading import describe_typographic_character
 from core.message import Message
 
 CODE_LIST_HINT = "For the list of codes, press Shift+F1 in the editor."
-"""The remedy where no other one can be named; in the editor, Shift+F1 opens the list."""
+"""General remedy if TurnDesk has no other. Shift+F1 opens the list of codes in the editor."""
 
 _EQUIVALENTS: dict[str, tuple[str, str]] = {
     "G05": ("This control has no code for high-speed modes.", "Remove this text from the program."),
@@ -188,7 +188,7 @@ _CONTROL_MARKERS = (
     ("Mach", re.compile(r"G9[01]\.1|M1030")),
     ("Haas", re.compile(r"G154|G187|G103|M97P[0-9]{2,}|G53G0*X0")),
 )
-"""One of these forms is enough."""
+"""Patterns by name of control, of which one match identifies the control."""
 
 _FANUC = (
     re.compile(r"^[O:][0-9]{1,8}$"),
@@ -201,7 +201,7 @@ _FANUC = (
     re.compile(r"#[0-9]+|\["),
     re.compile(r"G[0-3](?![0-9])"),
 )
-"""Forms of the Fanuc language; one alone may be a slip."""
+"""Patterns of the Fanuc language. A single match can be a typing error, so two patterns must match."""
 
 
 def recognize_control(lines: Sequence[str]) -> Diagnostic | None:

@@ -47,7 +47,10 @@ SINUMERIK_GRAMMAR = FormulaGrammar(
     negation_precedence=90,
     has_index=True,
 )
-"""Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""
+"""Grammar of formulas after ``=``, in brackets of a target, and in conditions.
+
+Comparisons have the lowest precedence.
+"""
 
 
 def parse_formula(text: str, index: int) -> tuple[Formula, int]:
@@ -60,7 +63,7 @@ def parse_formula(text: str, index: int) -> tuple[Formula, int]:
 
 
 LIST_SEPARATOR = re.compile(r"\s*([,)])")
-"""A comma or the closing parenthesis behind an item."""
+"""Pattern of a comma or closing parenthesis after a list item."""
 
 _Item = TypeVar("_Item")
 

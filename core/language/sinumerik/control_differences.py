@@ -13,7 +13,7 @@ from core.language.sinumerik.sinumerik_words import LexedBlock, Word
 
 FULL_CONTROL = "840d"
 CONTROL_NAMES = ("802d", "808d", "828d", FULL_CONTROL)
-"""Names in the machine file."""
+"""Names of the SINUMERIK controls in the machine file."""
 
 _STRUCTURES = """
     ELSE ENDIF CASE WHILE ENDWHILE FOR ENDFOR LOOP ENDLOOP UNTIL GOTOS EXTERN SETAL GROUP_BEGIN GROUP_END
@@ -34,7 +34,7 @@ MISSING_FUNCTIONS: Mapping[str, frozenset[str]] = {
     "828d": frozenset(),
     FULL_CONTROL: frozenset(),
 }
-"""By control, what it has not and this one has."""
+"""Functions that a control does not have but TurnDesk does, by control name."""
 
 
 def find_missing_function(control: str, line: LexedBlock) -> tuple[str, int] | None:

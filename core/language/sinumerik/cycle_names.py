@@ -38,7 +38,10 @@ CYCLE_PARAMETERS: Mapping[str, tuple[str, ...]] = {
         "HOLES2": "CPA CPO RAD STA1 INDA NUM",
     }.items()
 }
-"""Parameters as the maker's manuals name them, in the order of the call; what begins with _ is newer."""
+"""Names of the cycle parameters as in the manuals, in call order.
+
+Names that begin with _ are from newer cycles.
+"""
 
 _MASK = (
     "newer controls generate this cycle from an input form, and the coding of its "
@@ -59,11 +62,14 @@ UNSUPPORTED_CYCLES: Mapping[str, str] = {
     **dict.fromkeys((f"CYCLE{number}" for number in (*range(971, 980), *range(994, 999), 982, 9960)), _PROBE),
     **dict.fromkeys(("CYCLE806", "CYCLE996"), _SWIVEL),
 }
-"""Standard cycles that this control refuses, with what to do instead."""
+"""Standard cycles that this control rejects, with the replacement."""
 
 SWIVEL_CYCLE = "CYCLE800"
 IGNORED_CYCLES: Mapping[str, str] = {
     SWIVEL_CYCLE: "this lathe has no swivel position to reset",
     "CYCLE832": "the path is followed exactly, regardless of the tolerance",
 }
-"""Standard cycles that change nothing here, and why; CYCLE800 with its brackets empty alone."""
+"""Standard cycles that do nothing on this control, with the reason.
+
+CYCLE800 is ignored only with empty parentheses.
+"""

@@ -179,7 +179,10 @@ _RULES: tuple[_Rule, ...] = (
     (re.compile(rf"{_g('1')}.*?(?<![A-Z])(?P<word>(?P<letter>R)(?P<number>{SIGNED_NUMBER}))"), _corner),
     (re.compile(rf"(?<![A-Z0-9_])(?P<word>(?P<letter>[UW])(?P<number>{SIGNED_NUMBER}))"), _distance),
 )
-"""The first that fits a line is told. They are asked of lines alone that cannot be read as they stand."""
+"""Rules for words of the ISO dialect, used only for lines that SINUMERIK cannot read.
+
+The first rule that matches is reported.
+"""
 
 
 def find_iso_word(code: str) -> IsoWord | None:

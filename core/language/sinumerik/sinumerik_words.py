@@ -106,35 +106,35 @@ AXIS_NAMES = ("X", "Y", "Z", "C")
 G_GROUPS: dict[int, str] = {
     int(name[1:]): group for name, group in GROUP_BY_FUNCTION.items() if name[0] == "G" and name[1:].isdigit()
 }
-"""G codes of this control by the group in which each excludes the others."""
+"""G codes by number, each with its group. Codes in a group exclude each other."""
 
 NAMED_GROUPS: dict[str, str] = {
     name: group for name, group in GROUP_BY_FUNCTION.items() if name[0] != "G" or not name[1:].isdigit()
 }
-"""Functions that have a name, by their group."""
+"""Named functions, each with its group."""
 
 MAX_M_FUNCTION_COUNT = 5
 
 ARC_WORDS = frozenset({"I", "J", "K", "CR", "AR", "I1", "K1"})
 CORNER_WORDS = frozenset({"CHF", "CHR", "RND"})
 ADDRESS_LETTERS = frozenset({"G", "M", "X", "Y", "Z", "C", "I", "J", "K", "F", "S", "T", "D"})
-"""Words that may stand without =."""
+"""Address letters that do not need an equals sign."""
 
 POSITION_WORDS = frozenset({"X", "Y", "Z", "C", "RP", "AP", "ANG"})
-"""Words that move, or turn, something."""
+"""Words that program a position or an angle."""
 
 SPINDLE_WORDS = frozenset({"SETMS", "WAITS"})
-"""Words that take the number of a spindle in brackets."""
+"""Words with a spindle number in parentheses."""
 
 WORDS_WITH_VALUE = VALUE_WORDS - SPINDLE_WORDS
-"""Words that take a value behind =."""
+"""Words with a value after an equals sign."""
 
 FRAME_WORDS = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"})
 NAMED_FUNCTIONS = frozenset(NAMED_GROUPS)
-"""Words without a value."""
+"""Named functions without a value."""
 
 WORDS_WITHOUT_EQUALS = NAMED_FUNCTIONS | SPINDLE_WORDS
-"""Words that no equals sign can follow."""
+"""Words that an equals sign cannot follow."""
 
 TARGET_FORMS = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 FORMS_BY_WORD: dict[str, frozenset[str]] = {
@@ -142,10 +142,10 @@ FORMS_BY_WORD: dict[str, frozenset[str]] = {
     **dict.fromkeys(("I", "J", "K"), frozenset({"AC"})),
     **dict.fromkeys(("RP", "AP"), frozenset({"AC", "IC"})),
 }
-"""Which words take a target in brackets."""
+"""Target forms that a word can have in brackets, by word."""
 
 VOCABULARY = ADDRESS_LETTERS | WORDS_WITH_VALUE | NAMED_FUNCTIONS | SPINDLE_WORDS
-"""Words that are no variable of the program."""
+"""Words that cannot be names of program variables."""
 
 VALUE_RANGES: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("X", "Y", "Z", "X1", "Z1", "RP"), (-100_000.0, 100_000.0)),
@@ -165,7 +165,7 @@ VALUE_RANGES: dict[str, tuple[float, float]] = {
     "D": (0.0, 9.0),
     "R": (-1e9, 1e9),
 }
-"""Between what a number must lie to be meant at all."""
+"""Lowest and highest value of each word."""
 
 MAX_R_NUMBER = 299
 UNSUPPORTED_LETTERS = {
@@ -181,13 +181,13 @@ UNSUPPORTED_LETTERS = {
         "write a radius as CR= and a rounding as RND="
     ),
 }
-"""Letters that a program of the trade may hold, and what to do about them here."""
+"""Letters that a program can contain but this control does not support, with the reason or remedy."""
 
 UNSUPPORTED_NAMES = UNSUPPORTED_WORDS.keys() - WORDS_WITH_VALUE
-"""Names of the language that are no subprograms, and that this control does not execute."""
+"""Names in the SINUMERIK language that are not subprograms and that this control does not execute."""
 
 UNSUPPORTED_REASONS = UNSUPPORTED_WORDS
-"""What to do instead."""
+"""Reason or remedy for each unsupported word."""
 
 
 INTERNAL_AXIS_NAME = "C"

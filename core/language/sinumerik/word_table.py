@@ -73,7 +73,7 @@ _NAMES_BY_GROUP = {
 GROUP_BY_FUNCTION: Mapping[str, str] = {
     name: group for group, names in _NAMES_BY_GROUP.items() for name in names.split()
 }
-"""G functions and words without a value, with the group in which each excludes the others."""
+"""G functions and words without a value, each with its group. Members of a group exclude each other."""
 
 _WORDS = """
     X Y Z C X1 Z1 FP I J K CR AR I1 K1 RP AP ANG CHF CHR RND RNDM FRC FRCM F FB OVR
@@ -83,7 +83,7 @@ VALUE_WORDS = frozenset(_WORDS.split())
 """Words with a value."""
 
 M_FUNCTIONS = frozenset({0, 1, 2, 30, 17, 3, 4, 5, 19, 70, 6, 7, 8, 9, *range(40, 46)})
-"""M functions; the machine file adds its own."""
+"""M functions of the language. The machine file adds others."""
 
 _WITHOUT_EFFECT = {
     "on this control, F always applies to the path of the tool tip": "CFC CFIN",
@@ -105,4 +105,4 @@ _WITHOUT_EFFECT = {
 INEFFECTIVE_WORDS: Mapping[str, str] = {
     name: why for why, names in _WITHOUT_EFFECT.items() for name in names.split()
 }
-"""Functions and words that have no effect on this control, with the reason that a note states."""
+"""Functions and words that have no effect on this control, with the reason for the note."""

@@ -24,7 +24,7 @@ from core.proving.tip_moves import TipMove
 from core.tool_edges import format_edge_name
 
 NEAR_MATERIAL_MM = 2.0
-"""mm; further from all metal than that is in the air."""
+"""Distance in mm from all stock above which the tool is in the air."""
 
 _AIR_TIME, _AIR_WAY = 5.0, 5.0  # s, mm
 _LONG_AIR = 20.0  # s of consecutive moves

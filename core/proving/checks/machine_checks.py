@@ -29,7 +29,7 @@ from core.proving.tip_moves import is_rigid_tap
 from core.tool_edges import format_edge_name
 
 LIVE_TOOL_PREFIX = "live"
-"""The names of outputs that turn a live tool begin with it in the machine file."""
+"""Prefix of the names of live tool outputs in the machine file."""
 
 _QUICK = 100 * 25.4 / 60  # mm/s; a feed per minute at this speed or more is a positioning move
 # mm/s of surface speed; higher speeds need tools that small lathes do not have

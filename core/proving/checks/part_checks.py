@@ -419,7 +419,7 @@ PROGRAM_CHECKS: Mapping[str, PartCheck] = {
         "Check the call, or prove the program again with the inputs that lead to the lines not reached.",
     ),
 }
-"""What is found without the stock: beside tool, collet, spindle, inputs and ways through the program."""
+"""Checks that do not need the stock. They cover tool, collet, spindle, inputs and program paths."""
 
 
 def is_serious(finding: Diagnostic) -> bool:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 TouchesMaterial = Callable[[], bool]
 
 RAPID_TOLERANCE_MM = 0.0254
-"""mm of metal, in r and in Z, that a rapid may touch."""
+"""Depth of stock in mm, in radius and in Z, that a rapid may touch."""
 
 _MAX_FINDINGS = 100
 _CHUCK_STEP = 0.05  # mm

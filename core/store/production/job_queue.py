@@ -76,7 +76,7 @@ class JobRow(NamedTuple):
 
 
 PendingCounts = Mapping[str, tuple[bool, int]]
-"""Counts that wait in memory, by program: put to nought first, and so many more."""
+"""Pending part counts in memory, by program: whether to reset to zero first, and the number to add."""
 
 
 def read_jobs(

@@ -15,7 +15,7 @@ from resources.setup.lock import PROJECT_FOLDER, SETUP_FOLDER, get_locked_file
 
 DEBIAN_FOLDER = SETUP_FOLDER / "debian"
 _NEEDLESS = ("bin", "share/man", "share/doc")
-"""Parts of the packages that TurnDesk does not use: their commands and manual pages."""
+"""Folders of the packages that TurnDesk does not use: commands, manual pages and documents."""
 
 
 def make_environment_folder(

@@ -46,7 +46,7 @@ from core.sketch import (
 FRONT, REAR, INSIDE = "FRONT", "REAR", "BORE"
 LEFT, RIGHT = "LEFT", "RIGHT"
 BLADE_CLEARANCE = {False: 0.02, True: 0.5}
-"""By metric: how far beside the diameter a blade stands."""
+"""Clearance between a blade and the diameter, in the program unit, by whether the program is metric."""
 
 
 def _width(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
@@ -341,4 +341,4 @@ def _sinumerik_tail(filled: FilledShape) -> tuple[str, ...]:
 SINUMERIK_BAR_LOOP_SHAPE = replace(
     BAR_LOOP_SHAPE, find_field_conflicts=_sinumerik_checks, make_program_end_lines=_sinumerik_tail
 )
-"""The same with a subprogram, and M codes of the machine's own for the chuck."""
+"""Bar loop for SINUMERIK, with a subprogram and the machine's own M codes for the chuck."""

@@ -390,4 +390,7 @@ SINUMERIK_GROOVE_SHAPE = replace(
         ShapeField("DN", "CYCLE93: D OF OTHER CORNER", FieldKind.OFFSET, 0.0, maximum=9, allows_zero=True),
     ),
 )
-"""The same; CYCLE93 takes the width of the blade from two cutting edges, of which the form sets none."""
+"""Groove form for SINUMERIK.
+
+CYCLE93 derives the blade width from the offsets of two cutting edges, which the form does not set.
+"""

@@ -67,7 +67,10 @@ def _roughs(values: FieldValues) -> bool:
 
 
 LOWEST, HIGHEST = "LOWEST", "HIGHEST"
-"""Diameters between which the points of a contour turn; they are no fields, proposals follow them."""
+"""Names of the smallest and largest diameters that the points of a contour turn.
+
+They are not fields, and proposals use them.
+"""
 
 
 def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
@@ -125,7 +128,7 @@ def _next_label(_values: FieldValues, setting: ProgramSettings) -> FieldValue | 
 LABEL_FIELD = ShapeField(
     "LABEL", "CONTOUR NUMBER", FieldKind.COUNT, _next_label, maximum=9999, applies_to=_roughs
 )
-"""Of a contour that CYCLE95 finds by its labels."""
+"""Field for the number of a contour that CYCLE95 finds by its labels."""
 
 
 def write_spindle_start(

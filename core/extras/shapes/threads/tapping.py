@@ -313,4 +313,4 @@ SINUMERIK_TAPPING_SHAPE = replace(
         ),
     ),
 )
-"""The same by CYCLE840, or by CYCLE84 without a holder that gives."""
+"""Tapping form for SINUMERIK, with CYCLE840 or, without a floating tap holder, CYCLE84."""

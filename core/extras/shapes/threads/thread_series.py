@@ -132,7 +132,7 @@ THREAD_SIZES: dict[ThreadSeries, tuple[ThreadSize, ...]] = {
         "7/8:0.875:6 1:1:5 1-1/8:1.125:5 1-1/4:1.25:5 1-3/8:1.375:4 1-1/2:1.5:4 1-3/4:1.75:4 2:2:4",
     ),
 }
-"""From small to large."""
+"""Thread sizes by thread series, from small to large."""
 
 
 def find_thread_size(series: ThreadSeries, name: str) -> ThreadSize | None:
@@ -170,7 +170,7 @@ TOLERANCE_CLASSES = {
     "ACME": (("2G", "3G", "4G"), ("2G", "3G", "4G")),
     "BSP": (("A", "B"), ()),
 }
-"""Classes outside and inside; the first is the usual one."""
+"""Tolerance classes of external and internal threads, by series. The first class is the default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -371,7 +371,7 @@ def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> T
 
 _PIPE_PITCH = {28: 0.107, 19: 0.125, 14: 0.142, 11: 0.180}
 _PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
-"""ISO 228-1, mm, by turns an inch: pitch diameter inside and of class A (B: twice), minor diameter inside."""
+"""Minor-diameter tolerance of internal pipe threads by threads per inch, in mm (ISO 228-1)."""
 
 
 def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: bool) -> ThreadLimits:

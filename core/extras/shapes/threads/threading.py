@@ -339,4 +339,7 @@ SINUMERIK_THREAD_SHAPE = replace(
     write_lines=_cycle97,
     fields=tuple(_of_cycle97(each) for each in THREAD_SHAPE.fields if each.word != "PULL"),
 )
-"""The same by CYCLE97, which does not pull out while it goes on."""
+"""Threading form for SINUMERIK, with CYCLE97.
+
+The cycle stops at the end of the thread, so the thread needs a relief groove.
+"""

@@ -401,4 +401,4 @@ _AREA_CYCLES: dict[int, Callable[[CycleTool, Sequence[ElementLoop]], Iterator[Bl
     24: run_side_finishing,
 }
 CONTOUR_CYCLES = frozenset({*_AREA_CYCLES, CONTOUR_TRAIN_CYCLE})
-"""Cycles by their number."""
+"""Numbers of the contour cycles."""

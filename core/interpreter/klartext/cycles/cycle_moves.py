@@ -31,7 +31,10 @@ CANNOT_ORIENT_HINT = (
 )
 
 CycleParameters = Mapping[int, int | float | None]
-"""Numbers of Q parameters: that of another cycle as an int, a value of its own as a float."""
+"""Values by Q parameter number.
+
+An int is the number of a parameter in another cycle, and a float is a fixed value.
+"""
 
 
 def make_orientation_block(state: State, angle_deg: float) -> Block:

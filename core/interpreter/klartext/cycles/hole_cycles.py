@@ -409,4 +409,4 @@ HOLE_CYCLES: dict[int, Callable[[CycleTool], Iterator[Block]]] = {
     240: run_centering,
     241: run_single_lip_drilling,
 }
-"""Cycles by their number."""
+"""Functions that run the hole cycles, by cycle number."""

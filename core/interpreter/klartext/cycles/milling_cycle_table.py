@@ -70,4 +70,4 @@ MILLING_CYCLES: dict[int, MillingCycle] = {
     256: mill_rectangular_stud,
     257: mill_circular_stud,
 }
-"""Cycles by their number."""
+"""Milling cycles by cycle number."""

@@ -262,7 +262,10 @@ OLDER_CYCLES: dict[int, Callable[[OlderCycleData, CycleTool], Iterator[Block]]] 
     17: _tapping,
     18: _thread_cutting,
 }
-"""Cycles by their number."""
+"""Functions that run the older cycles, by cycle number."""
 
 LAST_LINE_NUMBERS = {1: 5, 2: 4, 3: 6, 4: 6, 5: 5, 17: 3, 18: 2}
-"""The number behind the point of the last line that each has: with one missing the control runs none."""
+"""Last line number after the decimal point, by cycle number.
+
+The control rejects a cycle with a missing line.
+"""

@@ -32,7 +32,7 @@ CONTROL_Q_PARAMETERS: dict[int, Callable[[State], float]] = {
     113: lambda state: 0.0 if state.mm_per_unit == 1.0 else 1.0,
     114: lambda state: state.tool_length_mm / state.mm_per_unit,
 }
-"""Parameters that the control itself keeps up to date."""
+"""Functions that return the Q parameters set by the control, by parameter number."""
 
 
 def held(state: State, kind: str, number: int) -> float | None:

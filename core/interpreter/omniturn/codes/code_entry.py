@@ -13,7 +13,10 @@ from core.interpreter.shared import units
 from core.message import CodedError
 
 EXAMPLE_HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"
-"""Before every example: radius mode, the tool at X.6 Z.1, .004 in/rev at 1000 rpm."""
+"""Program start that precedes every example.
+
+It selects radius mode, moves the tool to X.6 Z.1, and sets 1000 rpm and .004 in/rev.
+"""
 
 EXAMPLE_TAIL = "G94F300X.6Z1\nM30\n"
 
@@ -68,7 +71,7 @@ class WordLimit(Enum):
 
 
 MAX_FEEDS_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
-"""The greatest feed and lead, mm/rev, by G36, G35 and G35F2."""
+"""Maximum feed or lead in mm/rev for G36, G35 and G35F2, in this order."""
 
 
 class RejectCondition(Enum):
@@ -254,7 +257,7 @@ def names(text: str) -> frozenset[str]:
 
 
 PLAIN_WORDS = names("X Z C CA CI R F S T D")
-"""Words of a line without a code of its own, and beside modes and M codes."""
+"""Words allowed on a line without a code of its own, and in addition to modes and M codes."""
 
 # Constructors for the kinds of entries. Modes and M codes allow the words of a plain line.
 make_mode_entry = partial(
@@ -265,4 +268,4 @@ make_letter_entry = partial(CodeEntry, action_kind=ActionKind.WORD, f_meaning=FM
 make_flow_entry = partial(CodeEntry, action_kind=ActionKind.FLOW, f_meaning=FMeaning.NONE)
 
 Chapter = tuple[str, tuple[CodeEntry, ...]]
-"""A title and its codes, in the order of the page."""
+"""Chapter title and its codes, in page order."""

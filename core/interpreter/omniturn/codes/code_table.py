@@ -26,10 +26,10 @@ PLAIN_LINE_ENTRY = CodeEntry(
 )  # fmt: skip
 
 CODE_CHAPTERS = (*MOVE_CHAPTERS, *CYCLE_CHAPTERS, *FLOW_CHAPTERS)
-"""All codes in the order of the page: the title of each chapter, and its codes."""
+"""All code chapters in page order, each with its title and codes."""
 
 G_CODES = {int(code.name[1:]): code for _, codes in CODE_CHAPTERS for code in codes if code.name[0] == "G"}
-"""By number. Modes and one-shot codes: the latter act on their own line alone, and a line may hold one."""
+"""G codes by number. One-shot codes apply only to their own line, and a line can contain one of them."""
 
 M_CODES = {
     int(code.name[1:]): code
@@ -37,17 +37,20 @@ M_CODES = {
     for code in codes
     if code.name[0] == "M" and code.action_kind is not ActionKind.FLOW
 }
-"""M codes of the control itself, by number; all others are the machine file's."""
+"""M codes of the control, by number. The machine file defines all others."""
 
 LETTER_ENTRIES = {
     code.name: code for _, codes in CODE_CHAPTERS for code in codes if code.action_kind is ActionKind.WORD
 }
-"""Words that have an entry of their own."""
+"""Words that have their own entry in the list of codes, by word."""
 
 FLOW_CODES = {
     code.name: code for _, codes in CODE_CHAPTERS for code in codes if code.action_kind is ActionKind.FLOW
 }
-"""What steers the order of execution; ``allowed_words`` is exactly what stands on such a line."""
+"""Codes that control the order of execution, by name.
+
+``allowed_words`` lists exactly the words that the line can contain.
+"""
 
 
 def load_handler(code: CodeEntry) -> Callable[..., Any]:

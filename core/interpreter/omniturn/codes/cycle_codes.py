@@ -33,7 +33,7 @@ _NOT_READY = {
         "feed-missing",
         "{code}: no cutting feed is active.", "Write F on the {code} line."),
 }
-"""A cycle begins at a known point with a known feed."""
+"""Error templates for cycles that start without a known point or a known feed."""
 _LENGTH = partial(
     WordRule, minimum=0, excludes_minimum=True,
     invalid_error=ErrorTemplate(

@@ -32,7 +32,7 @@ _PLAIN = {
     "G95.F": "the feed per revolution",
     "G83.R": "the Z position to which the drill retracts",
 }
-"""Words for whose numbers no entry has a rule."""
+"""Descriptions of words that no code entry describes."""
 
 
 def build_code_book() -> CodeBook:

@@ -17,7 +17,7 @@ from core.interpreter.shared.contour_passes import CycleMove
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 
 LIFT_MM = 0.02 * units.MM_PER_INCH
-"""How far a tool is drawn off the cut before it goes back, mm."""
+"""Distance in mm by which the tool moves off the cut before it returns."""
 
 MAX_PASS_COUNT = 10_000
 _TOLERANCE_MM = 1e-9  # mm

@@ -36,8 +36,10 @@ from core.language.omniturn import Word
 from core.message import Message
 
 _PARTS = ProgramEnd | ToolChange | Preset | InputRead
-"""Actions across which no corner reaches: the program ends, its numbers mean another
-point, or all motion before it must have ended."""
+"""Actions that a corner cannot span.
+
+Each action ends the program, changes the reference point, or waits until all earlier motion has ended.
+"""
 
 
 def read_corner(state: State, statement: Statement) -> None:

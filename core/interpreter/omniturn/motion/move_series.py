@@ -168,7 +168,7 @@ def _tell(state: State, series: StraightMoveSeries, lines: LineColumns, finer: B
 
 
 MIN_SERIES_LENGTH = 48
-"""Moves for which a series pays; fewer are made one by one."""
+"""Minimum number of moves for a move series. Shorter runs are made move by move."""
 
 
 class SeriesReader:

@@ -25,7 +25,7 @@ DigitArray = npt.NDArray[np.uint8]
 
 NO_G_CODE = -1
 MAX_RUN_LENGTH = 20_000
-"""Lines that are read, and handed on, at once."""
+"""Maximum number of lines that are read and passed on at once."""
 
 _NUMBER = r"[-+]?(?:[0-9]{1,4}(?:\.[0-9]{0,5})?|\.[0-9]{1,5})"
 _MOVE = re.compile(

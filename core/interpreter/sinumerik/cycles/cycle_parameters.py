@@ -64,7 +64,7 @@ class CycleStep(NamedTuple):
 
 
 _LIVE_TOOL_CYCLES = frozenset(("CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCLE89", "HOLES1", "HOLES2"))
-"""Cycles that drill along the depth of TRANSMIT, too."""
+"""Cycles that can also drill along the depth direction of TRANSMIT."""
 
 
 class CycleCall:

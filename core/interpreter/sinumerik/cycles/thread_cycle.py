@@ -30,7 +30,7 @@ COARSE_THREAD_LEADS_MM = {
     22: 2.5, 24: 3.0, 27: 3.0, 30: 3.5, 33: 3.5, 36: 4.0, 39: 4.0, 42: 4.5, 45: 4.5, 48: 5.0, 52: 5.0,
     56: 5.5, 60: 5.5, 64: 6.0, 68: 6.0,
 }  # fmt: skip
-"""Lead of the ISO coarse thread by its size, mm: what MPIT means."""
+"""Leads of ISO coarse threads in mm, by thread size. MPIT selects the lead."""
 
 
 def get_coarse_lead(nominal_size: float) -> float:

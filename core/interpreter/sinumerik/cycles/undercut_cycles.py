@@ -31,7 +31,7 @@ WRONG_UNDERCUT_FORM = 61609
 _CLEARANCE_MM = 2.0  # mm from the part; start and end of the cycle
 _SAME = 1e-6  # mm
 _SIGNS_BY_POSITION = {1: (-1.0, -1.0), 2: (-1.0, 1.0), 3: (1.0, 1.0), 4: (1.0, -1.0)}
-"""By the tip quadrant: +1 outside, -1 inside; +1 where the shoulder lies towards minus Z."""
+"""Signs of X away from the part and of Z away from the shoulder, by position number or tip quadrant."""
 
 
 class UndercutSize(NamedTuple):
@@ -51,7 +51,7 @@ class UndercutSize(NamedTuple):
 
 _DIN_509 = ((10.0, 0.2, 2.0, 0.4, 0.1), (18.0, 0.2, 2.0, 0.6, 0.1), (80.0, 0.3, 2.5, 0.6, 0.2))
 _DIN_509_OVER = (0.4, 4.0, 1.0, 0.3)
-"""Up to this diameter: depth, width, radius, depth in the face; and over 80."""
+"""Depth, width, radius and face depth in mm for diameters above 80 mm (DIN 509)."""
 
 _FACE_ANGLE = radians(8.0)
 
@@ -70,7 +70,7 @@ _LEADS = (
     0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.75, 0.8, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0,
     4.5, 5.0, 5.5, 6.0,
 )  # fmt: skip
-"""Leads of DIN 76 in the order in which _PITI counts them from 0."""
+"""Thread leads in mm from DIN 76, indexed by _PITI from 0."""
 
 _CORE = 1.0825  # core diameter of an internal thread: nominal diameter minus this number of leads
 _MAX_NOMINAL_SIZE = 68
@@ -164,7 +164,10 @@ def run_thread_undercut(cycle: CycleCall) -> Iterator[Block]:
 
 
 _QUADRANTS_BY_POSITION = {0: 4, 1: 3, 2: 1, 3: 2}
-"""Tip quadrants by _LAGE: 0 and 1 outside, 2 and 3 inside; 0 and 2 with the shoulder towards plus Z."""
+"""Tip quadrants by _LAGE.
+
+Values 0 and 1 are outside, and 2 and 3 are inside. At 0 and 2, the shoulder is toward plus Z.
+"""
 
 _UNSUPPORTED_HINT = "program the undercut block by block"
 

@@ -36,11 +36,11 @@ from core.language.source import ProgramSource
 from core.message import Message
 
 TOO_MANY_ARGUMENTS = 12330
-"""The alarm of a call whose arguments do not fit the parameters."""
+"""Alarm number for a call whose arguments do not match the parameters."""
 
 NOT_A_VARIABLE = 12320
 WRONG_ARRAY_SIZE = 12360
-"""Those of an argument of VAR that is no variable, and of an array with other sizes; recalled as 12330 is."""
+"""Alarm number for a VAR argument that is an array of a different size."""
 
 _GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
 

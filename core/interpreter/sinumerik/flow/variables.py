@@ -22,7 +22,7 @@ MAX_ARRAY_SIZE = 10_000
 MAX_DIMENSIONS = 3
 
 ErrorFactory = Callable[[int | str, str, str], ProgramError]
-"""Makes the error to raise of its code, text and hint."""
+"""Function that makes the error to raise from its code, text and hint."""
 
 
 @dataclass(slots=True)

@@ -23,7 +23,7 @@ from core.language.sinumerik.word_table import SUPPRESSION_GROUP
 
 
 MIN_PATH_MM = 1e-6
-"""mm of X and Z together below which a block has no path, and F belongs to C."""
+"""Path length of X and Z in mm below which a block has no path, and F applies to C."""
 
 
 class AxisTravel(NamedTuple):

@@ -11,11 +11,11 @@ from core.language.sinumerik.word_table import DWELL_GROUP, FEED_TYPE_GROUP, MOT
 MISSING_FEED = 10860
 
 _PER_REV_BY_CODE = {94: False, 95: True, 96: True, 961: False, 97: True, 971: False, 973: True}
-"""Kind of feed by code of the group; G962 and G972 leave it as it is."""
+"""Whether each code of the feed type group sets feed per revolution. G962 and G972 do not change it."""
 
 
 _LEAD_MOTIONS = frozenset({34, 35})
-"""Of these motions F is the change of a lead."""
+"""G codes of motions for which F is the change in lead."""
 
 
 def execute_feed_words(state: State, statement: Statement) -> None:

@@ -13,15 +13,15 @@ from core.message import CodedError, Message
 
 FULL_REVOLUTION_DEG = 360.0
 NON_MODULO_RANGE = (-FULL_REVOLUTION_DEG, FULL_REVOLUTION_DEG)
-"""Ends of a C that does not wrap."""
+"""Travel limits in degrees of a C axis that is not a modulo axis."""
 
 ROUNDING_TOLERANCE = 1e-9
-"""Degrees that are noise of sums in binary: a target as near as this is reached."""
+"""Tolerance in degrees for rounding in binary sums. A target within it is treated as reached."""
 
 WRONG_MODULO_POSITION = 16830
 WRONG_AXIS_RANGE = 10720
 MODULO_ONLY_ALARMS = {PositionForm.DC: 16800, PositionForm.ACP: 16810, PositionForm.ACN: 16820}
-"""Alarms of the forms that only a modulo rotary axis takes."""
+"""Alarm numbers for position forms that require a modulo rotary axis, by form."""
 
 
 class TargetError(CodedError):

@@ -17,9 +17,9 @@ from core.language.sinumerik.word_table import TRANSFORMATION_GROUP
 from core.message import Message
 
 COMPENSATION_ACTIVE = 14400
-"""Alarm: radius compensation is on where a transformation begins or ends."""
+"""Alarm number if radius compensation is active at the start or end of a transformation."""
 TRANSFORMATION_MISSING = 14401
-"""Alarm: the transformation is not there."""
+"""Alarm number if the transformation is not available."""
 _SAME = 1e-9
 
 
