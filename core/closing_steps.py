@@ -51,7 +51,7 @@ def close_together(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_e
         limit = max(each.step.timeout_s - hung, 0.0)
         if not each.wait_for_success(limit, wait):
             failed.append(each.step.name)
-            hung = hung if each.ended else max(hung, each.step.timeout_s)
+            hung = hung if each.has_ended else max(hung, each.step.timeout_s)
     return failed
 
 
@@ -65,7 +65,7 @@ class _RunningStep:
         threading.Thread(target=self._run, name=f"closing {step.name}", daemon=True).start()
 
     @property
-    def ended(self) -> bool:
+    def has_ended(self) -> bool:
         """Return whether the step has ended, successfully or not."""
         return self._done.is_set()
 

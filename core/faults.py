@@ -148,7 +148,7 @@ class TrippingDriverHost(Protocol):
         """Return the trip that has not been acknowledged, or None."""
         ...
 
-    def acknowledge(self, trip: DriverHostTrip) -> None:
+    def acknowledge_trip(self, trip: DriverHostTrip) -> None:
         """Acknowledge this trip; a newer trip remains active. Raises DriverError."""
         ...
 

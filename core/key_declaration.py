@@ -132,13 +132,13 @@ class _Key(NamedTuple):
     If ``name`` is empty, the key has the name of the attribute.
     """
 
-    range: KeyRange
+    key_range: KeyRange
     meaning: str
     name: str
     default: KeyValue | None
     choices: tuple[str | bool, ...]
-    derived: bool
-    secret: bool
+    is_derived: bool
+    is_secret: bool
 
 
 def declare_key(
@@ -153,7 +153,7 @@ def declare_key(
 ) -> Any:
     """Declare a key on an attribute of a class, with the attribute's annotation as the kind of value.
 
-    ``name`` is the key in the file if it differs from the attribute's name. A ``secret`` value is not
+    ``name`` is the key in the file if it differs from the attribute's name. A ``is_secret`` value is not
     printed. The other arguments are described in ``KeyField``.
     """
     return _Key(range, meaning, name, default, choices, is_derived, is_secret)
@@ -182,9 +182,9 @@ def make_key_table(table: type[_Table]) -> type[_Table]:
         if not isinstance(each, _Key):
             continue
         if each.default is None:
-            setattr(table, name, field(repr=not each.secret))
+            setattr(table, name, field(repr=not each.is_secret))
         else:
-            setattr(table, name, field(default=each.default, repr=not each.secret))
+            setattr(table, name, field(default=each.default, repr=not each.is_secret))
     made = dataclass(frozen=True, slots=True)(table)
     _declared[made] = declared
     return made
@@ -210,7 +210,7 @@ def _keys_of_class(table: type) -> tuple[KeyField, ...]:
 
 def _field(name: str, each: _Key, annotation: str) -> KeyField:
     kind = ValueKind.CHOICE if each.choices else _KINDS[annotation]
-    low, high, unit = each.range
+    low, high, unit = each.key_range
     return KeyField(
         each.name or name,
         name,
@@ -220,6 +220,6 @@ def _field(name: str, each: _Key, annotation: str) -> KeyField:
         high,
         each.default,
         each.choices,
-        each.derived,
+        each.is_derived,
         each.meaning,
     )

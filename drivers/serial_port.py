@@ -63,7 +63,7 @@ _OPEN_ERRORS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 class PortInfo(NamedTuple):
     """Device name and description of a serial port of this computer."""
 
-    device: str
+    device_name: str
     description: str
 
 

@@ -158,7 +158,7 @@ class AutomaticPage(Page):
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the keys for choosing a program, the editor and SEARCHTO that are disabled now."""
-        snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded
+        snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         asking = self.file_prompt.isVisible()
         named = bool(self.file_prompt.wanted_name) if asking else loaded.path is not None
         found = {

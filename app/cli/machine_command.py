@@ -74,7 +74,7 @@ def write_hal_file(args: argparse.Namespace) -> int:
         _report_file(machine.source, args.out, hal)
     elif args.out:
         sys.stdout.write("".join(f"{line}\n" for line in hal.wiring_table))
-        sys.stdout.write("".join(f"measure: {note}\n" for note in hal.measurements))
+        sys.stdout.write("".join(f"measure: {note}\n" for note in hal.measurement_lines))
     else:
         sys.stdout.write(hal.text)
         sys.stderr.write(
@@ -93,12 +93,12 @@ def write_hal_file(args: argparse.Namespace) -> int:
 def _report_file(source: str, out: str | None, hal: GeneratedHal) -> None:
     report = {
         "file": source,
-        "board": hal.board,
+        "board": hal.board_text,
         "out": out,
         "hal": hal.text,
         "beside": hal.extra_files,
         "wires": [{**wire._asdict(), "names": list(wire.names)} for wire in hal.wiring_rows],
-        "measure": hal.measurements,
+        "measure": hal.measurement_lines,
     }
     sys.stdout.write(json.dumps(report) + "\n")
 
@@ -202,7 +202,7 @@ def check(file: str | None, *, json_output: bool) -> int:
             "backend": machine.backend,
             "errors": [],
             "changes": [change._asdict() for change in changes],
-            "ports": [{**row._asdict(), "verdict": row.verdict} for row in answers.rows],
+            "ports": [{**row._asdict(), "verdict": row.result_text} for row in answers.rows],
             "rights": [right._asdict() for right in answers.rights],
             "warnings": answers.warnings,
             "trouble": answers.faults,
@@ -211,10 +211,12 @@ def check(file: str | None, *, json_output: bool) -> int:
     if not json_output:
         sys.stdout.write(f"{machine.source} is valid: {machine.name}, backend {machine.backend}\n")
         judged = [
-            (f"{row.verdict:<4}  {row.name}", *row[1:]) for row in answers.rows if row.verdict != NOT_CHECKED
+            (f"{row.result_text:<4}  {row.name}", *row[1:])
+            for row in answers.rows
+            if row.result_text != NOT_CHECKED
         ]
         sys.stdout.write("".join(f"{line}\n" for line in format_check_table(judged)))
-        unchecked = [row.name for row in answers.rows if row.verdict == NOT_CHECKED]
+        unchecked = [row.name for row in answers.rows if row.result_text == NOT_CHECKED]
         if unchecked:
             sys.stdout.write(
                 f"  not checked, because no hardware reports them: {summarize_names(unchecked)}\n"

@@ -73,7 +73,7 @@ SCREENLESS_COMMANDS_TEXT = "prove, expand, trace and run --headless do not need 
 
 def list_commands() -> Sequence[str]:
     """Return all subcommands in the order of the help, including the subcommands of optional features."""
-    added = [(name, each.predecessor) for name, each in _feature_commands().items()]
+    added = [(name, each.preceding_subcommand) for name, each in _feature_commands().items()]
     return insert_after(CORE_COMMANDS, str, added)
 
 

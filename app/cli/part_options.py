@@ -106,10 +106,10 @@ def apply_stored_part(
     part_settings = apply_stored_clamping(
         part_settings, around.machine, stored_part, is_explicit=args.stick_out is not None
     )
-    if args.stock is not None or not stored_part.stock:
+    if args.stock is not None or not stored_part.stock_text:
         return part_settings
     try:
-        return replace(part_settings, stock=_said(stored_part.stock, args, around, part_settings))
+        return replace(part_settings, stock=_said(stored_part.stock_text, args, around, part_settings))
     except CommandError as error:
         remedy = "specify the stock again with --stock and --keep-stock"
         raise CommandError(

@@ -140,8 +140,8 @@ def _run(args: argparse.Namespace, around: CommandContext, job: Job, report: Pro
         outcome = play.run_job(job, create_proof(job, report), optional_stop=args.optional_stop)
     if log.error_text:
         _say(path, Message("{problem}; the log of this run is incomplete", problem=log.error_text))
-    if outcome.reason:
-        sys.stderr.write(f"turndesk: {path}: {outcome.final_state}: {outcome.reason}\n")
+    if outcome.failure_reason:
+        sys.stderr.write(f"turndesk: {path}: {outcome.final_state}: {outcome.failure_reason}\n")
     _write(args, path, outcome, report, str(log.path))
     return EXIT_OK if outcome.final_state == "complete" else EXIT_ERRORS
 

@@ -163,7 +163,7 @@ class EventDistributor:
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
         """Distribute an event, unless an earlier screen has stored it. In that case, confirm ``receipt``."""
         if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
-            receipt.confirm()
+            receipt.confirm_storage()
             if self.journal is not None:
                 return
         event = self._record(event)

@@ -190,7 +190,7 @@ def _register_searchto(setup: PageSetup) -> None:
     choices = OperatorChoices(outside_speed_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
 
     def prove(job: Job, watch: ProgressCallback) -> ProvedJob:
-        proved = desk.program_loader.steps.prove_job(job, watch)
+        proved = desk.program_loader.loading_steps.prove_job(job, watch)
         if desk.start_watch is None:
             return proved
         return desk.start_watch.add_first_move_check(job, proved, desk.read_snapshot(), watch)

@@ -43,10 +43,10 @@ T = TypeVar("T")
 class Subcommand(NamedTuple):
     """Position and text of a subcommand in the help of ``turndesk``.
 
-    ``predecessor`` is the subcommand that precedes it, and ``help_line`` is its help text.
+    ``preceding_subcommand`` is the subcommand that precedes it, and ``help_line`` is its help text.
     """
 
-    predecessor: str
+    preceding_subcommand: str
     help_line: str
 
 

@@ -120,7 +120,7 @@ def save_stock(program: str, text: str, stick_out_mm: float | None) -> None:
     from core.store.store import Store, StoreError
 
     with convert_to_command_error(StoreError), Store.open(find_data_folder()) as store:
-        kept = replace(load_stored_part(store.settings.read_setting, program), stock=text)
+        kept = replace(load_stored_part(store.settings.read_setting, program), stock_text=text)
         kept = kept if stick_out_mm is None else replace(kept, stick_out_mm=stick_out_mm)
         for key, value in kept.make_settings(program).items():
             store.settings.save_setting(key, value).result()

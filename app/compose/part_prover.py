@@ -76,13 +76,13 @@ class PartProver:
         except StoreError as error:
             return setting, _unusable(str(error))
         setting = apply_stored_clamping(setting, self.machine, kept)
-        if not kept.stock:
+        if not kept.stock_text:
             return setting, None
         try:
             around = StockContext(
                 self.read_source, job.setup, self.machine, setting, report_progress, self.read_stored_part
             )
-            return replace(setting, stock=read_stock(kept.stock, around)), None
+            return replace(setting, stock=read_stock(kept.stock_text, around)), None
         except ValueError as error:  # invalid text, or a program that cannot be read
             return setting, _unusable(str(error))
 

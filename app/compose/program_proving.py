@@ -76,7 +76,7 @@ def create_loading_steps(
 
     parts = PartProver(machine, read_shapes, read_stored_part, _read)
     passes = _ProofAndPicture(machine, parts, pictures=draw_pictures)
-    return LoadingSteps(_read, new_job, passes.prove, passes.draw, renewed, passes.prove_part)
+    return LoadingSteps(_read, new_job, passes.prove_job, passes.draw_picture, renewed, passes.prove_part)
 
 
 class _ProofAndPicture:
@@ -88,7 +88,7 @@ class _ProofAndPicture:
         self._drawn: tuple[Job, ProgramPicture] | None = None  # picture of the job that was proved last
         self._trouble: Diagnostic | None = None  # finding about its stock, or None
 
-    def prove(self, job: Job, report_progress: ProgressCallback) -> ProvedJob:
+    def prove_job(self, job: Job, report_progress: ProgressCallback) -> ProvedJob:
         from app.path.path_picture import PictureBuilder
         from core.proving.part_history import StepCollector
         from core.proving.prove_program import prove
@@ -129,7 +129,7 @@ class _ProofAndPicture:
             return PartProof(error_text=picture.no_part) if picture.no_part else None
         return self._parts.prove_part(picture.part, self._trouble, report_progress)
 
-    def draw(self, job: Job, report_progress: ProgressCallback) -> ProgramPicture:
+    def draw_picture(self, job: Job, report_progress: ProgressCallback) -> ProgramPicture:
         from app.path.path_picture import build_picture
         from core.proving.program_timeline import Timeline, iter_timed_series
 

@@ -69,7 +69,7 @@ def build_desk(
         log.close()
         raise
     floor = start_services(desk, journal)
-    file = ProgramFileMonitor(lambda: desk.program_loader.loaded)
+    file = ProgramFileMonitor(lambda: desk.program_loader.loaded_program)
     desk.closing_sequence.worker_steps += [
         ClosingStep("program-file", file.close),
         *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
@@ -140,7 +140,7 @@ def _create_process_desk(
         client.control_records,
         live.open_stop_socket,
         live.restart,
-        lambda: live.client.hello_message.identity,
+        lambda: live.client.hello_message.control_identity,
     )
     desk = create_desk(machine, used, events, offsets)
     for right in client.hello_message.rights:

@@ -104,7 +104,7 @@ def _initial_setting(name: str, spec: StockSpec, context: StockContext) -> PartS
     """Return the part settings of the preceding program with its stored stock and stick-out."""
     kept = context.read_stored_part(name)
     setting = apply_stored_clamping(context.part_settings, context.machine, kept)
-    if not kept.stock:
+    if not kept.stock_text:
         return setting
     if name in context.preceding_programs:
         raise StockError(
@@ -118,6 +118,6 @@ def _initial_setting(name: str, spec: StockSpec, context: StockContext) -> PartS
     return replace(
         setting,
         stock=read_stock(
-            kept.stock, context._replace(preceding_programs=(*context.preceding_programs, name))
+            kept.stock_text, context._replace(preceding_programs=(*context.preceding_programs, name))
         ),
     )

@@ -53,7 +53,7 @@ class UserAccess:
     persistence: Persistence = field(default_factory=Persistence)
     say: Callable[[str], None] = lambda _text: None
     read_time_s: Callable[[], float] = time.monotonic
-    users: UserList = field(default_factory=UserList)
+    user_list: UserList = field(default_factory=UserList)
     user_name: str = ""
     access_level: AccessLevel = AccessLevel.OPERATOR
     sign_in_session: SignInSession | None = None  # None: the sign-in feature is not installed.
@@ -63,7 +63,7 @@ class UserAccess:
 
     def __post_init__(self) -> None:
         self.reload()
-        self.persistence.who = lambda: self.recorded_user if self.users.is_access_restricted else ""
+        self.persistence.who = lambda: self.recorded_user if self.user_list.is_access_restricted else ""
 
     @property
     def has_read_failed(self) -> bool:
@@ -80,7 +80,7 @@ class UserAccess:
     @property
     def header_text(self) -> str:
         """Return the user and the current level for the header, or an empty text if access levels are off."""
-        if not self.users.is_access_restricted:
+        if not self.user_list.is_access_restricted:
             return ""
         if self.pending_notice:
             return self.pending_notice
@@ -90,7 +90,7 @@ class UserAccess:
     def find_refusal(self, change: ProtectedChange) -> str:
         """Return why the current level does not permit this act, or an empty text if the act is permitted."""
         needed = get_required_level(change)
-        if not self.users.is_access_restricted or self.access_level >= needed:
+        if not self.user_list.is_access_restricted or self.access_level >= needed:
             return ""
         text = tr("{what}: {level} REQUIRED (NOW {now}). F10, ACCESS LEVELS: SIGN IN")
         if self.sign_in_session is None:
@@ -128,17 +128,17 @@ class UserAccess:
         A user who was removed or whose level was lowered is signed out.
         """
         try:
-            self.users = self.persistence.people()
+            self.user_list = self.persistence.people()
             if self.sign_in_session is not None:
                 self.sign_in_session.reload()
         except StoreError:
             self._unread = self.read_time_s()
             if not self._lifted:
                 # Users are unknown, so the strictest level applies.
-                self.users = self.users._replace(has_damaged_row=True)
+                self.user_list = self.user_list._replace(has_damaged_row=True)
             return  # TurnDesk shows the storage error elsewhere.
         self._unread = None
-        row = self.users.find_user(self.user_name)
+        row = self.user_list.find_user(self.user_name)
         if self.user_name and (row is None or row.level < self.access_level):
             self.sign_out()
 
@@ -147,7 +147,7 @@ class UserAccess:
 
         If the stored levels cannot be read, they are ignored until TurnDesk closes.
         """
-        self._lifted, self.users = True, UserList()
+        self._lifted, self.user_list = True, UserList()
         self.reload()
 
     def log_access(self, text: str) -> None:

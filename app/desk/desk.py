@@ -181,14 +181,18 @@ class Desk:
     @property
     def prompt_notice(self) -> str:
         """Return the message for the last key or the open question, or an empty text if there is neither."""
-        return self.prompt_answers.notice
+        return self.prompt_answers.shown_message
 
     @property
     def start_instruction(self) -> str:
         """Return the instruction that says how to start a cycle at this machine."""
         if self.desk_control.station_panel is None:
             return "PRESS BOTH PALM BUTTONS" if self.machine.is_two_hand else "PRESS CYCLE START"
-        if self.machine.is_two_hand and self.machine.allows_one_hand and self.settings_store.current.latched:
+        if (
+            self.machine.is_two_hand
+            and self.machine.allows_one_hand
+            and self.settings_store.current_settings.latched
+        ):
             return "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
         return (
             "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.machine.is_two_hand else "PRESS CYCLE START (F12)"
@@ -209,7 +213,7 @@ class Desk:
     @property
     def readout_kind(self) -> ReadoutKind:
         """Return the kind of value that the large position display shows."""
-        return ReadoutKind(self.settings_store.current.readout)
+        return ReadoutKind(self.settings_store.current_settings.readout)
 
     def is_refused(self, change: ProtectedChange) -> bool:
         """Return whether the access level is too low for this act, and if so show the reason."""
@@ -265,7 +269,7 @@ class Desk:
             return prompt_line.RESTORE_IN_PROGRESS
         if (page := self.page_registry.active_start_handler) is not None:
             return page.barred()
-        loaded = self.program_loader.loaded
+        loaded = self.program_loader.loaded_program
         if self.read_snapshot().state is not MachineState.IDLE:
             return ""
         if loaded.phase is LoadingPhase.UNREADABLE:
@@ -287,7 +291,7 @@ class Desk:
         self.user_access.update(snapshot)
         self.prompt_answers.update(snapshot)
         self.renewal.update(snapshot, self.offset_book, self.post)
-        loaded = self.program_loader.loaded
+        loaded = self.program_loader.loaded_program
         if self.start_watch is not None:
             self.start_watch.update(snapshot, loaded)
         self._see_runs(snapshot, loaded)
@@ -302,7 +306,7 @@ class Desk:
             machine.is_table_rotary,
         )
         if self.desk_control.silence_watch.check_silence(snapshot.t, self.station_controls.clock()):
-            view = replace(view, state_text=CONTROL_SILENT_TITLE, tone=Tone.ALARM)
+            view = replace(view, state_text=CONTROL_SILENT_TITLE, state_tone=Tone.ALARM)
         return snapshot, view, loaded
 
     def _see_runs(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
@@ -312,7 +316,7 @@ class Desk:
         self.page_registry.notify_frame_watchers(snapshot)
         if caution := self.program_runs.pop_part_warning(snapshot, loaded):
             self.say(tr(Message("CAUTION: {what}. PAUSE KEY: FEED HOLD", what=caution)))
-        if self.settings_store.current.first_job:
+        if self.settings_store.current_settings.first_job:
             self.try_save(partial(self.program_runs.update_first_job, snapshot, loaded))
 
     def find_first_move_refusal(self, snapshot: Snapshot) -> str:
@@ -365,9 +369,9 @@ class Desk:
         If the control is silent, start a new control where possible.
         """
         state = self.read_snapshot().state
-        if self.desk_control.silence_watch.is_silent and self.desk_control.restart is not None:
+        if self.desk_control.silence_watch.is_silent and self.desk_control.restart_control is not None:
             self.clear_prompt_line()
-            self.desk_control.restart()
+            self.desk_control.restart_control()
         elif state in prompt_line.MOVING_STATES:
             self.say("THE MACHINE IS MOVING. FIRST PRESS PAUSE (FEED HOLD)")
         elif state in prompt_line.INTERRUPTED_STATES:

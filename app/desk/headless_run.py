@@ -45,12 +45,12 @@ class HeadlessControl(Protocol):
 class RunOutcome:
     """Outcome of a run.
 
-    ``final_state`` is ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``. ``reason`` is the
-    reason as text. ``elapsed_s`` is the cycle time in seconds.
+    ``final_state`` is ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``. ``failure_reason`` is
+    the reason as text. ``elapsed_s`` is the cycle time in seconds.
     """
 
     final_state: str
-    reason: str
+    failure_reason: str
     snapshot: Snapshot
     elapsed_s: float
 

@@ -28,7 +28,9 @@ class PageDescription:
     languages: frozenset[str] = ALL_LANGUAGES  # Programming languages of the machines that have this page.
     deferred_modules: tuple[str, ...] = ()
     preceding_page: str = ""  # Page of an optional feature: the page that precedes it in the main menu.
-    shortcut: str = ""  # Key that opens this page from any page, by its name in app.screen.window.key_table.
+    shortcut_key: str = (
+        ""  # Key that opens this page from any page, by its name in app.screen.window.key_table.
+    )
 
 
 @dataclass(frozen=True, slots=True)

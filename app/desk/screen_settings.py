@@ -62,7 +62,7 @@ class SettingsStore:
     """The current screen settings. A stored value that is not a valid choice is ignored."""
 
     persistence: Persistence = field(default_factory=Persistence)
-    current: ScreenSettings = field(init=False)
+    current_settings: ScreenSettings = field(init=False)
 
     def __post_init__(self) -> None:
         self.reload()
@@ -75,7 +75,9 @@ class SettingsStore:
             kept = None
         found = kept if isinstance(kept, dict) else {}
         names = {field.name for field in fields(ScreenSettings)}
-        self.current = ScreenSettings(**{n: v for n, v in found.items() if n in names and _is_choice(n, v)})
+        self.current_settings = ScreenSettings(
+            **{n: v for n, v in found.items() if n in names and _is_choice(n, v)}
+        )
 
     def choose(self, name: str, value: object) -> None:
         """Apply a setting and save it.
@@ -84,8 +86,11 @@ class SettingsStore:
         """
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
-        before, self.current = getattr(self.current, name), replace(self.current, **{name: value})  # type: ignore[arg-type]
-        self.persistence.save_setting(SETTINGS_KEY, asdict(self.current))
+        before, self.current_settings = (
+            getattr(self.current_settings, name),
+            replace(self.current_settings, **{name: value}),
+        )  # type: ignore[arg-type]
+        self.persistence.save_setting(SETTINGS_KEY, asdict(self.current_settings))
         if name not in _UNLOGGED_SETTINGS:
             self.persistence.log_change(
                 Message("screen: {name} {before} → {value}", name=name, before=before, value=value)
@@ -94,12 +99,12 @@ class SettingsStore:
     def find_next_choice(self, name: str) -> object:
         """Return the choice that follows the current choice. The first choice follows the last choice."""
         choices = SETTING_CHOICES[name]
-        return choices[(choices.index(getattr(self.current, name)) + 1) % len(choices)]
+        return choices[(choices.index(getattr(self.current_settings, name)) + 1) % len(choices)]
 
     @property
     def display_units(self) -> DisplayUnits:
         """Return the unit of displayed values."""
-        return DisplayUnits(self.current.units)
+        return DisplayUnits(self.current_settings.units)
 
 
 def _is_choice(name: str, value: object) -> bool:

@@ -117,12 +117,13 @@ POT_SLEW_RATE = 1.0  # Fraction of the range per second. A control treats a fast
 class OverridePot:
     """A pot on the screen.
 
-    ``wanted`` is the target that a touch sets. ``position`` moves toward the target at a limited speed.
+    ``wanted`` is the target that a touch sets. ``current_fraction`` moves toward the target at a limited
+    speed.
     """
 
     max_fraction: float
     wanted: float = 1.0
-    position: float = 1.0
+    current_fraction: float = 1.0
     starting_action: StartingAction = StartingAction.OVERRIDE
     late_presses: LatePressFilter | None = None
 
@@ -141,12 +142,12 @@ class OverridePot:
     def _choose(self, fraction: float) -> None:
         self.wanted = max(0.0, min(self.max_fraction, fraction))
 
-    def advance(self, elapsed_s: float) -> bool:
+    def turn_toward_target(self, elapsed_s: float) -> bool:
         """Turn the pot for this number of seconds, and return whether it has moved."""
-        if self.position == self.wanted:
+        if self.current_fraction == self.wanted:
             return False
         step = POT_SLEW_RATE * elapsed_s
-        self.position += max(-step, min(step, self.wanted - self.position))
+        self.current_fraction += max(-step, min(step, self.wanted - self.current_fraction))
         return True
 
 
@@ -306,10 +307,10 @@ class StationControls:
         passed = min(MAX_TURN_STEP_S, now - self._looked) if self._looked is not None else 0.0
         self._looked = now
         if self.station is not None:
-            if self.spindle_pot.advance(passed):
-                self.station.set_spindle_pot(self.spindle_pot.position)
-            if self.feed_pot.advance(passed):
-                self.station.set_feed_pot(self.feed_pot.position)
+            if self.spindle_pot.turn_toward_target(passed):
+                self.station.set_spindle_pot(self.spindle_pot.current_fraction)
+            if self.feed_pot.turn_toward_target(passed):
+                self.station.set_feed_pot(self.feed_pot.current_fraction)
 
 
 def step_fraction(fraction: float, steps: int) -> float:

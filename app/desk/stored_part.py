@@ -22,7 +22,7 @@ class StoredPart:
     None if it was not entered. ``silenced_checks`` maps each silenced check to the reason for silencing it.
     """
 
-    stock: str = ""
+    stock_text: str = ""
     stick_out_mm: float | None = None
     silenced_checks: Mapping[str, str] = field(default_factory=dict)
 
@@ -31,7 +31,7 @@ class StoredPart:
         rest: dict[str, object] = {"stick_out": self.stick_out_mm, "silenced": dict(self.silenced_checks)}
         said = {name: value for name, value in rest.items() if value}
         return {
-            make_stock_setting_key(program): self.stock or None,
+            make_stock_setting_key(program): self.stock_text or None,
             make_part_setting_key(program): said or None,
         }
 

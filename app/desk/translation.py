@@ -23,7 +23,7 @@ ENGLISH_CODE = "en"
 class _ActiveTranslation:
     """The active translator and its language."""
 
-    translate: Translate | None = None
+    translate_text: Translate | None = None
     language = ENGLISH_CODE
 
 
@@ -32,7 +32,7 @@ def set_translator(translate: Translate | None, language_code: str = ENGLISH_COD
 
     ``language`` is the ISO 639-1 code of the translator's language.
     """
-    _ActiveTranslation.translate = None if translate is None else lru_cache(8192)(translate)
+    _ActiveTranslation.translate_text = None if translate is None else lru_cache(8192)(translate)
     _ActiveTranslation.language = language_code
 
 
@@ -59,7 +59,7 @@ def mark_untranslated(text: str) -> str:
 
 def tr(text: str) -> str:
     """Return a text in the operator's language, or the English text if it has no translation."""
-    translate = _ActiveTranslation.translate
+    translate = _ActiveTranslation.translate_text
     shown = text if translate is None else _translated(text, translate)
     return shown.replace(_DATA, "").replace(_END, "") if _DATA in shown else str.__str__(shown)
 

@@ -49,7 +49,7 @@ class Document:
         """Return the file name of the program."""
         return self.path.name
 
-    def encode(self, text: str) -> bytes:
+    def encode_text(self, text: str) -> bytes:
         """Return ``text`` as bytes with the line ending of the file."""
         return end_last_line(text).replace("\n", self.line_ending).encode("utf-8", "replace")
 
@@ -155,7 +155,7 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
         archive_error = _kept(archive, document.name, there, "text before editing")
         if archive_error and foreign:
             return CHANGED_EXTERNALLY  # Content from another program is not replaced before it is archived.
-    data = document.encode(text)
+    data = document.encode_text(text)
     write_program_file(document.path, data)
     return _kept(archive, document.name, data, "saved in the editor") or archive_error
 
@@ -164,7 +164,7 @@ def _matches_opened(document: Document, data: bytes) -> bool:
     """Return whether the file data still equal the text that was opened or last saved."""
     if document.is_new:
         return False
-    return data == document.encode(document.text) or _matches_text(document, data)
+    return data == document.encode_text(document.text) or _matches_text(document, data)
 
 
 def _matches_text(document: Document, data: bytes) -> bool:
@@ -230,7 +230,7 @@ class DraftStore:
             if text == document.text:
                 place.unlink(missing_ok=True)
                 return ""
-            if self.archive.save_version(document.name, document.encode(text), WHY):
+            if self.archive.save_version(document.name, document.encode_text(text), WHY):
                 place.unlink(missing_ok=True)
                 return messages.DRAFT_IN_HISTORY
             why = messages.HISTORY_UNAVAILABLE

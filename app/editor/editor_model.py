@@ -84,7 +84,7 @@ class EditorModel:
         None  # file from which an optional feature generates the text of this program
     )
     is_restored: bool = False  # the text replaces the typed text as one step that can be undone
-    block_delete: bool = False
+    has_block_delete: bool = False
     default_extension: str = ".nc"  # extension of new programs, from the language of the machine
     live_proof: LiveProof = field(init=False)
     draft_store: DraftStore = field(init=False)
@@ -123,7 +123,7 @@ class EditorModel:
     def open_program(self, path: Path, block_delete: bool = False) -> None:
         """Start reading a program into the editor."""
         self.clear_message()
-        self.block_delete = block_delete
+        self.has_block_delete = block_delete
         self.stage = EditorStage.READING
         self.worker.enqueue_work(
             lambda: open_document(path, self.samples_folder), self._opened, self._not_opened
@@ -187,13 +187,13 @@ class EditorModel:
 
     def update_text(self, text: str) -> None:
         """Prove the changed text and store it as a draft."""
-        self.live_proof.submit_text(self.name, end_last_line(text), self.block_delete)
+        self.live_proof.submit_text(self.name, end_last_line(text), self.has_block_delete)
         if self.document is not None:
             self.draft_store.set_text(self.document, text)
 
     def preview_text(self, text: str) -> None:
         """Prove the text that a form would produce, without storing it."""
-        self.live_proof.submit_text(self.name, end_last_line(text), self.block_delete)
+        self.live_proof.submit_text(self.name, end_last_line(text), self.has_block_delete)
 
     def is_dirty(self, text: str) -> bool:
         """Return whether the text has unsaved changes."""
@@ -338,7 +338,7 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
     An unknown name is offered as a new file. Returns False if the editor cannot open; TurnDesk then shows
     the reason.
     """
-    name, now = editor.pending_name.strip(), desk.program_loader.loaded
+    name, now = editor.pending_name.strip(), desk.program_loader.loaded_program
     editor.pending_name = ""
     path = desk.program_choice.program_folders.find_path(name) if name else now.path
     if why := find_editor_refusal(desk.read_snapshot(), has_name=bool(name or path)):
@@ -349,7 +349,7 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
     if path is None:
         editor.offer_new(name)
     else:
-        editor.open_program(path, now.block_delete)
+        editor.open_program(path, now.has_block_delete)
     return True
 
 
@@ -357,14 +357,14 @@ def find_load_label(desk: Desk, editor: EditorModel, *, is_dirty: bool) -> str:
     """Return the label of F3, which loads saved changes or a text that is not loaded."""
     if is_dirty:
         return "SAV+LOAD"
-    document, now = editor.document, desk.program_loader.loaded
+    document, now = editor.document, desk.program_loader.loaded_program
     other = document is not None and document.path == now.path and desk.storage_state.read_file_difference()
     return "LOAD" if editor.is_saved_since_open or other or now.path is None else "LEAVE"
 
 
 def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
     """Load the closed program if F3 requires this, or else report which program remains loaded."""
-    path, now = closed.path, desk.program_loader.loaded
+    path, now = closed.path, desk.program_loader.loaded_program
     if closed.is_changed:
         desk.storage_state.recheck_file()
     if not closed.should_load:
@@ -378,7 +378,7 @@ def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
             tr(messages.RELOAD_AFTER_RUN)
         )  # A cycle was started at the operator station in the meantime.
     elif path == now.path:
-        desk.program_loader.start_loading(path, now.block_delete)
+        desk.program_loader.start_loading(path, now.has_block_delete)
     else:
         desk.program_choice.load_path(path)
 

@@ -145,8 +145,8 @@ class JogDirection:
 
     axis: str
     direction_sign: int
-    column: int
-    row: int
+    cell_column: int
+    cell_row: int
     key_name: str
     label: str
     arrow_point: ArrowPoint = _NO_ARROW

@@ -67,10 +67,10 @@ class JogCross(TouchPanel):
     def draw_cross(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the touch targets in a rectangle and return the area in the middle of the cross."""
         u = self.theme.unit_px
-        columns = 1 + max(2, *(each.column for each in self._directions))
+        columns = 1 + max(2, *(each.cell_column for each in self._directions))
         wide, high = area.width() / columns, area.height() / 3
         for each in self._directions:
-            x, y = area.x() + each.column * wide, area.y() + each.row * high
+            x, y = area.x() + each.cell_column * wide, area.y() + each.cell_row * high
             self._target(painter, QRectF(x, y, wide - 0.8 * u, high - 0.6 * u), each)
         return QRectF(area.x() + wide, area.y() + high, wide - 0.8 * u, high - 0.6 * u)
 

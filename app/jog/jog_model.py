@@ -83,7 +83,7 @@ class JogModel:
         self.setter_touch = SetterTouchOff(desk, self.machine, self.tool_setting, lease, self.directions)
         self.held_jog.setter_touch = self.setter_touch
         self.pendant_buttons = MachineJogButtons(self.machine, self.held_jog, self.handwheel, names)
-        self.tilted_jog = TiltedJog(MillTouchCalculator.find_for(desk).machine, self._end_hold, desk.say)
+        self.tilted_jog = TiltedJog(MillTouchCalculator.find_for(desk).kinematics, self._end_hold, desk.say)
         self.held_jog.find_direction = self.tilted_jog.find_direction
 
     @property
@@ -232,7 +232,7 @@ class JogModel:
     def toggle_tilt(self) -> None:
         """Turn 3D-ROT on or off, and turn the handwheel off."""
         self.handwheel.turn_off("")
-        self.tilted_jog.toggle(find_jog_refusal(self.desk.read_snapshot().state))
+        self.tilted_jog.toggle_tilted_frame(find_jog_refusal(self.desk.read_snapshot().state))
 
     def _end_hold(self, why: str) -> None:
         self.held_jog.release_all(why)

@@ -45,8 +45,8 @@ class TileRow:
     """
 
     name_and_key: tuple[str, str]
-    labels: tuple[str, ...]
-    actions: Sequence[Callable[[], None]]
+    tile_labels: tuple[str, ...]
+    tile_actions: Sequence[Callable[[], None]]
     selected_index: int = -1
     is_warning: bool = False
     alarmed_indices: frozenset[int] = frozenset()
@@ -60,15 +60,15 @@ def draw_tiles(
     if tiles.name_and_key[0]:
         left += NAME_WIDTH * u
         _name(painter, QRectF(row.x(), row.y(), (NAME_WIDTH - 0.6) * u, row.height()), tiles.name_and_key)
-    shares = [1.0 + 0.11 * max(0, len(word) - SHORT_LABEL_LENGTH) for word in tiles.labels]
+    shares = [1.0 + 0.11 * max(0, len(word) - SHORT_LABEL_LENGTH) for word in tiles.tile_labels]
     part = (row.right() - left + 0.6 * u) / sum(shares)
     boxes = []
-    for number, (word, share) in enumerate(zip(tiles.labels, shares, strict=True)):
+    for number, (word, share) in enumerate(zip(tiles.tile_labels, shares, strict=True)):
         box = QRectF(left, row.y(), share * part - 0.6 * u, row.height())
         left += share * part
         _draw_tile(painter, box, word, tiles, number)
         boxes.append(box)
-    return list(zip(boxes, tiles.actions, strict=True))
+    return list(zip(boxes, tiles.tile_actions, strict=True))
 
 
 def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:

@@ -363,7 +363,7 @@ class JogPage(HeldKeysPage):
         )
         if self.model.is_mill:
             foot = ""
-        text = tool.touch_off.reason if tool.is_setter_result else tool.text
+        text = tool.touch_off.change_reason if tool.is_setter_result else tool.text
         self.entry_panel.entry_texts = EntryTexts(
             "", tool.make_question_text(), text, tool.describe_change(), foot
         )

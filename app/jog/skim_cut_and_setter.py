@@ -52,7 +52,7 @@ class SkimCut:
     desk: Desk
     tool_setting: ToolSetting
     cut_step: SkimCutStep = SkimCutStep.OFF
-    quantity: str = ""  # =
+    measured_quantity: str = ""  # =
     cut_position_mm: float = 0.0  # Machine position of the axis during the cut in mm, by its encoder.
     # Commanded position during the cut in mm. The cutting force deflects the axis, which then springs back.
     commanded_position_mm: float = 0.0
@@ -71,7 +71,7 @@ class SkimCut:
     @property
     def measured_axis(self) -> str:
         """Return the axis that is measured, which must not move after the cut."""
-        return TOUCH_FIELDS[self.quantity].upper() if self.quantity else ""
+        return TOUCH_FIELDS[self.measured_quantity].upper() if self.measured_quantity else ""
 
     @property
     def travel_axis(self) -> str:
@@ -98,7 +98,7 @@ class SkimCut:
             self.desk.say(why)
             return
         self.desk.clear_prompt_line()
-        self.quantity, self.cut_step = quantity, SkimCutStep.CUTTING
+        self.measured_quantity, self.cut_step = quantity, SkimCutStep.CUTTING
         self._anew(self.desk.read_snapshot())
 
     def finish_cut(self) -> None:
@@ -156,7 +156,7 @@ class SkimCut:
         """End the skim cut without changing offsets."""
         if self.cut_step is SkimCutStep.MEASURING:
             self.tool_setting.close_question()
-        self.cut_step, self.quantity, self.failure_reason = SkimCutStep.OFF, "", ""
+        self.cut_step, self.measured_quantity, self.failure_reason = SkimCutStep.OFF, "", ""
         self.cut_length_mm, self._stands = 0.0, None
 
     # --- every frame ---------------------------------------------------------------------------------
@@ -233,7 +233,7 @@ class SkimCut:
         """Ask for the measured size when the spindle and the axes are stopped."""
         if snapshot.state is MachineState.IDLE and not self._turns(snapshot):
             self.cut_step = SkimCutStep.MEASURING
-            self.tool_setting.ask_cut_size(self.quantity, self.cut_position_mm)
+            self.tool_setting.ask_cut_size(self.measured_quantity, self.cut_position_mm)
 
     @staticmethod
     def _turns(snapshot: Snapshot) -> bool:

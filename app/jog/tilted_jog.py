@@ -94,7 +94,7 @@ class TiltedJog:
     jog_frame: JogFrame | None = None  # The available frame, also while 3D-ROT is off.
     refusal_reason: str = ""  # Why no frame is available.
 
-    def toggle(self, refusal: str = "") -> None:
+    def toggle_tilted_frame(self, refusal: str = "") -> None:
         """Turn 3D-ROT on or off, or show the reason why this is not possible."""
         self.release_keys("")
         if not self.is_on and self.jog_frame is None:

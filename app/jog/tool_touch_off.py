@@ -45,38 +45,44 @@ class TouchOff:
     measurement.
     """
 
-    quantity: str = ""
+    measured_quantity: str = ""
     touch_position_mm: float = 0.0
     skips_followers: bool = False  # Only this tool changes, although it is the master.
     measured_position_mm: float | None = None
-    reason: str = ""
+    change_reason: str = ""
     is_skim_cut: bool = False  # The entered size was measured on a skim cut.
 
     @property
     def field_name(self) -> str:
         """Return the name of the tool field that the touch-off sets."""
-        return TOUCH_FIELDS[self.quantity]
+        return TOUCH_FIELDS[self.measured_quantity]
 
     def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
         """Store the present position of the axis as the touch position."""
-        self.quantity, self.touch_position_mm, self.skips_followers = (
+        self.measured_quantity, self.touch_position_mm, self.skips_followers = (
             quantity,
             find_axis_position(quantity, snapshot),
             False,
         )
-        self.measured_position_mm, self.reason, self.is_skim_cut = None, "", False
+        self.measured_position_mm, self.change_reason, self.is_skim_cut = None, "", False
 
     def set_cut(self, quantity: str, position_mm: float) -> None:
         """Store the machine position of a skim cut in mm as the touch position."""
-        self.quantity, self.touch_position_mm, self.skips_followers = quantity, position_mm, False
-        self.measured_position_mm, self.reason, self.is_skim_cut = None, "", True
+        self.measured_quantity, self.touch_position_mm, self.skips_followers = quantity, position_mm, False
+        self.measured_position_mm, self.change_reason, self.is_skim_cut = None, "", True
 
     def set_measurement(self, quantity: str, position_mm: float, reason: str) -> None:
         """Store a measurement of the tool setter.
 
         Other tools do not follow the master tool after such a measurement.
         """
-        self.quantity, self.measured_position_mm, self.reason, self.skips_followers, self.is_skim_cut = (
+        (
+            self.measured_quantity,
+            self.measured_position_mm,
+            self.change_reason,
+            self.skips_followers,
+            self.is_skim_cut,
+        ) = (
             quantity,
             position_mm,
             reason,
@@ -91,7 +97,7 @@ class TouchOff:
         """
         if self.measured_position_mm is not None:
             return self._within(self.measured_position_mm)
-        typed = evaluate_expression(text) * (0.5 if self.quantity == TOUCH_X else 1.0)
+        typed = evaluate_expression(text) * (0.5 if self.measured_quantity == TOUCH_X else 1.0)
         return self._within(self.touch_position_mm - convert_to_mm(typed, value_mode.is_metric))
 
     def _within(self, place: float) -> float:
@@ -131,7 +137,10 @@ class TouchOff:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
         why = ask.touch_off(
-            tool_number, TouchPosition(x, z), self.reason or tr("touch-off of a new tool"), new_tool.tip_x_mm
+            tool_number,
+            TouchPosition(x, z),
+            self.change_reason or tr("touch-off of a new tool"),
+            new_tool.tip_x_mm,
         )
         if not why:
             new_tool.discard_values()
@@ -165,18 +174,19 @@ class TouchOff:
         return (
             self.measured_position_mm is None
             and not self.is_skim_cut
-            and abs(find_axis_position(self.quantity, snapshot) - self.touch_position_mm) > MOVE_TOLERANCE_MM
+            and abs(find_axis_position(self.measured_quantity, snapshot) - self.touch_position_mm)
+            > MOVE_TOLERANCE_MM
         )
 
     def _make_reason(self, text: str, mode: ValueMode) -> str:
         """Return the text that describes the touch-off in the history."""
-        if self.reason:
-            return f"{self.reason}{tr(', this tool only') if self.skips_followers else ''}"
+        if self.change_reason:
+            return f"{self.change_reason}{tr(', this tool only') if self.skips_followers else ''}"
         unit = "MM " if mode.is_metric else ""
         names = (
             (tr("skim cut Ø"), tr("skim cut Z"))
             if self.is_skim_cut
             else (tr("touch-off Ø"), tr("touch-off Z"))
         )
-        what = names[self.quantity != TOUCH_X]
+        what = names[self.measured_quantity != TOUCH_X]
         return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.skips_followers else ''}"

@@ -213,10 +213,10 @@ class MdiModel:
     mdi_input: MdiInput = field(default_factory=MdiInput)
     is_open: bool = False
     prepared_line: PreparedMdiLine = field(init=False)
-    completion: LineCompletion = field(init=False)
+    line_completion: LineCompletion = field(init=False)
 
     def __post_init__(self) -> None:
-        self.completion = LineCompletion(self.mdi_input, self.read_code_book)
+        self.line_completion = LineCompletion(self.mdi_input, self.read_code_book)
         self.prepared_line = PreparedMdiLine(self.prove_line, self.post_command, on_refused=self._refused)
 
     # --- page ----------------------------------------------------------------------------------------
@@ -234,7 +234,7 @@ class MdiModel:
         """
         self.is_open = True
         self.mdi_input.reload_history()
-        self.completion.is_open = False
+        self.line_completion.is_open = False
         self.prepared_line.cancel_line()
 
     def try_leave(self) -> bool:
@@ -280,7 +280,7 @@ class MdiModel:
         if not self.accepts_input:
             return False
         before = self.mdi_input.text
-        taken = self.completion.handle_key(key)
+        taken = self.line_completion.handle_key(key)
         if key == "Enter" and not taken:
             self.prove_entered_line()
             return True
@@ -306,11 +306,11 @@ class MdiModel:
         """Open or close the choices for the typed text or the code at the cursor."""
         if self.accepts_input:
             self.clear_message()
-            self.completion.toggle_choices()
+            self.line_completion.toggle_choices()
 
     def insert_code(self) -> None:
         """Insert the selected code into the line."""
-        self.completion.insert_code()
+        self.line_completion.insert_code()
         self.clear_message()
         self.prepared_line.cancel_line()
 
@@ -329,8 +329,8 @@ class MdiModel:
         Returns False if there was nothing to close, cancel or clear.
         """
         under_way = self.read_snapshot().state in prompt_line.ACTIVE_STATES
-        if self.completion.is_open:
-            self.completion.is_open = False
+        if self.line_completion.is_open:
+            self.line_completion.is_open = False
             return not under_way  # Closing the list does not delay feed hold.
         begun = self.prepared_line.ready_job or self.mdi_input.text or self.prepared_line.is_proving
         if under_way or not begun:
@@ -366,7 +366,7 @@ class MdiModel:
             return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE")
         if snapshot.state is not MachineState.IDLE:
             return ""
-        if self.completion.is_open:
+        if self.line_completion.is_open:
             return tr("ARROWS: SELECT CODE OR CHAPTER   ENTER: INSERT   ESC: BACK")
         return self._make_line_prompt(start_instruction)
 

@@ -177,7 +177,7 @@ class ModalPanel(Panel):
             painter.draw_text_line(
                 QRectF(box.x(), box.y(), left - u, high), row.label, size, "soft", bold=False
             )
-            painter.draw_text_line(box.adjusted(left, 0, 0, 0), row.value, size, "text")
+            painter.draw_text_line(box.adjusted(left, 0, 0, 0), row.active_code, size, "text")
 
 
 LINE, STATE = 15.6, 46.0  # Units: height of the line, width of the modal state.
@@ -199,7 +199,7 @@ class MdiPage(ModelPage):
         self.model = model
         self.line_panel = MdiLinePanel(self.theme, self._toggle_letter_pad, self)
         self.history_panel = MdiHistoryPanel(self.theme, self._recall, self)
-        self.code_list = CodeChoiceList(self.theme, model.completion.code_help, model.insert_code, self)
+        self.code_list = CodeChoiceList(self.theme, model.line_completion.code_help, model.insert_code, self)
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self, LINE_KEYS)
         self.path_view = PathView(self.theme, self)
         self.path_view.shows_whole_approach = True
@@ -272,7 +272,7 @@ class MdiPage(ModelPage):
         history.history_lines, history.recall_index = tuple(typing.history_lines), typing.recall_index
         history.error_columns = tuple(typing.error_columns.items())
         self._show_first_move(snapshot, loaded)
-        self.code_list.setVisible(model.completion.is_open)
+        self.code_list.setVisible(model.line_completion.is_open)
         self.code_list.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)

@@ -23,11 +23,11 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 class MillTouchCalculator:
     """A calculator of positions on a mill.
 
-    ``machine`` is the kinematics from the machine file, or None.
+    ``kinematics`` is the kinematics from the machine file, or None.
     """
 
     desk: Desk
-    machine: Kinematics | None
+    kinematics: Kinematics | None
 
     def close(self) -> None:
         """Do nothing, because nothing runs in the background."""
@@ -67,10 +67,10 @@ class MillTouchCalculator:
         ``workpiece_point`` is the machine position of the same point with the rotary axes at
         ``angles_before``.
         """
-        if self.machine is None:
+        if self.kinematics is None:
             return workpiece_point
         first, last = (
-            self.machine.apply_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(each.items())))
+            self.kinematics.apply_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(each.items())))
             for each in (angles_before, angles_after)
         )
         return last.move_to_table_zeros(first.move_from_table_zeros(workpiece_point))
@@ -78,7 +78,7 @@ class MillTouchCalculator:
     @property
     def rotary_axis_names(self) -> tuple[str, ...]:
         """Return the names of the rotary axes in alphabetical order."""
-        return tuple(sorted(axis.name for axis in self.machine.rotary_axes)) if self.machine else ()
+        return tuple(sorted(axis.name for axis in self.kinematics.rotary_axes)) if self.kinematics else ()
 
     def find_angle(self, axis_name: str) -> float | str:
         """Return the machine position of a rotary axis in degrees, or why it is unknown."""
@@ -105,12 +105,12 @@ class MillTouchCalculator:
         If these are unknown, return the reason as text.
         """
         snapshot, book = self.desk.read_snapshot(), self.desk.offset_book
-        if self.machine is None:
+        if self.kinematics is None:
             return tr("CANNOT TOUCH OFF: THE MILL'S MACHINE FILE HAS NO [kinematics] TABLE")
         if why := _unknown(snapshot):
             return why
         setup = add_mill_offsets(
-            Setup(kinematics=self.machine), MillOffsets({}, book.presets, book.active_preset)
+            Setup(kinematics=self.kinematics), MillOffsets({}, book.presets, book.active_preset)
         )
         assert setup.kinematics is not None
         at = dict(zip(snapshot.axes, snapshot.actual, strict=True))

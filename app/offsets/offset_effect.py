@@ -178,7 +178,7 @@ class EffectDisplay:
             self._open_part()
 
     def _open_part(self) -> None:
-        effect, now = self.offset_effect, self.offset_table.desk.program_loader.loaded
+        effect, now = self.offset_effect, self.offset_table.desk.program_loader.loaded_program
         if effect is None or effect.compare_part is None or now.job is None or self._asked is None:
             self.close_view()
         elif now.picture is not None and now.picture.no_part:
@@ -195,7 +195,7 @@ class EffectDisplay:
         """
         if self.is_open:
             return ""
-        if self.offset_effect is None or self.offset_table.desk.program_loader.loaded.job is None:
+        if self.offset_effect is None or self.offset_table.desk.program_loader.loaded_program.job is None:
             return tr("LOAD A PROGRAM FIRST TO SEE THE EFFECT ON ITS PATH")
         if self._make_tables_pair() is None:
             return tr("NO CHANGES YET. TYPE OR CHANGE A VALUE, THEN PRESS F6")
@@ -204,7 +204,7 @@ class EffectDisplay:
     def _open(self) -> None:
         effect, job, pair = (
             self.offset_effect,
-            self.offset_table.desk.program_loader.loaded.job,
+            self.offset_table.desk.program_loader.loaded_program.job,
             self._make_tables_pair(),
         )
         if effect is None or job is None or pair is None:

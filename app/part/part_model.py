@@ -74,7 +74,7 @@ class PartModel:
     @property
     def loaded_program(self) -> LoadedProgram:
         """Return the loaded program."""
-        return self.desk.program_loader.loaded
+        return self.desk.program_loader.loaded_program
 
     @property
     def program_name(self) -> str:
@@ -326,11 +326,11 @@ class PartModel:
         self.cancel_entry()
         if self._is_refused():
             return
-        if not (self.stored_part.stock or self.stored_part.stick_out_mm):
+        if not (self.stored_part.stock_text or self.stored_part.stick_out_mm):
             self.desk.say(tr("NO STOCK IS SPECIFIED FOR THIS PROGRAM"))
             return
         self.stock_entry = StockEntry()
-        self._save_part(replace(self.stored_part, stock="", stick_out_mm=None), tr("STOCK DATA DELETED"))
+        self._save_part(replace(self.stored_part, stock_text="", stick_out_mm=None), tr("STOCK DATA DELETED"))
 
     def _accept_entry(self) -> None:
         """Accept the typed text for the selected field."""
@@ -375,7 +375,7 @@ class PartModel:
         except StockError as error:
             self.desk.show_refusal(str(error))
             return
-        kept = replace(self.stored_part, stock=stock, stick_out_mm=entry.stick_out or None)
+        kept = replace(self.stored_part, stock_text=stock, stick_out_mm=entry.stick_out or None)
         if kept != self.stored_part:
             self._save_part(kept, tr(Message("STOCK DATA SAVED WITH {name}", name=self.program_name)))
 
@@ -440,7 +440,7 @@ class PartModel:
         change_text = Message(
             "{name}: stock {stock}, checks turned off: {silenced}",
             name=name,
-            stock=stored.stock or "not specified",
+            stock=stored.stock_text or "not specified",
             silenced=silenced,
         )
 
@@ -463,7 +463,7 @@ class PartModel:
         if self.desk.read_snapshot().state in ACTIVE_STATES:
             self.desk.renewal.is_requested = True
         else:
-            self.desk.program_loader.start_loading(loaded.path, loaded.block_delete)
+            self.desk.program_loader.start_loading(loaded.path, loaded.has_block_delete)
 
 
 def _find_most_important(found: tuple[Diagnostic, ...]) -> int:

@@ -61,7 +61,7 @@ class PartPage(ListPage):
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys of the table, and F3 while the editor cannot be opened."""
-        named = self.desk.program_loader.loaded.path is not None
+        named = self.desk.program_loader.loaded_program.path is not None
         closed = find_editor_refusal(self.desk.read_snapshot(), has_name=named)
         return super().find_disabled_keys() | ({"F3"} if closed else set())
 

@@ -113,7 +113,7 @@ def _format_assumed(page: PartModel, name: StockField) -> str:
         return format_length(page.assumed_stick_out_mm, page.is_metric) if page.assumed_stick_out_mm else ""
     part = page.loaded_program.part_proof
     stock = part.report.stock if part is not None and part.report is not None else None
-    if stock is None or page.stored_part.stock:
+    if stock is None or page.stored_part.stock_text:
         return ""
     return _format_stock_value(stock, name, page.is_metric)
 

@@ -84,10 +84,10 @@ class StockEntry:
         """
         out = stored.stick_out_mm or 0.0
         try:
-            spec = parse_specification(stored.stock) if stored.stock else StockSpec("")
+            spec = parse_specification(stored.stock_text) if stored.stock_text else StockSpec("")
         except StockError:
             return cls(stick_out=out)
-        kind = StockKind(stored.stock.partition(":")[0]) if stored.stock else StockKind.UNSPECIFIED
+        kind = StockKind(stored.stock_text.partition(":")[0]) if stored.stock_text else StockKind.UNSPECIFIED
         file = spec.profile or spec.after
         return cls(kind, spec.diameter, spec.bore, spec.length, spec.allowance, file, out)
 

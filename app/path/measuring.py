@@ -129,7 +129,7 @@ class SnapPoints:
     def _tables(self) -> tuple[tuple[PointKind, FloatArray], ...]:
         return (
             (PointKind.END, self._ends),
-            (PointKind.CENTER, self._polyline.centers),
+            (PointKind.CENTER, self._polyline.arc_centers),
             (PointKind.INTERSECTION, self._crossings),
         )
 

@@ -95,7 +95,7 @@ class PartPane(PathPane):
         left_band, low_band = _X_BAND * u, _Z_BAND * u
         wide, high = self.area.width() - left_band, self.area.height() - low_band
         inner = fit_mirrored((z0, z1, x0, x1), int(wide), int(high), FIT_MARGIN * u)
-        whole = replace(inner, width=int(self.area.width()), height=int(self.area.height()))
+        whole = replace(inner, width_px=int(self.area.width()), height_px=int(self.area.height()))
         return whole.shift(left_band / 2, -low_band / 2)
 
     @staticmethod
@@ -208,7 +208,7 @@ class PartPane(PathPane):
             if half is not None:
                 metal += project_section(half, projection, is_upper=far)
         self._metal = [
-            (_polygon(each.outline), [_polygon(edge) for edge in each.edge_lines]) for each in metal
+            (_polygon(each.outline_line), [_polygon(edge) for edge in each.edge_lines]) for each in metal
         ]
         self._hits = [_polygon(area) for hit in instant.hits for area in project_collision(hit, projection)]
         stock = instant.stock
@@ -271,7 +271,7 @@ class PartPane(PathPane):
             (s for s in _TICK_STEPS_MM if s * unit * projection.pixels_per_mm >= _MIN_TICK_DISTANCE * u),
             _TICK_STEPS_MM[-1],
         )
-        bottom, width = float(projection.height), float(projection.width)
+        bottom, width = float(projection.height_px), float(projection.width_px)
         ground, left, low = look.get_color("panel"), _X_BAND * u, bottom - _Z_BAND * u
         painter.fillRect(QRectF(0, 0, left, bottom), ground)
         painter.fillRect(QRectF(0, low, width, bottom - low), ground)
@@ -347,11 +347,11 @@ class SolidPane(PartPane):
         flat, shown = super().make_full_projection(), self.part_player.result
         if shown is None or (stock := shown.part_instant.stock) is None:
             return flat
-        wide, high = flat.width, max(flat.height - round(3.0 * self.theme.unit_px), 1)
+        wide, high = flat.width_px, max(flat.height_px - round(3.0 * self.theme.unit_px), 1)
         room = _VIEW_RADIUS_RATIO * stock.max_radius_mm  # leaves room for the tool
         left = self._left_of(shown, stock)
         scale, centre = fitted_solid(left, stock.front_z_mm, room, wide, high, self._azimuth)
-        return Projection(centre, 0.0, scale, flat.width, flat.height)
+        return Projection(centre, 0.0, scale, flat.width_px, flat.height_px)
 
     def set_projection(self, projection: Projection) -> None:
         """Set the projection, and request an image for it."""
@@ -360,14 +360,14 @@ class SolidPane(PartPane):
 
     def _want(self) -> None:
         projection = self.projection
-        if projection is None or projection.width < 1 or projection.height < 1:
+        if projection is None or projection.width_px < 1 or projection.height_px < 1:
             return
         opening = find_removed_quarter(self._tilt) if self.aspect is PathAspect.OPEN_SOLID else None
         view = SolidView(
             self._azimuth, self._tilt, self._roll, projection.pixels_per_mm, projection.z, opening
         )
         self._view = view
-        self.part_player.set_solid_request(SolidRequest(view, projection.width, projection.height))
+        self.part_player.set_solid_request(SolidRequest(view, projection.width_px, projection.height_px))
 
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the tool, and turn the part to the position of a locked C axis."""
@@ -402,7 +402,7 @@ class SolidPane(PartPane):
         if self.projection is not None:
             self.is_adjusted = True
             across = (position - self.area.topLeft()).x()
-            self.set_projection(self.projection.magnify(factor, across, self.projection.height / 2))
+            self.set_projection(self.projection.magnify(factor, across, self.projection.height_px / 2))
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -433,7 +433,7 @@ class SolidPane(PartPane):
             [x, z, 180.0 - view.roll_deg] for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))
         ]
         wide, high = (
-            (self.projection.width, self.projection.height) if self.projection is not None else (1, 1)
+            (self.projection.width_px, self.projection.height_px) if self.projection is not None else (1, 1)
         )
         corners = view.project_to_screen(np.array(places), wide, high)
         draw_travel_limits(painter, self.theme, [QPointF(x, y) for x, y in corners.tolist()])

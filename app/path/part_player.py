@@ -43,8 +43,8 @@ class SolidRequest(NamedTuple):
     """
 
     view: SolidView
-    width: int
-    height: int
+    width_px: int
+    height_px: int
     is_coarse: bool = False
 
 
@@ -77,7 +77,7 @@ class PartPlayer:
     """
 
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("part"))
-    clock: Callable[[], float] = time.monotonic
+    read_time_s: Callable[[], float] = time.monotonic
     follows_run: bool = False
     is_playing: bool = False
     is_fast: bool = False
@@ -140,7 +140,7 @@ class PartPlayer:
 
     def update(self) -> bool:
         """Fetch the result of the worker, request the next result, and return whether the view changed."""
-        shown, now = self._played, self.clock()
+        shown, now = self._played, self.read_time_s()
         gone, self._looked = now - self._looked, now
         self.worker.deliver_results()
         if self.is_playing:
@@ -168,13 +168,13 @@ class PartPlayer:
     def set_solid_request(self, solid: SolidRequest | None) -> None:
         """Set the 3D view to render, or turn off 3D rendering with None."""
         self._wanted = self._wanted._replace(solid_request=solid)
-        self._turned = self.clock()
+        self._turned = self.read_time_s()
 
     def _request_image(self) -> None:
         """Request a coarse image while the view moves, and a fine image when the view is at rest."""
         solid = self._wanted.solid_request
         if solid is not None:
-            moving = self.is_playing or self.follows_run or self.clock() - self._turned < _REST_TIME_S
+            moving = self.is_playing or self.follows_run or self.read_time_s() - self._turned < _REST_TIME_S
             if solid.is_coarse is not moving:
                 self._wanted = self._wanted._replace(solid_request=solid._replace(is_coarse=moving))
 
@@ -214,7 +214,7 @@ class PartPlayer:
         """
         if self.follows_run or self._picture is None:
             return
-        self.is_playing, self._looked = not self.is_playing, self.clock()
+        self.is_playing, self._looked = not self.is_playing, self.read_time_s()
         if self.is_playing and self.time_s >= self.duration_s:
             self.seek_time(0.0)
 
@@ -291,7 +291,7 @@ class PartPlayer:
         A new program is first simulated to its end, so that all findings are known.
         """
         history = self._history_of(picture)
-        watch = partial(self._publish_progress, history, request, [self.clock()])
+        watch = partial(self._publish_progress, history, request, [self.read_time_s()])
         if self._findings is None:
             self._findings = history.at(len(picture.ends) - 1, 0.0, watch).findings
         share = wanted.block_fraction
@@ -341,8 +341,8 @@ class PartPlayer:
         return self._painter.draw(
             self._solid[1],
             view,
-            look.width,
-            look.height,
+            look.width_px,
+            look.height_px,
             version=self._draws,
             hit_z_spans=spans,
             is_preview=look.is_coarse,
@@ -363,7 +363,7 @@ class PartPlayer:
     ) -> None:
         """Continue or cancel a long calculation, and publish an intermediate result."""
         request()
-        now = self.clock()
+        now = self.read_time_s()
         if now - last_report_time[0] > _IMAGE_INTERVAL_S:
             last_report_time[0] = now
             request.publish_result(

@@ -114,7 +114,7 @@ class PathLayers:
         )
         self._smooth = len(polyline.z) <= MAX_SMOOTH_CHORDS
         self._slice = SMOOTH_SLICE if self._smooth else SLICE
-        size = QSize(max(1, projection.width), max(1, projection.height))
+        size = QSize(max(1, projection.width_px), max(1, projection.height_px))
         self._base = QImage(size, QImage.Format.Format_RGB32)
         self._base.fill(theme.get_color("panel"))
         if draw_background is not None:
@@ -179,7 +179,7 @@ class PathLayers:
             return end
         z, x, seen = polyline.z[begin:end], polyline.x[begin:end], self.projection
         far = seen.pixels_per_mm * np.maximum(np.abs(np.diff(z)), np.abs(np.diff(x)))
-        pixels = np.cumsum(1.0 + np.minimum(far, max(seen.width, seen.height)))
+        pixels = np.cumsum(1.0 + np.minimum(far, max(seen.width_px, seen.height_px)))
         return begin + 1 + int(np.searchsorted(pixels, PIXELS_PER_SLICE))
 
     def _draw(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: LineStyle) -> None:
@@ -242,10 +242,10 @@ def draw_pixels(image: QImage, projection: Projection, shape: Shape, colors: dic
     inked = np.zeros(256, dtype=np.bool_)
     for kind, ink in colors.items():
         table[kind], inked[kind] = ink.rgb() & 0xFFFFFFFF, True
-    wanted = inked[shape.stroke[1:]]
-    columns, rows, strokes = shape.columns, shape.rows, shape.stroke[1:][wanted]
+    wanted = inked[shape.strokes[1:]]
+    columns, rows, strokes = shape.columns, shape.rows, shape.strokes[1:][wanted]
     ends = ChordEnds(columns[:-1][wanted], rows[:-1][wanted], columns[1:][wanted], rows[1:][wanted])
-    cut, inside = clip_chords(ends, projection.width - 1, projection.height - 1)
+    cut, inside = clip_chords(ends, projection.width_px - 1, projection.height_px - 1)
     column, row, which = rasterize_chords(cut)
     view_pixels(image)[row, column] = table[strokes[inside]][which]
 

@@ -36,7 +36,7 @@ class ViewButton(NamedTuple):
     """
 
     symbol: str
-    action: OnPress
+    on_press: OnPress
     is_lit: bool = False
 
 
@@ -367,10 +367,10 @@ def _pen(look: ScreenTheme, dashes: list[float]) -> QPen:
 def _cross(painter: QPainter, look: ScreenTheme, projection: Projection) -> None:
     painter.setPen(_pen(look, [14, 4, 2, 4]))
     row = round(float(projection.find_row(0.0))) + 0.5
-    painter.drawLine(QPointF(0, row), QPointF(projection.width, row))
+    painter.drawLine(QPointF(0, row), QPointF(projection.width_px, row))
     column = round(float(projection.find_column(0.0))) + 0.5
     painter.setPen(_pen(look, [2, 6]))
-    painter.drawLine(QPointF(column, 0), QPointF(column, projection.height))
+    painter.drawLine(QPointF(column, 0), QPointF(column, projection.height_px))
 
 
 def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection, polyline: Polyline) -> None:
@@ -407,18 +407,18 @@ def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection,
         360,
     )
     top, bottom = (
-        projection.x - projection.height / 2 / projection.pixels_per_mm,
-        projection.x + projection.height / 2 / projection.pixels_per_mm,
+        projection.x - projection.height_px / 2 / projection.pixels_per_mm,
+        projection.x + projection.height_px / 2 / projection.pixels_per_mm,
     )
     painter.setFont(theme.make_font(1.5))
     for number in range(math.ceil(-bottom / scale / step), math.floor(-top / scale / step) + 1):
         degrees = number * step
         row = round(float(projection.find_row(-degrees * scale))) + 0.5
         painter.setPen(_pen(theme, [14, 4, 2, 4] if degrees % 360 == 0 else [2, 6]))
-        painter.drawLine(QPointF(0, row), QPointF(projection.width, row))
+        painter.drawLine(QPointF(0, row), QPointF(projection.width_px, row))
         painter.setPen(theme.get_color("soft"))
         text = f"C{formats.format_fixed(degrees, 0)}"
         draw_text(painter, QRectF(0.8 * u, row - 2.0 * u, 8 * u, 2 * u), ALIGN_LEFT, text)
     column = round(float(projection.find_column(0.0))) + 0.5
     painter.setPen(_pen(theme, [2, 6]))
-    painter.drawLine(QPointF(column, 0), QPointF(column, projection.height))
+    painter.drawLine(QPointF(column, 0), QPointF(column, projection.height_px))

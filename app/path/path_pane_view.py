@@ -203,8 +203,10 @@ class PathPane:
         """Return the coordinates z and x of the plane at a widget position."""
         projection, room = self.projection, self.area
         assert projection is not None
-        z = projection.z + (position.x() - room.x() - projection.width / 2) / projection.pixels_per_mm
-        return z, projection.x + (position.y() - room.y() - projection.height / 2) / projection.pixels_per_mm
+        z = projection.z + (position.x() - room.x() - projection.width_px / 2) / projection.pixels_per_mm
+        return z, projection.x + (
+            position.y() - room.y() - projection.height_px / 2
+        ) / projection.pixels_per_mm
 
     def find_visible_area(self) -> Bounds:
         """Return the visible area as minimum z, maximum z, minimum x and maximum x."""

@@ -90,7 +90,7 @@ class FaceBuilder:
         low_z, high_z, low_x, high_x = find_bounds(z, x, stroke)
         reach = max(abs(low_z), abs(high_z), abs(low_x), abs(high_x))
         centres = np.array(self.polyline_builder.centers).reshape(-1, 2)
-        return Polyline(z, x, stroke, first, (-reach, reach, -reach, reach), centers=centres)
+        return Polyline(z, x, stroke, first, (-reach, reach, -reach, reach), arc_centers=centres)
 
 
 class SideBuilder:
@@ -145,7 +145,7 @@ class SideBuilder:
         centres = np.array(self.polyline_builder.centers).reshape(-1, 2) * (1.0, scale)
         down: FloatArray = x * scale
         bounds = find_bounds(z, down, stroke)
-        return Polyline(z, down, stroke, first, bounds, centers=centres, mm_per_degree=scale)
+        return Polyline(z, down, stroke, first, bounds, arc_centers=centres, mm_per_degree=scale)
 
 
 class FaceAndSideBuilder:
@@ -333,7 +333,7 @@ class PictureBuilder:
             ends=np.array(self._ends),
             chord=np.array(self._chord),
             bounds=find_bounds(z, x, stroke),
-            centers=np.array(self._pencil.centers).reshape(-1, 2),
+            arc_centers=np.array(self._pencil.centers).reshape(-1, 2),
             line=np.array(self._line, dtype=np.int64),
             face=face,
             side=side,

@@ -33,16 +33,16 @@ class Projection:
     z: float
     x: float
     pixels_per_mm: float
-    width: int
-    height: int
+    width_px: int
+    height_px: int
 
     def find_column(self, z: FloatArray | float) -> FloatArray | float:
         """Return the pixel column of a Z position. Z+ is to the right."""
-        return self.width / 2 + (z - self.z) * self.pixels_per_mm
+        return self.width_px / 2 + (z - self.z) * self.pixels_per_mm
 
     def find_row(self, x: FloatArray | float) -> FloatArray | float:
         """Return the pixel row of an X radius. X+ is down, towards the operator."""
-        return self.height / 2 + (x - self.x) * self.pixels_per_mm
+        return self.height_px / 2 + (x - self.x) * self.pixels_per_mm
 
     def magnify(self, factor: float, column: float, row: float) -> Projection:
         """Return a projection magnified by ``factor``.
@@ -50,14 +50,14 @@ class Projection:
         The point at (column, row) does not move.
         """
         scale = min(max(self.pixels_per_mm * factor, 0.02), 5000.0)
-        z = self.z + (column - self.width / 2) * (1 / self.pixels_per_mm - 1 / scale)
-        x = self.x + (row - self.height / 2) * (1 / self.pixels_per_mm - 1 / scale)
-        return Projection(z, x, scale, self.width, self.height)
+        z = self.z + (column - self.width_px / 2) * (1 / self.pixels_per_mm - 1 / scale)
+        x = self.x + (row - self.height_px / 2) * (1 / self.pixels_per_mm - 1 / scale)
+        return Projection(z, x, scale, self.width_px, self.height_px)
 
     def shift(self, column_count: float, row_count: float) -> Projection:
         """Return the projection shifted by a number of pixels."""
         z, x = self.z - column_count / self.pixels_per_mm, self.x - row_count / self.pixels_per_mm
-        return Projection(z, x, self.pixels_per_mm, self.width, self.height)
+        return Projection(z, x, self.pixels_per_mm, self.width_px, self.height_px)
 
 
 def fit_mirrored(
@@ -86,7 +86,7 @@ class Shape(NamedTuple):
 
     columns: FloatArray
     rows: FloatArray
-    stroke: npt.NDArray[np.uint8]
+    strokes: npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ def _find_visible_points(
 def _find_outside(columns: FloatArray, rows: FloatArray, projection: Projection) -> npt.NDArray[np.bool_]:
     """Return a mask of the chords with both ends outside the same edge."""
     out = np.zeros(max(0, len(columns) - 1), dtype=np.bool_)
-    for beyond in (columns < 0, columns > projection.width, rows < 0, rows > projection.height):
+    for beyond in (columns < 0, columns > projection.width_px, rows < 0, rows > projection.height_px):
         out |= beyond[1:] & beyond[:-1]
     return out
 
@@ -243,7 +243,7 @@ class PixelLine(NamedTuple):
 class SectionArea(NamedTuple):
     """One area of a section, with the edges that are drawn as lines."""
 
-    outline: PixelLine
+    outline_line: PixelLine
     edge_lines: tuple[PixelLine, ...]
 
 
@@ -314,7 +314,7 @@ def project_clamping(clamping: Clamping, stock: Stock, projection: Projection) -
             _ring(_line(z, side * r, projection), _line(inner_z, side * inner_r, projection))
             for side in (1.0, -1.0)
         ]
-    tailstock = clamping.tailstock
+    tailstock = clamping.tailstock_solid
     if tailstock is not None:
         z, r = np.array(tailstock.outside_profile).T
         found.append(_ring(_line(z, r, projection), _line(z, -r, projection)))
@@ -377,7 +377,7 @@ def _padded(r: FloatArray) -> FloatArray:
 
 def _find_visible_range(edges: FloatArray, projection: Projection) -> tuple[int, int]:
     """Return the first visible column, and the last visible column plus one."""
-    half = (projection.width / 2 + _OVERDRAW_PX) / projection.pixels_per_mm
+    half = (projection.width_px / 2 + _OVERDRAW_PX) / projection.pixels_per_mm
     first = int(np.searchsorted(edges, projection.z - half)) - 1
     last = int(np.searchsorted(edges, projection.z + half))
     return max(first, 0), min(last, len(edges) - 1)

@@ -49,7 +49,7 @@ class Polyline:
     stroke: npt.NDArray[np.uint8]
     first: npt.NDArray[np.int64]
     bounds: Bounds
-    centers: FloatArray = field(default_factory=lambda: np.zeros((0, 2)), kw_only=True)
+    arc_centers: FloatArray = field(default_factory=lambda: np.zeros((0, 2)), kw_only=True)
     mm_per_degree: float = field(default=0.0, kw_only=True)
 
     @property

@@ -45,7 +45,7 @@ class PartsWatch:
     @property
     def program_name(self) -> str:
         """Return the name of the loaded program."""
-        return Path(self.desk.program_loader.loaded.name).name
+        return Path(self.desk.program_loader.loaded_program.name).name
 
     def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update production data, tool life and the lock of the next part.

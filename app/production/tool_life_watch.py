@@ -107,7 +107,7 @@ class ToolLifeWatch:
             if control
             else None
         )
-        if stored is not None and stored.control == control:
+        if stored is not None and stored.control_identity == control:
             self._ends, self._cut, self._in_part = (
                 stored.finished_part_count,
                 stored.cutting_seconds,

@@ -12,7 +12,7 @@ TOTALS_SETTING = "tool_totals"  # key of the setting
 class ToolTotals:
     """Number of finished parts, cutting seconds by tool, and tools of the current part of a control."""
 
-    control: str
+    control_identity: str
     finished_part_count: int = 0
     cutting_seconds: Mapping[int, float] = field(default_factory=dict)
     tools_in_part: frozenset[int] = frozenset()
@@ -22,7 +22,7 @@ class ToolTotals:
         """Return the totals as the value of a setting."""
         cut = {str(number): seconds for number, seconds in self.cutting_seconds.items()}
         return {
-            "control": self.control,
+            "control": self.control_identity,
             "ends": self.finished_part_count,
             "cut": cut,
             "in_part": sorted(self.tools_in_part),

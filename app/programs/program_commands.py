@@ -185,7 +185,7 @@ class ProgramCommands:
             words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
             return tr(Message(words, name=program.name))
         state = self.desk.read_snapshot().state
-        if state in ACTIVE_STATES and self.desk.program_loader.loaded.path == program.path:
+        if state in ACTIVE_STATES and self.desk.program_loader.loaded_program.path == program.path:
             return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=program.name))
         return ""
 

@@ -81,7 +81,7 @@ class ProgramListModel:
 
     def on_open(self) -> None:
         """Read the folders and the records when the page opens."""
-        self._after = self.desk.program_loader.loaded.name
+        self._after = self.desk.program_loader.loaded_program.name
         self.reload_list()
 
     def reload_list(self) -> None:

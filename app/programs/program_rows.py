@@ -128,8 +128,8 @@ class Thumbnail(NamedTuple):
     """
 
     pixels: bytes
-    width: int
-    height: int
+    width_px: int
+    height_px: int
 
 
 DrawThumbnail = Callable[[Job, ProgressCallback], Thumbnail | None]

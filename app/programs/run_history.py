@@ -131,7 +131,7 @@ class PartCounter:
 
     persistence: Persistence = field(default_factory=Persistence)
     program_name: str = ""
-    count: int = 0
+    part_count: int = 0
     target_count: int = 0
     job_target_count: int = 0  # count at which the active job is done; has priority over the target
     _seen: int | None = None
@@ -142,7 +142,7 @@ class PartCounter:
     @property
     def count_text(self) -> str:
         """Return the number of parts, with the target if there is one, for example ``12`` or ``12/100``."""
-        return f"{self.count}/{self.final_count}" if self.final_count else str(self.count)
+        return f"{self.part_count}/{self.final_count}" if self.final_count else str(self.part_count)
 
     @property
     def final_count(self) -> int:
@@ -155,7 +155,7 @@ class PartCounter:
     @property
     def is_complete(self) -> bool:
         """Return whether all requested parts have been made."""
-        return 0 < self.final_count <= self.count
+        return 0 < self.final_count <= self.part_count
 
     def observe(
         self,
@@ -175,42 +175,42 @@ class PartCounter:
             self.text_digest = text_digest
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
-            self.count += snapshot.parts - self._seen
+            self.part_count += snapshot.parts - self._seen
             if (
                 self.is_complete and not self.job_target_count
             ):  # The end of a job is reported together with the next job.
                 words = tr("TARGET REACHED: {count} OF {target} PARTS")
-                show_message(tr(Message(words, count=self.count, target=self.target_count)))
+                show_message(tr(Message(words, count=self.part_count, target=self.target_count)))
         self._seen = snapshot.parts
         self._send_count(snapshot, post_command)
         self._stop_at(snapshot, post_command, show_message)
 
     def _send_count(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
         """Send the count to the executor, which numbers the parts."""
-        if self.program_name and self.count not in {snapshot.made, self._made}:
-            post(SetPartCount(self.count))
-        self._made = self.count
+        if self.program_name and self.part_count not in {snapshot.made, self._made}:
+            post(SetPartCount(self.part_count))
+        self._made = self.part_count
 
     def _stop_at(
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
-        last = snapshot.counts and self.final_count > 0 and self.count + 1 >= self.final_count
+        last = snapshot.counts and self.final_count > 0 and self.part_count + 1 >= self.final_count
         if (
             last
             and snapshot.cycle_repeat
             and snapshot.state in _PRODUCING_STATES
-            and self._announced != self.count
+            and self._announced != self.part_count
         ):
-            self._announced = self.count
+            self._announced = self.part_count
             post(SetSwitch("cycle_repeat", False))
             say("THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF")
 
     def _load(self, name: str) -> None:
-        self.program_name, self.count, self.target_count, self._announced = name, 0, 0, -1
+        self.program_name, self.part_count, self.target_count, self._announced = name, 0, 0, -1
         if not name:
             return
         try:
-            self.count = self.persistence.runs.read_part_count(name)
+            self.part_count = self.persistence.runs.read_part_count(name)
             kept = self.persistence.read_setting(_key(name))
         except StoreError:
             return  # TurnDesk itself reports that nothing is stored.
@@ -241,14 +241,14 @@ class PartCounter:
 
         Raise StoreError if the count cannot be stored.
         """
-        self.count, self._announced = self.count + change, -1
+        self.part_count, self._announced = self.part_count + change, -1
         self.persistence.runs.add_parts(self.program_name, change)
         self.persistence.log_change(
             Message(
                 "part count of {program}: {count} → {count2}",
                 program=self.program_name,
-                count=self.count - change,
-                count2=self.count,
+                count=self.part_count - change,
+                count2=self.part_count,
             )
         )
 
@@ -257,7 +257,7 @@ class PartCounter:
 
         Raise StoreError if the count cannot be stored.
         """
-        before, self.count, self._announced = self.count, 0, -1
+        before, self.part_count, self._announced = self.part_count, 0, -1
         self.persistence.runs.reset_parts(self.program_name)
         self.persistence.log_change(
             Message("part count of {program}: {before} → 0", program=self.program_name, before=before)

@@ -211,13 +211,17 @@ def _framed(stock: Stock, clamping: Clamping | None) -> SvgDrawing:
 def _chuck(drawing: SvgDrawing, clamping: Clamping | None) -> None:
     if clamping is None:
         return
-    if (tailstock := clamping.tailstock) is not None:
+    if (tailstock := clamping.tailstock_solid) is not None:
         drawing.add_polygon(
             [*tailstock.outside_profile, *((z, -r) for z, r in reversed(tailstock.outside_profile))], "chuck"
         )
     if not clamping.diameter:
         return
-    upper = [*clamping.outline, (clamping.outline[-1][0], 0.0), (clamping.outline[0][0], 0.0)]
+    upper = [
+        *clamping.chuck_outline,
+        (clamping.chuck_outline[-1][0], 0.0),
+        (clamping.chuck_outline[0][0], 0.0),
+    ]
     drawing.add_polygon(upper, "chuck")
     drawing.add_polygon([(z, -r) for z, r in upper], "chuck")
 

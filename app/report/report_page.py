@@ -128,7 +128,7 @@ class ProgramReport:
             radius=self._length(2 * stock.max_radius_mm),
             bore=bore,
         )
-        name = stock.specification or taken
+        name = stock.specification_text or taken
         rows = [
             ("Stock", f"{name}; {self._volume(part.stock_volume_mm3)}"),
             ("Cut away", self._volume(part.removed_volume_mm3)),
@@ -150,7 +150,9 @@ class ProgramReport:
             return "<p>No section view is shown because the program does not turn a part.</p>"
         clamping = record.part_setting.clamping
         short = (
-            Message("; only the first {moves_count} moves are shown", moves_count=f"{len(record.moves):,}")
+            Message(
+                "; only the first {moves_count} moves are shown", moves_count=f"{len(record.tip_moves):,}"
+            )
             if record.is_truncated
             else ""
         )
@@ -161,10 +163,10 @@ class ProgramReport:
             part_drawings.draw_section(part.stock, part.last_piece, clamping, part.section_halves),
             Message("Section (light: stock, dark: finished part){milled}", milled=milled),
         )
-        if not record.moves:
+        if not record.tip_moves:
             return cut_open
         return cut_open + make_drawing_block(
-            part_drawings.path(part.stock, part.last_piece, clamping, record.moves, part.section_halves),
+            part_drawings.path(part.stock, part.last_piece, clamping, record.tip_moves, part.section_halves),
             Message("Tool paths (solid: cuts, dashed: rapids, thick: threads){short}", short=short),
         )
 
@@ -196,8 +198,8 @@ class ProgramReport:
         if self._part is None or not wanted:
             return {}
         held = self._record.find_material(wanted)
-        moves = {move.n: move for move in self._record.moves if move.n in held}
-        shapes, clamping = self._part.shapes, self._record.part_setting.clamping
+        moves = {move.n: move for move in self._record.tip_moves if move.n in held}
+        shapes, clamping = self._part.tool_shapes, self._record.part_setting.clamping
         return {
             n: part_drawings.draw_finding(move, held[n], shapes.get(move.modal.tool), clamping)
             for n, move in moves.items()
@@ -206,7 +208,7 @@ class ProgramReport:
     # --- tables
 
     def _tools(self) -> str:
-        shapes = self._part.shapes if self._part is not None else {}
+        shapes = self._part.tool_shapes if self._part is not None else {}
         numbers = sorted(
             {*self._report.tool_numbers, *(n for n, time in self._record.tool_times.items() if time.total_s)}
         )

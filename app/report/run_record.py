@@ -50,7 +50,7 @@ class RunRecorder:
     """Recorder of the spans of a proving pass."""
 
     part_setting: PartSettings
-    moves: list[TipMove] = field(default_factory=list)
+    tip_moves: list[TipMove] = field(default_factory=list)
     tool_times: dict[int, ToolTimes] = field(default_factory=dict)
     program_stops: list[PlannedStop] = field(default_factory=list)
     used_secondary: set[int] = field(default_factory=set)  # D numbers that are called
@@ -107,14 +107,14 @@ class RunRecorder:
 
     def _draw(self, span: MotionSpan) -> None:
         for part in span.block_groups:
-            if len(self.moves) > MAX_MOVES:
+            if len(self.tip_moves) > MAX_MOVES:
                 self.is_truncated = True
                 return
             for step in self._steps.convert_blocks(part):
                 if isinstance(step, TipMove):
-                    self.moves.append(step)
+                    self.tip_moves.append(step)
                 elif isinstance(step, LiveToolStep):
-                    self.moves.append(make_live_tool_move(step))
+                    self.tip_moves.append(make_live_tool_move(step))
 
     def find_material(self, block_numbers: Collection[int]) -> dict[int, PartedPiece]:
         """Return the material before each of these blocks in which a tool moves in X and Z."""

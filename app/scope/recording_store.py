@@ -72,7 +72,7 @@ class RecordingStore:
     save_recording: SaveRecording
     open_recording: OpenRecording
     write_table: WriteCsvTable
-    clock: Callable[[], float] = time.time
+    read_time_s: Callable[[], float] = time.time
     recording_files: tuple[RecordingFile, ...] = field(default=())
 
     def list_files(self) -> tuple[RecordingFile, ...]:
@@ -144,7 +144,7 @@ class RecordingStore:
 
     def _make_path(self, stem: str, extension: str) -> Path:
         """Return an unused path that contains the date and time."""
-        named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.clock()))}"
+        named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.read_time_s()))}"
         names = (f"{named}{more}{extension}" for more in ("", *(f" {n}" for n in range(2, 100))))
         return next(self.folder / name for name in names if not (self.folder / name).exists())
 

@@ -392,14 +392,14 @@ class ScopeModel:
 
         Earlier samples do not fire the trigger.
         """
-        self.is_armed = self.trigger.event is not TriggerEvent.OFF and self.is_live
+        self.is_armed = self.trigger.trigger_event is not TriggerEvent.OFF and self.is_live
         self._armed_at = self.live_samples.newest_time_s if self.live_samples is not None else -np.inf
         self._released = None
 
     @property
     def trigger_text(self) -> str:
         """Return the state of the trigger as text."""
-        if self.trigger.event is TriggerEvent.OFF:
+        if self.trigger.trigger_event is TriggerEvent.OFF:
             return ""
         if self._released is not None:
             return tr("TRIGGERED")

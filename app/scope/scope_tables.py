@@ -87,18 +87,22 @@ class ScopeTables:
         scope = self.scope_model
         trigger, signal = scope.trigger, self._signal
         what, unit = "", ""
-        if trigger.event.needs_level and signal is not None:
+        if trigger.trigger_event.needs_level and signal is not None:
             quantity = signal.quantity
             unit = quantity.unit(scope.metric)
             what = formats.format_fixed(
-                trigger.level * quantity.find_scale(scope.metric), quantity.places(scope.metric)
+                trigger.trigger_level * quantity.find_scale(scope.metric), quantity.places(scope.metric)
             )
-        elif trigger.event is TriggerEvent.LINE:
+        elif trigger.trigger_event is TriggerEvent.LINE:
             what = str(trigger.line_number)
         rows = (
-            TableRow(("TRIGGER EVENT", tr(trigger.event.value))),
-            TableRow(("SIGNAL", signal.title if trigger.event.needs_level and signal is not None else "")),
-            TableRow(("LINE" if trigger.event is TriggerEvent.LINE else "LEVEL", f"{what} {unit}".strip())),
+            TableRow(("TRIGGER EVENT", tr(trigger.trigger_event.value))),
+            TableRow(
+                ("SIGNAL", signal.title if trigger.trigger_event.needs_level and signal is not None else "")
+            ),
+            TableRow(
+                ("LINE" if trigger.trigger_event is TriggerEvent.LINE else "LEVEL", f"{what} {unit}".strip())
+            ),
             TableRow(("TRIGGER POSITION IN WINDOW", formats.format_percent(trigger.fraction_before))),
         )
         asked = self.selected_row == _LEVEL and bool(what)
@@ -108,7 +112,7 @@ class ScopeTables:
             (0.45, 0.55),
             rows,
             self.selected_row,
-            question=("LINE?" if trigger.event is TriggerEvent.LINE else "LEVEL?") if asked else "",
+            question=("LINE?" if trigger.trigger_event is TriggerEvent.LINE else "LEVEL?") if asked else "",
             text=self.input_field.text,
             notes=("The trigger freezes the curves only once.",),
             raw_columns=frozenset({1}),
@@ -224,11 +228,11 @@ class ScopeTables:
         trigger, row = self.scope_model.trigger, self.selected_row
         if row == _RELEASE:
             order = list(TriggerEvent)
-            following = order[(order.index(trigger.event) + 1) % len(order)]
+            following = order[(order.index(trigger.trigger_event) + 1) % len(order)]
             signal = self._signal
             name = signal.key if signal is not None else ""
-            self.scope_model.set_trigger(replace(trigger, event=following, signal_key=name))
-        elif row == _SIGNAL and trigger.event.needs_level and self.scope_model.shown:
+            self.scope_model.set_trigger(replace(trigger, trigger_event=following, signal_key=name))
+        elif row == _SIGNAL and trigger.trigger_event.needs_level and self.scope_model.shown:
             names = [each.key for each in self.scope_model.shown]
             at = names.index(trigger.signal_key) if trigger.signal_key in names else -1
             self.scope_model.set_trigger(replace(trigger, signal_key=names[(at + 1) % len(names)]))
@@ -240,7 +244,7 @@ class ScopeTables:
     def _handle_enter(self) -> None:
         """Accept the typed value, or report why the value is invalid."""
         scope, trigger = self.scope_model, self.scope_model.trigger
-        if trigger.event is TriggerEvent.LINE:
+        if trigger.trigger_event is TriggerEvent.LINE:
             line = evaluate_line_number(self.input_field.text)
             if line is None:
                 self.input_field.text = refused(self.input_field.text)
@@ -254,7 +258,9 @@ class ScopeTables:
         signal = self._signal
         scale = signal.quantity.find_scale(scope.metric) if signal is not None else 1.0
         try:
-            scope.set_trigger(replace(trigger, level=evaluate_expression(self.input_field.text) / scale))
+            scope.set_trigger(
+                replace(trigger, trigger_level=evaluate_expression(self.input_field.text) / scale)
+            )
         except EntryError as error:
             self.input_field.text = refused(self.input_field.text)
             scope.desk.show_refusal(str(error))

@@ -149,13 +149,13 @@ TRIGGER_POSITIONS = (0.1, 0.5, 0.9)  # shares of the window before the trigger
 class Trigger:
     """Trigger of the scope.
 
-    ``signal_key`` is the key of a signal. ``level`` is in internal units. ``fraction_before`` is the fraction
-    of the window before the event.
+    ``signal_key`` is the key of a signal. ``trigger_level`` is in internal units. ``fraction_before`` is the
+    fraction of the window before the event.
     """
 
-    event: TriggerEvent = TriggerEvent.OFF
+    trigger_event: TriggerEvent = TriggerEvent.OFF
     signal_key: str = ""
-    level: float = 0.0
+    trigger_level: float = 0.0
     line_number: int = 1
     fraction_before: float = 0.5
 
@@ -165,9 +165,9 @@ class Trigger:
 
         Return an empty string while the trigger is off.
         """
-        if self.event.needs_level:
+        if self.trigger_event.needs_level:
             return self.signal_key
-        return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.event, "")
+        return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.trigger_event, "")
 
     def with_next_position(self) -> Trigger:
         """Return a copy with the next position of the event in the window."""
@@ -184,7 +184,7 @@ class Trigger:
         The first sample cannot fire the trigger. ``alarm_values`` contains the values of the channel
         ``state`` that indicate an alarm or an E-stop.
         """
-        if self.event is TriggerEvent.OFF or len(values) < 2:
+        if self.trigger_event is TriggerEvent.OFF or len(values) < 2:
             return None
         with np.errstate(invalid="ignore"):
             on = self._on(values, alarm_values)
@@ -193,12 +193,12 @@ class Trigger:
         return float(times[edges[0] + 1]) if len(edges) else None
 
     def _on(self, values: FloatArray, alarmed: frozenset[int]) -> npt.NDArray[np.bool_]:
-        if self.event is TriggerEvent.RISES_ABOVE:
-            return np.asarray(values >= self.level)
-        if self.event is TriggerEvent.FALLS_BELOW:
-            return np.asarray(values <= self.level)
-        if self.event is TriggerEvent.EXCEEDS:
-            return np.asarray(np.abs(values) > abs(self.level))
-        if self.event is TriggerEvent.LINE:
+        if self.trigger_event is TriggerEvent.RISES_ABOVE:
+            return np.asarray(values >= self.trigger_level)
+        if self.trigger_event is TriggerEvent.FALLS_BELOW:
+            return np.asarray(values <= self.trigger_level)
+        if self.trigger_event is TriggerEvent.EXCEEDS:
+            return np.asarray(np.abs(values) > abs(self.trigger_level))
+        if self.trigger_event is TriggerEvent.LINE:
             return np.asarray(values == self.line_number)
         return np.isin(values, sorted(alarmed))

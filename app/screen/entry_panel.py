@@ -109,7 +109,7 @@ class EntryTexts:
     keys.
     """
 
-    subject: str = ""
+    subject_text: str = ""
     question_text: str = ""
     text: str = ""
     change_text: str = ""
@@ -131,9 +131,9 @@ class EntryPanel(Panel):
         u, asked = self.theme.unit_px, self.entry_texts
         room = self.find_full_area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
         painter.draw_text_line(
-            QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.subject, 1.9, "text", bold=False
+            QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.subject_text, 1.9, "text", bold=False
         )
-        left = 28 * u if asked.subject else 0.0
+        left = 28 * u if asked.subject_text else 0.0
         change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
         painter.draw_text_line(change, asked.change_text, 2.0, "accent")
         self._ask(painter, QRectF(room.x(), room.y() + 3.5 * u, room.width(), 4.8 * u))

@@ -296,7 +296,11 @@ class PagePreloader:
         This is called once a frame.
         """
         now = self._desk.clock.read_seconds()
-        if self.is_done or now < self._next or self._desk.program_loader.loaded.phase in _LOADING_PHASES:
+        if (
+            self.is_done
+            or now < self._next
+            or self._desk.program_loader.loaded_program.phase in _LOADING_PHASES
+        ):
             return
         self._next = now + MIN_SLICE_INTERVAL_S
         self._worker.deliver_results()

@@ -297,7 +297,7 @@ def _left_out(found: RestartPoint) -> str:
 def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
     wanted, now = _make_position_rows(point, *point.machine), _make_position_rows(point, *snapshot.demand[:2])
     both = zip(wanted, now, strict=True)
-    places = (StateRow(w.label, w.value, n.value) for w, n in both)
+    places = (StateRow(w.label, w.active_code, n.active_code) for w, n in both)
     return (*places, *_make_state_rows(point, snapshot, language))
 
 
@@ -307,7 +307,11 @@ def _make_state_rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tu
     The rows are in the terms of the program's language.
     """
     both = zip(make_modal_rows(point, language), make_modal_rows(_now(snapshot), language), strict=True)
-    return tuple(StateRow(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
+    return tuple(
+        StateRow(w.label, w.active_code, n.active_code)
+        for w, n in both
+        if w.key != "comment" or w.active_code
+    )
 
 
 def _now(snapshot: Snapshot) -> Checkpoint:
@@ -330,7 +334,7 @@ def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
     match action:
         case SpindleRun():
             direction = tr("SPINDLE FORWARD") if modal.spindle > 0 else tr("SPINDLE REVERSE")
-            speed = next(row.value for row in make_modal_rows(point, language) if row.key == "speed")
+            speed = next(row.active_code for row in make_modal_rows(point, language) if row.key == "speed")
             return Message("{details} {speed}", details=direction, speed=speed)
         case SpindleLock():
             return tr("SPINDLE LOCKED AS C AXIS AND TURNED INTO POSITION")

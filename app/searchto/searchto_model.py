@@ -101,14 +101,14 @@ class SearchtoModel:
 
     def can_open(self) -> bool:
         """Return whether SEARCHTO can be opened now, and show the reason if not."""
-        why = find_searchto_refusal(self.read_snapshot(), self.program_loader.loaded)
+        why = find_searchto_refusal(self.read_snapshot(), self.program_loader.loaded_program)
         if why:
             self.show_message(why)
         return not why
 
     def on_open(self) -> None:
         """Prepare for the open page, on which Cycle Start only runs a confirmed restart."""
-        loaded, snapshot = self.program_loader.loaded, self.read_snapshot()
+        loaded, snapshot = self.program_loader.loaded_program, self.read_snapshot()
         self.clear_message()  # The operator has read the earlier message.
         self.is_open, self.is_started = True, False
         lines = loaded.source.lines if loaded.source is not None else ()
@@ -225,13 +225,13 @@ class SearchtoModel:
 
         On a mill, every restart retracts the tool first.
         """
-        job = self.program_loader.loaded.job
+        job = self.program_loader.loaded_program.job
         return job is not None and job.setup.kinematics is not None
 
     @property
     def _is_decided(self) -> bool:
         """Return whether a retract path or a valid line is shown."""
-        whole = self.program_loader.loaded.job is not None
+        whole = self.program_loader.loaded_program.job is not None
         return (
             self.stage is SearchtoStage.PLAN_SHOWN
             and whole
@@ -249,7 +249,7 @@ class SearchtoModel:
 
     def rebuild_selected_line(self) -> None:
         """Rebuild the state of the selected line."""
-        loaded = self.program_loader.loaded
+        loaded = self.program_loader.loaded_program
         self._discard_results()
         self.clear_message()
         job, line = loaded.job, self.line_cursor.selected_line
@@ -277,7 +277,7 @@ class SearchtoModel:
         self.clear_message()
         if self._needs_manual_retract:
             self.show_message(tr("RESTARTING RETRACTS TOOL ALONG ITS AXIS FIRST; OR JOG IT OUT"))
-        elif (job := self.program_loader.loaded.job) is not None:
+        elif (job := self.program_loader.loaded_program.job) is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
             self.restart_finder.calculate_cuts(job)
 
@@ -290,7 +290,11 @@ class SearchtoModel:
         if self.stage in {SearchtoStage.PROVING, SearchtoStage.READY}:
             return  # It is already confirmed.
         self.clear_message()
-        snapshot, plan, whole = self.read_snapshot(), self.restart_plan, self.program_loader.loaded.job
+        snapshot, plan, whole = (
+            self.read_snapshot(),
+            self.restart_plan,
+            self.program_loader.loaded_program.job,
+        )
         if self.stage is SearchtoStage.PLAN_SHOWN and self._cut is not None and whole is not None:
             self._confirm_out(snapshot, self._cut, whole)
             return

@@ -346,7 +346,9 @@ class SearchtoPage(ModelPage):
             return StateContent(tr("RETRACT PATH"), (), model.retract_plan.error_text)
         if model.stage is SearchtoStage.SEARCHING:
             words = tr(Message("SEARCHING UP TO LINE {line}", line=line))
-            return StateContent(join_messages("  ·  ", (words, str(model.restart_finder.worker.progress))))
+            return StateContent(
+                join_messages("  ·  ", (words, str(model.restart_finder.worker.progress_percent)))
+            )
         return StateContent(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
 
     def _state(self, plan: RestartPlan) -> StateContent:

@@ -213,11 +213,11 @@ UNKNOWN_READING = MachineReading({"avail": _UNAVAILABLE})
 class MachineReader:
     """Converter of the snapshots of one machine.
 
-    ``clock``, in seconds, is used to detect that no new snapshots arrive.
+    ``read_time_s``, in seconds, is used to detect that no new snapshots arrive.
     """
 
     machine: Machine
-    clock: Callable[[], float]
+    read_time_s: Callable[[], float]
     _keys: frozenset[str] = field(init=False)  # names of the conditions of this machine
     _execution: ExecutionTracker = field(init=False)
     _pulse: SilenceWatch = field(default_factory=SilenceWatch)
@@ -230,7 +230,7 @@ class MachineReader:
 
     def read_snapshot(self, snapshot: Snapshot) -> MachineReading:
         """Return the current values and conditions, or ``UNKNOWN_READING`` if the control is silent."""
-        if self._pulse.check_silence(snapshot.t, self.clock()):
+        if self._pulse.check_silence(snapshot.t, self.read_time_s()):
             return UNKNOWN_READING
         values: dict[str, ReadingValue] = {
             "avail": _AVAILABLE,

@@ -210,7 +210,7 @@ class PartsCounterFunction(NumericFunction):
         """Return the table with count, target, remaining parts and times."""
         counter, last = self.part_counter, snapshot.last_cycle
         aim = counter.final_count
-        left = max(0, aim - counter.count)
+        left = max(0, aim - counter.part_count)
         to_come = formats.format_duration(left * last) if aim and last else formats.NO_VALUE
         stop = (
             tr(Message("{count} (SET BY JOB)", count=aim))
@@ -218,7 +218,7 @@ class PartsCounterFunction(NumericFunction):
             else str(aim or tr("NO TARGET"))
         )
         rows = (
-            TableRow(("PARTS MADE", str(counter.count)), counter.is_complete or None),
+            TableRow(("PARTS MADE", str(counter.part_count)), counter.is_complete or None),
             TableRow(("PART TARGET", stop)),
             TableRow(("PARTS TO GO", str(left) if aim else formats.NO_VALUE)),
             TableRow(("LAST CYCLE", formats.format_duration(last) if last else formats.NO_VALUE)),
@@ -259,7 +259,7 @@ class PartsCounterFunction(NumericFunction):
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):
             return
-        elif self.part_counter.count + change < 0:
+        elif self.part_counter.part_count + change < 0:
             self.desk.show_success("THE COUNT IS ALREADY ZERO")
         else:
             self.desk.clear_prompt_line()
@@ -271,7 +271,7 @@ class PartsCounterFunction(NumericFunction):
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):
             return
-        elif self.part_counter.count == 0:
+        elif self.part_counter.part_count == 0:
             self.desk.show_success("THE COUNT IS ALREADY ZERO")
         else:
             self.desk.ask_operator(RESET, partial(self.desk.try_save, self.part_counter.reset_count))
@@ -290,8 +290,8 @@ class PartsCounterFunction(NumericFunction):
         if self.desk.is_refused(ProtectedChange.COUNTS):
             return False
         target = parse_part_count(text)
-        if 0 < target <= self.part_counter.count:
-            made = self.part_counter.count
+        if 0 < target <= self.part_counter.part_count:
+            made = self.part_counter.part_count
             self.entry.text = refused(self.entry.text)
             self.desk.say(
                 tr(Message("TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT", count=made))

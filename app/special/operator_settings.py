@@ -136,13 +136,13 @@ class RParametersFunction(NumericFunction):
     def _handle_saved(self, message: str) -> None:
         """Log the change, and prove the loaded program again."""
         self._persistence.log_change(message)
-        now = self.desk.program_loader.loaded
+        now = self.desk.program_loader.loaded_program
         if now.path is None or now.job is None:
             return
         if self.desk.read_snapshot().state in ACTIVE_STATES:  # A cycle was started in the meantime.
             self.desk.renewal.is_requested = True
         else:
-            self.desk.program_loader.start_loading(now.path, now.block_delete)
+            self.desk.program_loader.start_loading(now.path, now.has_block_delete)
 
 
 def _told(value: float | None) -> str:
@@ -184,7 +184,7 @@ class ScreenSettingsFunction(SpecialFunction):
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table with the selected choice of each setting."""
-        now = self.desk.settings_store.current
+        now = self.desk.settings_store.current_settings
         rows = tuple(
             TableRow((words, _in_words(name, getattr(now, name)))) for name, words in SETTING_NAMES.items()
         )
@@ -217,7 +217,7 @@ class ScreenSettingsFunction(SpecialFunction):
         if name == "dock" and self.desk.desk_control.station_panel is None:
             self.desk.say("NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION")
             return
-        if name == "dock" and settings.current.dock and self.desk.station_controls.is_estop_pressed:
+        if name == "dock" and settings.current_settings.dock and self.desk.station_controls.is_estop_pressed:
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
         if name == "latched" and not self.desk.machine.allows_one_hand:

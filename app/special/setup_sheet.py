@@ -171,8 +171,8 @@ class SetupSheet:
             round_ += ", " + tr(
                 Message("bore {size}", size=self.format_length(2.0 * stock.bore_profile[0][1]))
             )
-        if stock.specification:
-            return f"{round_} ({stock.specification})"
+        if stock.specification_text:
+            return f"{round_} ({stock.specification_text})"
         return tr(Message("at least {size} (assumed, not specified)", size=round_))
 
     @property
@@ -259,7 +259,7 @@ def make_setup_sheet(
     report, part = prove_with_part(
         program, setup, machine, part_settings, report_progress, on_span=record.add_span
     )
-    shapes = part.shapes if part is not None else {}
+    shapes = part.tool_shapes if part is not None else {}
     numbers = sorted(
         {*report.tool_numbers, *(n for n, time in record.tool_times.items() if n and time.total_s)}
     )

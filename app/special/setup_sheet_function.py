@@ -69,7 +69,7 @@ class SetupSheetFunction(SpecialFunction):
     @property
     def program_name(self) -> str:
         """Return the name of the loaded program, or an empty string."""
-        return self.desk.program_loader.loaded.name
+        return self.desk.program_loader.loaded_program.name
 
     @property
     def notes(self) -> list[str]:
@@ -309,7 +309,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _make_if_changed(self) -> None:
         """Prepare the sheet if the job has changed."""
-        loaded = self.desk.program_loader.loaded
+        loaded = self.desk.program_loader.loaded_program
         job, picture = loaded.job, loaded.picture
         if job is None or picture is None or job is self._asked:
             return

@@ -282,7 +282,7 @@ class SpecialFunctionList:
         self.shown_function.on_close()
         self.inside = False
 
-    def poll(self) -> None:
+    def process_results(self) -> None:
         """Process the results of the worker.
 
         This is called once a frame.

@@ -150,7 +150,7 @@ class SpecialPage(ListPage):
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Show the tables for a snapshot."""
-        self.model.poll()
+        self.model.process_results()
         shown = self.model.shown_function
         sheet = shown.make_table(snapshot)
         self.function_list.mark = (self.model.at, self.model.inside)

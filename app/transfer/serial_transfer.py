@@ -327,7 +327,7 @@ class SerialTransferFunction(SpecialFunction):
     # --- transfers -----------------------------------------------------------------------------------
 
     def _chosen(self) -> Path | None:
-        return self.desk.program_loader.loaded.path
+        return self.desk.program_loader.loaded_program.path
 
     def send_program(self) -> None:
         """Handle F4: send the loaded program."""

@@ -221,7 +221,7 @@ class DrawnFace:
     ``role`` is table, table-under, blank, blank-top, plane or tool.
     """
 
-    role: str
+    color_role: str
     points: FloatArray
 
 
@@ -232,7 +232,7 @@ class DrawnStroke:
     ``role`` is rapid, cut, done, x, y, z, axis or edge. ``name`` is the label at its end.
     """
 
-    role: str
+    color_role: str
     points: FloatArray
     name: str = ""
 

@@ -67,7 +67,7 @@ class WorkingPlaneView(Panel):
         return self._scene
 
     @property
-    def instant(self) -> SceneInstant | None:
+    def scene_instant(self) -> SceneInstant | None:
         """Return the displayed axis positions, plane and active block, or None if there are none."""
         return self._instant
 
@@ -171,7 +171,7 @@ class WorkingPlaneView(Panel):
         self._words(painter, room)
 
     def _face(self, painter: ThemedPainter, face: DrawnFace) -> None:
-        fill, share, edge = _FACE_COLORS[face.role]
+        fill, share, edge = _FACE_COLORS[face.color_role]
         colour = self.theme.get_color(fill)
         colour.setAlpha(share)
         painter.setBrush(colour)
@@ -179,7 +179,7 @@ class WorkingPlaneView(Panel):
         painter.drawPolygon(_polygon(face.points))
 
     def _stroke(self, painter: ThemedPainter, stroke: DrawnStroke) -> None:
-        colour, width, dashed = _STROKE_STYLES[stroke.role]
+        colour, width, dashed = _STROKE_STYLES[stroke.color_role]
         pen = QPen(self.theme.make_pen(colour, width))
         fine = (
             len(stroke.points) <= MAX_SMOOTH_POINTS

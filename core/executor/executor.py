@@ -99,7 +99,7 @@ class RestDetector:
                 status.state,
                 context.axis_sample[1:],
                 context.inputs,
-                context.signals,
+                context.station_signals,
                 context.ports.io.get_outputs(),
                 context.spindle.measured_rpm,
                 context.spindle.commanded_rpm,
@@ -362,9 +362,9 @@ class Executor:
     def _handle_failed_read(self) -> None:
         """Discard the start signal after a failed read, but obey the E-stop."""
         context = self._context
-        context.signals = context.signals._replace(is_start_requested=False)
+        context.station_signals = context.station_signals._replace(is_start_requested=False)
         with CaughtAttempt():
-            context.signals = context.signals._replace(
+            context.station_signals = context.station_signals._replace(
                 is_estop_pressed=self._ports.station.read_state().estop
             )
 
@@ -378,10 +378,10 @@ class Executor:
         context.unknown_parts = self._ports.unknown()
         context.spindle.is_speed_known = UnknownPart.SPINDLE not in context.unknown_parts
         context.spindle.read_encoder()
-        context.signals = self._station.process_state(self._ports.station.read_state(), context.now)
+        context.station_signals = self._station.process_state(self._ports.station.read_state(), context.now)
         context.spindle.override, context.spindle.is_auto = (
-            context.signals.spindle,
-            context.signals.is_spindle_in_auto,
+            context.station_signals.spindle,
+            context.station_signals.is_spindle_in_auto,
         )
         self._log_override()
         self._log_lost()
@@ -400,7 +400,10 @@ class Executor:
 
     def _log_lost(self) -> None:
         """Log when the pendant is disconnected and when it is connected again."""
-        lost = self._context.signals.connection_lost_reason or self._context.signals.handwheel_fault
+        lost = (
+            self._context.station_signals.connection_lost_reason
+            or self._context.station_signals.handwheel_fault
+        )
         if lost != self._told_lost:
             self._told_lost = lost
             self._context.log_text("disturbed", (lost or "the pendant is connected again").upper())
@@ -418,7 +421,7 @@ class Executor:
 
     def _process_requests(self) -> None:
         """Handle the E-stop, then the posted commands, then the buttons of the operator station."""
-        signals, control = self._context.signals, self._control
+        signals, control = self._context.station_signals, self._control
         control.handle_estop(signals.is_estop_pressed)
         for command in self._posted():
             self.is_waiting_for_drive = self.is_waiting_for_drive or isinstance(command, BLOCKING_COMMANDS)

@@ -52,7 +52,7 @@ class MachineContext:
     axis_sample: AxisSample
     inputs: dict[str, bool]
     commanded_outputs: CommandedOutputs  # the same as ``ports.io``
-    signals: StationSignals = _NEUTRAL_SIGNALS
+    station_signals: StationSignals = _NEUTRAL_SIGNALS
     unknown_parts: frozenset[UnknownPart] = frozenset()  # items of which no data arrives
     switches: OperatorSwitches = field(default_factory=OperatorSwitches)
     screen_feed_override: float = 1.0
@@ -69,7 +69,7 @@ class MachineContext:
     @property
     def spindle_load(self) -> float | None:
         """Return the spindle load in percent from the machine's input, otherwise from the driver, or None."""
-        return self._borne if self.signals.spindle_load is None else self.signals.spindle_load
+        return self._borne if self.station_signals.spindle_load is None else self.station_signals.spindle_load
 
     def record_load(self, samples: FloatArray | None) -> None:
         """Store the spindle load of the newest driver sample.
@@ -86,7 +86,7 @@ class MachineContext:
 
         The override is the product of the potentiometer and the screen setting.
         """
-        fraction = min(self.signals.feed_override * self.screen_feed_override, 1.5)
+        fraction = min(self.station_signals.feed_override * self.screen_feed_override, 1.5)
         return round(fraction / _OVERRIDE_STEP) * _OVERRIDE_STEP
 
     def log_text(self, kind: str, text: str) -> None:

@@ -48,7 +48,7 @@ _TURNING_RPM = 1.0  # rpm
 class _OpenRecord(NamedTuple):
     """An alarm whose record has not been written yet, with the program that was running."""
 
-    event: LogEvent
+    alarm_event: LogEvent
     program: str
 
 
@@ -280,7 +280,7 @@ class ScopeRecorder(ScopeRecordings):
             self._freezing = self._noted.popleft()
         if self._freezing is None or (now is None and not last):
             return
-        event = self._freezing.event
+        event = self._freezing.alarm_event
         if last or now is None or _over(now, event.time_s):
             self._name, self._writing = "", self._name  # a later alarm gets its own record
             frozen, self._freezing = self._freezing, None
@@ -288,7 +288,7 @@ class ScopeRecorder(ScopeRecordings):
             self._writing = ""
 
     def _write(self, frozen: _OpenRecord, end: float) -> None:
-        event, folder = frozen.event, self.folder
+        event, folder = frozen.alarm_event, self.folder
         assert folder is not None
         assert event.alarm is not None
         record = self.ring.get_record_between(event.time_s - BEFORE, end)

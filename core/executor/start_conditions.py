@@ -41,13 +41,13 @@ def is_guard_open(context: MachineContext) -> bool:
 
 def find_station_refusal(context: MachineContext) -> str:
     """Return the condition of the operator station that prevents a cycle, or an empty string."""
-    if context.signals.is_hold_requested:
+    if context.station_signals.is_hold_requested:
         return "feed hold is pressed"
     if is_guard_open(context):
         return "the guard is open: close it"
     if context.inputs.get(START_INHIBIT_INPUT, False):
         return "the start inhibit switch is on"
-    return context.signals.station_fault.lower() or context.signals.connection_lost_reason
+    return context.station_signals.station_fault.lower() or context.station_signals.connection_lost_reason
 
 
 def find_collet_refusal(context: MachineContext) -> str:

@@ -49,13 +49,16 @@ class _AreaPatch:
     The patch has an outer ring, its islands, and the patches inside it.
     """
 
-    outer: ElementLoop
-    holes: list[ElementLoop] = field(default_factory=list)
-    inner: list[_AreaPatch] = field(default_factory=list)
+    outer_loop: ElementLoop
+    hole_loops: list[ElementLoop] = field(default_factory=list)
+    inner_patches: list[_AreaPatch] = field(default_factory=list)
 
-    def holds(self, point: Point) -> bool:
+    def contains_point(self, point: Point) -> bool:
         return (
-            sum(WindingCalculator(loop).compute_winding_number(point) for loop in (self.outer, *self.holes))
+            sum(
+                WindingCalculator(loop).compute_winding_number(point)
+                for loop in (self.outer_loop, *self.hole_loops)
+            )
             > 0
         )
 
@@ -83,8 +86,8 @@ def make_clearing_rings(
         apart += ring_distance
         within = _find_patches(make_inset_loops(area, apart))
         for patch in within:
-            home = next((each for each in layer if each.holds(patch.outer[0].start)), None)
-            (home.inner if home is not None else outmost).append(patch)
+            home = next((each for each in layer if each.contains_point(patch.outer_loop[0].start)), None)
+            (home.inner_patches if home is not None else outmost).append(patch)
         layer = within
         if not layer:
             break
@@ -108,13 +111,13 @@ def _find_patches(loops: Sequence[ElementLoop]) -> list[_AreaPatch]:
             (
                 each
                 for each in found
-                if WindingCalculator(each.outer).compute_winding_number(hole[0].start) > 0
+                if WindingCalculator(each.outer_loop).compute_winding_number(hole[0].start) > 0
             ),
             None,
         )
         if home is None:
             raise AreaError("an island touches the edge of its pocket")
-        home.holes.append(hole)
+        home.hole_loops.append(hole)
     return found
 
 
@@ -159,8 +162,8 @@ def _iter_inner_first(
 ) -> Iterator[tuple[ElementLoop, list[ElementLoop]]]:
     """Yield each ring, with the outer rings around it, after the rings inside it."""
     for patch in patches:
-        yield from _iter_inner_first(patch.inner, [*outer_rings, patch.outer])
-        for ring in (*patch.holes, patch.outer):
+        yield from _iter_inner_first(patch.inner_patches, [*outer_rings, patch.outer_loop])
+        for ring in (*patch.hole_loops, patch.outer_loop):
             yield ring, outer_rings
 
 

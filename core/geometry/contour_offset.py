@@ -131,7 +131,7 @@ class OffsetBuilder:
             raise GougeError(index, problem.reason) from None
         if self._last is not None:
             moved = self._join_offsets(*self._last, element, moved, index)
-        self._guard.contour(index, element)
+        self._guard.add_contour_element(index, element)
         self._last = element, moved
         while len(self._ready) > GOUGE_CHECK_ELEMENT_COUNT:
             yield self._ready.popleft()
@@ -170,7 +170,7 @@ class OffsetBuilder:
 
     def _keep(self, index: int, element: Element, *, corner: bool) -> None:
         piece = OffsetPiece(index, element, corner)
-        self._guard.path(piece)
+        self._guard.check_path_piece(piece)
         self._ready.append(piece)
 
 
@@ -215,13 +215,13 @@ class _GougeGuard:
         self._contour: deque[tuple[Element, BoundingBox]] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
         self._path: deque[tuple[Element, BoundingBox]] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
 
-    def contour(self, index: int, element: Element) -> None:
+    def add_contour_element(self, index: int, element: Element) -> None:
         box = element.bounding_box
         if self._too_near(element, box, self._path):
             raise GougeError(index, "the offset path of another move would cut into this move")
         self._contour.append((element, box))
 
-    def path(self, piece: OffsetPiece) -> None:
+    def check_path_piece(self, piece: OffsetPiece) -> None:
         box = piece.element.bounding_box
         if self._too_near(piece.element, box, self._contour):
             raise GougeError(

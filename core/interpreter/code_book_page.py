@@ -32,18 +32,18 @@ def render_code_book(dialect: Dialect) -> str:
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
     )
-    titles = [*(["Cycle parameters"] if book.meanings else []), *(title for title, _ in book.chapters)]
+    titles = [*(["Cycle parameters"] if book.word_meanings else []), *(title for title, _ in book.chapters)]
     top = _TOP.format(name=DIALECT_NAMES[dialect], dialect=dialect, contents=make_contents(titles))
     return top + _frame(book) + _parameter_table(book) + chapters
 
 
 def _frame(book: CodeBook) -> str:
-    return f"Every example goes between these lines:\n\n```\n{book.head}…\n{book.tail}```\n"
+    return f"Every example goes between these lines:\n\n```\n{book.head}…\n{book.lines_after_example}```\n"
 
 
 def _parameter_table(book: CodeBook) -> str:
     """Return the table of cycle parameters, or an empty string for a dialect without cycle parameters."""
-    rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
+    rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.word_meanings.items())
     return f"\n## Cycle parameters\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 
 

@@ -26,10 +26,10 @@ class CodeBookEntry:
     """One code of the code book, with its ``head`` and the ``words`` that follow it.
 
     ``example`` contains lines that use the code. If ``whole`` is True, they are a complete program.
-    Otherwise, they are inserted between ``head`` and ``tail`` of the book. ``behind`` contains the lines
-    after the program end. ``files`` contains other programs in the same folder (name and text). ``refused``
-    contains lines that cause an error when they replace the example, and ``why`` is part of the error
-    message. ``insert`` is the completion if it is longer than the head.
+    Otherwise, they are inserted between ``head`` and ``lines_after_example`` of the book. ``behind``
+    contains the lines after the program end. ``files`` contains other programs in the same folder (name and
+    text). ``refused`` contains lines that cause an error when they replace the example, and ``why`` is part
+    of the error message. ``insert`` is the completion if it is longer than the head.
     """
 
     head: str
@@ -59,23 +59,24 @@ class CodeBookEntry:
 class CodeBook:
     """Code book of one dialect, with its chapters of entries.
 
-    ``head`` and ``tail`` are the lines before and after each example. ``comment_sign`` is the character
-    that starts a comment. ``meanings`` explains the words of codes, either for all codes (``R``) or for one
-    code (``G83.R``). The pattern ``word_pattern`` finds these words.
+    ``head`` and ``lines_after_example`` are the lines before and after each example. ``comment_sign`` is the
+    character that starts a comment. ``word_meanings`` explains the words of codes, either for all codes
+    (``R``) or for one code (``G83.R``). The pattern ``word_pattern`` finds these words.
     """
 
     chapters: tuple[tuple[str, tuple[CodeBookEntry, ...]], ...]
     head: str
-    tail: str
+    lines_after_example: str
     comment_sign: str
-    meanings: Mapping[str, str] = field(default_factory=dict)
+    word_meanings: Mapping[str, str] = field(default_factory=dict)
     word_pattern: str = r"[A-Z_][A-Z0-9_]*"
 
     def list_words(self, entry: CodeBookEntry) -> tuple[tuple[str, str], ...]:
         """Return each word of a code that has a meaning in the book, together with this meaning."""
         found = dict.fromkeys(re.findall(self.word_pattern, f"{entry.words} {entry.insert}".strip()))
         said = (
-            (word, self.meanings.get(f"{entry.head}.{word}", self.meanings.get(word, ""))) for word in found
+            (word, self.word_meanings.get(f"{entry.head}.{word}", self.word_meanings.get(word, "")))
+            for word in found
         )
         return tuple((word, what) for word, what in said if what)
 

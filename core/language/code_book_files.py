@@ -51,9 +51,9 @@ def read_book(folder: Path) -> CodeBook:
     return CodeBook(
         tuple((title, tuple(entries)) for title, entries in chapters.items()),
         head=_program(frame["head"]),
-        tail=_program(frame["tail"]),
+        lines_after_example=_program(frame["tail"]),
         comment_sign=frame["comment"],
-        meanings=meanings,
+        word_meanings=meanings,
     )
 
 

@@ -30,7 +30,7 @@ class LineReader:
         if self.uppercase_text[self.index : self.index + 1].isspace():
             self.index = find_non_blank(self.uppercase_text, self.index)
 
-    def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+    def match_pattern(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of the pattern at this position, and move past it.
 
         Returns None without a match.

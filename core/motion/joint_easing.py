@@ -26,13 +26,13 @@ Points = npt.NDArray[np.complex128]
 class _Window(NamedTuple):
     """The range of neighbors of each of m joints.
 
-    The sum over a window of ``size`` joints is the running sum at ``last_index`` minus the running sum at
-    ``first``. ``size`` (2m,) has two equal values for each joint.
+    The sum over a window of ``joint_count`` joints is the running sum at ``last_index`` minus the running
+    sum at ``first_index``. ``joint_count`` (2m,) has two equal values for each joint.
     """
 
-    first: IntArray
+    first_index: IntArray
     last_index: IntArray
-    size: FloatArray
+    joint_count: FloatArray
 
     @classmethod
     def create(cls, around: IntArray) -> _Window:
@@ -47,9 +47,9 @@ class _Window(NamedTuple):
         np.subtract(points, base, out=sums[1:])
         np.cumsum(sums, out=sums)
         mean = sums.take(self.last_index)
-        mean -= sums.take(self.first)
+        mean -= sums.take(self.first_index)
         flat = view_coordinates(mean)
-        flat /= self.size
+        flat /= self.joint_count
         mean += base
         return mean
 
@@ -73,7 +73,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
     """
     window = _Window.create(np.minimum(_clear(is_free), MAX_NEIGHBOR_COUNT))
     last = window.last_index - 1
-    span = _twice(np.maximum(distances[last] - distances[window.first], 1e-12))
+    span = _twice(np.maximum(distances[last] - distances[window.first_index], 1e-12))
     off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 
     def mean(of: Points) -> Points:
@@ -82,7 +82,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
         The joints of a straight line therefore remain on the line.
         """
         rise = of.take(last)
-        rise -= of.take(window.first)
+        rise -= of.take(window.first_index)
         carried = window.mean(of)
         slope = view_coordinates(rise)
         slope /= span
@@ -112,7 +112,7 @@ def _within(
         if not over.any():
             return smooth
         for correct, excess in ((np.add, over), (np.subtract, -over)):
-            most = near.largest(np.maximum(excess, 0.0, out=excess))
+            most = near.find_largest(np.maximum(excess, 0.0, out=excess))
             most *= movable
             correct(smooth, view_coordinates(window.mean(most.view(np.complex128))), out=smooth)
     return np.clip(smooth, low, high, out=smooth)
@@ -130,12 +130,12 @@ def _clear(free: BoolArray) -> IntArray:
 class _Near(NamedTuple):
     """The joints within AROUND of each joint in the same run, reached in a few doubling steps.
 
-    Each item of ``steps`` is a distance in coordinates (2 for one joint) and an array. The array has, for
-    each coordinate, 1.0 if the coordinate at that distance after it belongs to the same run, and 0.0
+    Each item of ``doubling_steps`` is a distance in coordinates (2 for one joint) and an array. The array
+    has, for each coordinate, 1.0 if the coordinate at that distance after it belongs to the same run, and 0.0
     otherwise. It is None if only one run exists.
     """
 
-    steps: tuple[tuple[int, FloatArray | None], ...]
+    doubling_steps: tuple[tuple[int, FloatArray | None], ...]
 
     @classmethod
     def find_neighbors(cls, free: BoolArray) -> _Near:
@@ -151,10 +151,10 @@ class _Near(NamedTuple):
         steps = [2 * step for step in _doublings()]
         return cls(tuple((step, (run[step:] == run[:-step]).astype(np.float64)) for step in steps))
 
-    def largest(self, values: FloatArray) -> FloatArray:
+    def find_largest(self, values: FloatArray) -> FloatArray:
         """Return the largest value (2m,) within AROUND joints of each joint, at least 0."""
         ahead, back = values.copy(), values.copy()
-        for step, same in self.steps:
+        for step, same in self.doubling_steps:
             later, earlier = ahead[step:], back[:-step]
             if same is not None:
                 later, earlier = later * same, earlier * same

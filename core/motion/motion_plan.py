@@ -209,7 +209,7 @@ def plan_motion(
     speeds = _squared_speeds(run, soft[:last] ** 2, start_speed)
     cap = soft[:last] ** 2
     return build_profile(
-        path, first, at, length=run.length, accelerations=run.a, speed_caps=cap, speeds=speeds
+        path, first, at, length=run.length, accelerations=run.accelerations, speed_caps=cap, speeds=speeds
     )
 
 
@@ -241,11 +241,11 @@ def find_last_settled_joint(path: MotionPath, start_distance: float | None = Non
 def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
     """Return the last settled joint from ``first`` on and before ``known``, or -1."""
     run = _PieceRun.from_path(path, float(path.joint_distances[first]), first, known)
-    limit = run.hard[:-1].copy()
+    limit = run.max_squared_speeds[:-1].copy()
     soft = np.minimum(path.speed_caps[first:known], path.pieces.rate[first:known]) ** 2
     np.minimum(limit, soft, out=limit)
     np.minimum(limit[1:], soft[:-1], out=limit[1:])
-    gain = run.gain[:-1]
+    gain = run.squared_speed_gains[:-1]
     most = limit_backward(limit, gain)
     limit[-1] = 0.0
     least = limit_backward(limit, gain)
@@ -258,8 +258,8 @@ class _PieceRun:
     """The n pieces that a plan covers, of which the first may be partial."""
 
     length: FloatArray
-    a: FloatArray
-    hard: FloatArray  # (n+1,) squared speed limits that always apply, 0 at the end
+    accelerations: FloatArray
+    max_squared_speeds: FloatArray  # (n+1,) squared speed limits that always apply, 0 at the end
 
     @classmethod
     def from_path(cls, path: MotionPath, at: float, first: int, last: int) -> _PieceRun:
@@ -274,33 +274,35 @@ class _PieceRun:
         return cls(length, path.accelerations[first:last], hard)
 
     @property
-    def gain(self) -> FloatArray:
-        return 2.0 * self.a * self.length
+    def squared_speed_gains(self) -> FloatArray:
+        return 2.0 * self.accelerations * self.length
 
     def can_rest(self, v: float) -> bool:
-        return v * v <= float(self.gain.sum()) + self.slack(v)
+        return v * v <= float(self.squared_speed_gains.sum()) + self.calculate_rounding_error(v)
 
-    def slack(self, v: float) -> float:
+    def calculate_rounding_error(self, v: float) -> float:
         """Return the rounding error of a squared speed that results from the rounding of distances."""
-        return float(ROUNDING_TOLERANCE * v * v + 2.0 * ROUNDING_TOLERANCE * self.a.max(initial=0.0))
+        return float(
+            ROUNDING_TOLERANCE * v * v + 2.0 * ROUNDING_TOLERANCE * self.accelerations.max(initial=0.0)
+        )
 
 
 def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
     """Return the squared speeds (n+1,) at the joints; the first value is v²."""
-    limit = run.hard.copy()
+    limit = run.max_squared_speeds.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])
-    allowed = limit_backward(limit, run.gain)
-    slack = run.slack(v)
+    allowed = limit_backward(limit, run.squared_speed_gains)
+    slack = run.calculate_rounding_error(v)
     if v * v <= allowed[0] + slack:
         allowed[0] = v * v
-        return limit_forward(allowed, run.gain)
+        return limit_forward(allowed, run.squared_speed_gains)
     return _brake_to_limits(run, allowed, v * v, slack)
 
 
 def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: float) -> FloatArray:
     """Return full braking until the speed is within the new feeds, followed by the normal plan."""
-    braked = square - np.concatenate([[0.0], np.cumsum(run.gain)])
+    braked = square - np.concatenate([[0.0], np.cumsum(run.squared_speed_gains)])
     fits = np.flatnonzero(braked <= allowed + slack)
     fits = fits[fits > 0]
     if not len(fits):
@@ -314,9 +316,9 @@ def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: 
             "cannot-stop",
         )
     k = int(fits[0])
-    _demand_passable(braked[:k], run.hard[:k], slack)
-    allowed[k] = min(allowed[k], braked[k - 1] + run.gain[k - 1])
-    tail = limit_forward(allowed[k:], run.gain[k:])
+    _demand_passable(braked[:k], run.max_squared_speeds[:k], slack)
+    allowed[k] = min(allowed[k], braked[k - 1] + run.squared_speed_gains[k - 1])
+    tail = limit_forward(allowed[k:], run.squared_speed_gains[k:])
     return np.concatenate([braked[:k], tail])
 
 
@@ -344,19 +346,29 @@ def _braking_profile(path: MotionPath, at: float, v: float, first: int) -> Motio
         if run.can_rest(v) or last == len(path):
             break
     if not run.can_rest(v):
-        _brake_to_limits(run, np.zeros(len(run.length) + 1), v * v, run.slack(v))
-    braked = v * v - np.concatenate([[0.0], np.cumsum(run.gain)])
-    k = int(np.argmax(braked <= run.slack(v))) if (braked <= run.slack(v)).any() else len(run.length)
+        _brake_to_limits(run, np.zeros(len(run.length) + 1), v * v, run.calculate_rounding_error(v))
+    braked = v * v - np.concatenate([[0.0], np.cumsum(run.squared_speed_gains)])
+    k = (
+        int(np.argmax(braked <= run.calculate_rounding_error(v)))
+        if (braked <= run.calculate_rounding_error(v)).any()
+        else len(run.length)
+    )
     if v == 0.0:
         return make_rest_profile(path, at)
     # At least one piece, because C turns by degrees in 0.001 mm near the axis of a plane.
     k = max(k, 1)
-    _demand_passable(braked[:k], run.hard[:k], run.slack(v))
+    _demand_passable(braked[:k], run.max_squared_speeds[:k], run.calculate_rounding_error(v))
     length, speeds = run.length[:k].copy(), np.maximum(braked[: k + 1], 0.0)
-    length[-1] = min(length[-1], speeds[-2] / (2.0 * run.a[k - 1]))
+    length[-1] = min(length[-1], speeds[-2] / (2.0 * run.accelerations[k - 1]))
     speeds[-1] = 0.0
     return build_profile(
-        path, first, at, length=length, accelerations=run.a[:k], speed_caps=np.zeros(k), speeds=speeds
+        path,
+        first,
+        at,
+        length=length,
+        accelerations=run.accelerations[:k],
+        speed_caps=np.zeros(k),
+        speeds=speeds,
     )
 
 

@@ -34,7 +34,7 @@ class Phases(NamedTuple):
     accelerations: FloatArray  # mm/s²
     piece_indices: IntArray
 
-    def select(self, selection: IntArray | BoolArray | slice) -> Phases:
+    def select_phases(self, selection: IntArray | BoolArray | slice) -> Phases:
         """Return only the phases that ``selection`` selects."""
         return Phases(
             start_times_s=self.start_times_s[selection],
@@ -60,10 +60,12 @@ def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -
     owner = np.repeat(np.arange(len(parts)), parts)
     nth = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
     h = (phases.durations_s / np.maximum(parts, 1))[owner]
-    p, v, a = _phase_states(path, phases.select(owner), nth * h)
+    p, v, a = _phase_states(path, phases.select_phases(owner), nth * h)
     arc = np.flatnonzero(path.pieces.curvatures[phases.piece_indices[owner]] != 0.0) if len(path) else owner
     if len(arc):
-        v[arc], a[arc] = _join_on_arc(path, phases.select(owner[arc]), nth[arc], h[arc], (p[arc], v[arc]))
+        v[arc], a[arc] = _join_on_arc(
+            path, phases.select_phases(owner[arc]), nth[arc], h[arc], (p[arc], v[arc])
+        )
     return time_origin_s + phases.start_times_s[owner] + nth * h, h, p, v, a
 
 
@@ -104,7 +106,7 @@ def _part_counts(path: MotionPath, phases: Phases) -> IntArray:
         return counts
     bend = np.abs(path.pieces.curvatures[phases.piece_indices])
     arc = np.flatnonzero(bend)
-    bend, (_, dt, _, v, a, _) = bend[arc], phases.select(arc)
+    bend, (_, dt, _, v, a, _) = bend[arc], phases.select_phases(arc)
     fastest = np.maximum(v, v + a * dt)
     jerk = fastest * bend * np.hypot(fastest**2 * bend, 3.0 * a)
     longest = np.minimum(MAX_PART_S, MAX_PART_ANGLE_RAD / (fastest * bend))
@@ -162,7 +164,7 @@ class MotionProfile:
         if not len(self):
             return np.full(times.shape, self.end_distance), np.zeros(times.shape)
         k = self._phase(times)
-        _, dt, s0, v0, a, _ = self.phases.select(k)
+        _, dt, s0, v0, a, _ = self.phases.select_phases(k)
         tau = np.clip(times - self.phases.start_times_s[k], 0.0, dt)
         ends = np.append(self.phases.start_distances[1:], self.end_distance)[k]
         s = np.clip(s0 + (v0 + 0.5 * a * tau) * tau, s0, ends)
@@ -177,7 +179,7 @@ class MotionProfile:
         """
         if not len(self):
             return 0.0
-        last = self.phases.select(slice(-1, None))
+        last = self.phases.select_phases(slice(-1, None))
         return max(float(last.start_speeds[0] + last.accelerations[0] * last.durations_s[0]), 0.0)
 
     def positions_at(self, times_s: FloatArray | float) -> FloatArray:
@@ -233,7 +235,7 @@ class MotionProfile:
         k = np.clip(
             np.searchsorted(self.phases.start_distances, distances, side="right") - 1, 0, len(self) - 1
         )
-        t0, dt, s0, v0, a, _ = self.phases.select(k)
+        t0, dt, s0, v0, a, _ = self.phases.select_phases(k)
         ahead = np.maximum(distances - s0, 0.0)
         total = v0 + np.sqrt(np.maximum(v0**2 + 2.0 * a * ahead, 0.0))
         tau = np.divide(2.0 * ahead, total, out=np.zeros_like(ahead), where=total > 0.0)
@@ -258,7 +260,7 @@ class MotionProfile:
         The part may end in motion.
         """
         count = int(np.searchsorted(self.phases.start_distances, distance, side="left"))
-        phases = self.phases.select(slice(0, count))
+        phases = self.phases.select_phases(slice(0, count))
         duration = float(phases.start_times_s[-1] + phases.durations_s[-1]) if count else 0.0
         return MotionProfile(
             path=self.path,
@@ -282,17 +284,17 @@ class MotionProfile:
     def _window(self, t_from: float, t_to: float) -> Phases:
         lo, hi = max(t_from, 0.0), min(t_to, self.duration_s)
         if not len(self) or hi <= lo:
-            return self.phases.select(slice(0, 0))
+            return self.phases.select_phases(slice(0, 0))
         i = int(np.searchsorted(self.phases.start_times_s, lo, side="right")) - 1
         j = int(np.searchsorted(self.phases.start_times_s, hi, side="left"))
-        part = self.phases.select(np.arange(i, j))  # an index array makes a copy, a slice would not
+        part = self.phases.select_phases(np.arange(i, j))  # an index array makes a copy, a slice would not
         part.durations_s[-1] = min(part.durations_s[-1], hi - part.start_times_s[-1])
         skip = lo - part.start_times_s[0]
         part.start_distances[0] += (part.start_speeds[0] + 0.5 * part.accelerations[0] * skip) * skip
         part.start_speeds[0] += part.accelerations[0] * skip
         part.start_times_s[0] += skip
         part.durations_s[0] -= skip
-        return part.select(part.durations_s > ROUNDING_TOLERANCE_S)
+        return part.select_phases(part.durations_s > ROUNDING_TOLERANCE_S)
 
     def _phase(self, times: FloatArray) -> IntArray:
         found: IntArray = np.searchsorted(self.phases.start_times_s, times, side="right") - 1

@@ -40,11 +40,11 @@ class CutSide(StrEnum):
 class _OutlineSides:
     """The two sides of one convex outline.
 
-    ``near`` faces the axis. ``far`` is the side away from the axis, mirrored.
+    ``near_edge`` faces the axis. ``far_edge`` is the side away from the axis, mirrored.
     """
 
-    near: AxisFacingEdge
-    far: AxisFacingEdge
+    near_edge: AxisFacingEdge
+    far_edge: AxisFacingEdge
 
 
 class _OutlineSet(NamedTuple):
@@ -54,15 +54,15 @@ class _OutlineSet(NamedTuple):
     """
 
     sides: list[_OutlineSides]
-    low: Point
-    front: float
+    min_point: Point
+    front_z: float
 
     @classmethod
     def from_outlines(cls, outlines: Iterable[FloatArray]) -> _OutlineSet:
         sides = [_sides(outline) for outline in outlines]
-        z = min((float(each.near.z[0]) for each in sides), default=math.inf)
-        r = min((float(each.near.r.min()) for each in sides), default=math.inf)
-        return cls(sides, (z, r), max((float(each.near.z[-1]) for each in sides), default=-math.inf))
+        z = min((float(each.near_edge.z[0]) for each in sides), default=math.inf)
+        r = min((float(each.near_edge.r.min()) for each in sides), default=math.inf)
+        return cls(sides, (z, r), max((float(each.near_edge.z[-1]) for each in sides), default=-math.inf))
 
 
 class Cutter:
@@ -108,7 +108,7 @@ class Cutter:
 
     def _clearance(self, forward: int) -> float:
         outline = self._cutting.sides[0]
-        edge = outline.far if self.side is CutSide.BORE else outline.near
+        edge = outline.far_edge if self.side is CutSide.BORE else outline.near_edge
         rises = -forward * edge.slope
         lengths = np.where(rises > 0.0, np.hypot(np.diff(edge.z), np.diff(edge.r)), 0.0)
         sides = rises[lengths > 0.5 * lengths.max(initial=0.0)]  # without the chords of the nose
@@ -180,7 +180,7 @@ class Cutter:
 
     def _is_clear(self, part: TurnedPart, outlines: _OutlineSet, start: Point, end: Point) -> bool:
         """Return whether the outlines remain in front of the part or outside its diameter."""
-        columns, low = part.columns, outlines.low
+        columns, low = part.columns, outlines.min_point
         if min(start[0], end[0]) + low[0] > columns.first_z_mm + columns.step_mm * columns.column_count:
             return True
         return self.side is CutSide.OUTSIDE and min(start[1], end[1]) + low[1] > part.max_stock_radius_mm
@@ -189,8 +189,8 @@ class Cutter:
         """Return whether the outlines of an outside tool remain outside all columns that they pass."""
         if self.side is not CutSide.OUTSIDE or not outlines.sides:
             return False
-        z = min(start[0], end[0]) + outlines.low[0], max(start[0], end[0]) + outlines.front
-        return min(start[1], end[1]) + outlines.low[1] > part.find_max_radius(*z)
+        z = min(start[0], end[0]) + outlines.min_point[0], max(start[0], end[0]) + outlines.front_z
+        return min(start[1], end[1]) + outlines.min_point[1] > part.find_max_radius(*z)
 
     def _front(self, place: Point) -> Point:
         return place[0], place[1] * self.x_sign
@@ -217,18 +217,18 @@ class Cutter:
     def _take(self, part: TurnedPart, outline: _OutlineSides, start: Point, end: Point, *, cut: bool) -> Cut:
         if self.side is CutSide.OUTSIDE:
             return part.cut_outside(
-                *sweep_edge(outline.near, start, end, part.columns, part.max_stock_radius_mm), remove=cut
+                *sweep_edge(outline.near_edge, start, end, part.columns, part.max_stock_radius_mm), remove=cut
             )
-        first, far = sweep_edge(outline.far, _mirrored(start), _mirrored(end), part.columns)
+        first, far = sweep_edge(outline.far_edge, _mirrored(start), _mirrored(end), part.columns)
         if self.side is CutSide.BORE and not self.is_drill:
             return part.cut_inside(first, -far, remove=cut)
-        _, near = sweep_edge(outline.near, start, end, part.columns)
+        _, near = sweep_edge(outline.near_edge, start, end, part.columns)
         return part.cut_between(first, near, -far, remove=cut)
 
 
 def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, end: Point) -> Cut:
     """Return the cut at the opposite wall of a bore, which a boring bar hits if its diameter is too large."""
-    first, near = sweep_edge(outline.near, start, end, part.columns)
+    first, near = sweep_edge(outline.near_edge, start, end, part.columns)
     return part.cut_inside(first, -near)
 
 
@@ -275,7 +275,7 @@ class SolidTool(NamedTuple):
 class _NeighborTool(NamedTuple):
     """A tool with its position on the tool plate in Z and r."""
 
-    at: Point
+    plate_position: Point
     solid: SolidTool
 
 
@@ -306,8 +306,8 @@ class NeighborTools:
         own = self._offsets[tool]
         for start, end in path:
             for number, each in self._tools.items():
-                shift = own[0] - each.at[0], own[1] - each.at[1]
-                if number == tool or dist(own, each.at) < _SAME_PLACE_MM:
+                shift = own[0] - each.plate_position[0], own[1] - each.plate_position[1]
+                if number == tool or dist(own, each.plate_position) < _SAME_PLACE_MM:
                     continue
                 if each.solid.find_collision(part, _moved(start, shift), _moved(end, shift)):
                     return number

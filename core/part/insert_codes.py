@@ -251,13 +251,13 @@ class _CodeDigits:
 
     code: str
     shape: str
-    left: str
-    place: int  # position of the last character read, without blanks and dashes
+    remaining_digits: str
+    last_read_position: int  # position of the last character read, without blanks and dashes
 
     def remove_digits(self, found: str, what: str, known: Mapping[str, float]) -> float:
         """Remove the next characters of the code and return their value."""
         if not found or len(found) < len(min(known, key=len)):
-            place, known_codes = self.place + len(found) + 1, " ".join(sorted(known))
+            place, known_codes = self.last_read_position + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
                 Message(
                     "{code}: character {place} is missing; it specifies the {what}, one of: {values}",
@@ -269,9 +269,9 @@ class _CodeDigits:
                 "character-missing",
             )
         if found not in known:
-            raise _meaningless(self.code, self.place + 1, found, what, known)
-        self.left = self.left[len(found) :]
-        self.place += len(found)
+            raise _meaningless(self.code, self.last_read_position + 1, found, what, known)
+        self.remaining_digits = self.remaining_digits[len(found) :]
+        self.last_read_position += len(found)
         return known[found]
 
 
@@ -298,18 +298,24 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
 
 def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     """Return the inscribed circle, the thickness and the nose radius in mm that a metric code specifies."""
-    edge = size.left[:2]
+    edge = size.remaining_digits[:2]
     circle = size.remove_digits(
         edge, Message("size for insert shape {shape}", shape=size.shape), list_metric_circle_sizes(size.shape)
     )
     if size.shape == "C":
-        circle = _THIN.get((edge, size.left[:2]), circle)
-    thickness = size.remove_digits(size.left[:2], "thickness", _THICKNESS)
+        circle = _THIN.get((edge, size.remaining_digits[:2]), circle)
+    thickness = size.remove_digits(size.remaining_digits[:2], "thickness", _THICKNESS)
     if size.shape != "R":
-        return circle, thickness, size.remove_digits(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
+        return (
+            circle,
+            thickness,
+            size.remove_digits(size.remaining_digits[:2], "corner radius (tenths of a mm)", _CORNER),
+        )
     if (
         size.remove_digits(
-            size.left[:2], "round-insert code (in place of the corner radius)", {"00": 0.0, "M0": 1.0}
+            size.remaining_digits[:2],
+            "round-insert code (in place of the corner radius)",
+            {"00": 0.0, "M0": 1.0},
         )
         and edge == "12"
     ):
@@ -327,13 +333,13 @@ def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     if size.shape == "R" and corner in {"", "0"}:  # a round insert needs no corner
         return circle * MM_PER_INCH, thickness * MM_PER_INCH, circle * MM_PER_INCH / 2.0
     nose = size.remove_digits(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
-    if size.left[:1].isdigit():
+    if size.remaining_digits[:1].isdigit():
         raise InsertCodeError(
             Message(
                 "{code}: character {place} ({left}) is an extra digit",
                 code=size.code,
-                place=size.place + 1,
-                left=size.left[0],
+                place=size.last_read_position + 1,
+                left=size.remaining_digits[0],
             ),
             "too-many-characters",
         )
@@ -342,8 +348,8 @@ def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
 
 def _next_number(size: _CodeDigits, pattern: re.Pattern[str]) -> str:
     """Return the next number of an inch code, or the invalid character found instead."""
-    found = pattern.match(size.left)
-    return (found[0] if found else "") or size.left[:1]
+    found = pattern.match(size.remaining_digits)
+    return (found[0] if found else "") or size.remaining_digits[:1]
 
 
 @dataclass(frozen=True, slots=True)

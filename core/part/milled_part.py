@@ -73,7 +73,7 @@ class MilledPart:
         ``start`` and ``end`` are the radii of each column.
         """
         columns = slice(first_column, first_column + len(start))
-        return self.field.intersect(columns, slice(None), start[:, None], end[:, None])
+        return self.field.find_removed_material(columns, slice(None), start[:, None], end[:, None])
 
     # --- a mill parallel to the axis
 
@@ -134,7 +134,7 @@ class MilledPart:
         bounds = [0, *(np.flatnonzero(new) + 1).tolist(), len(begin)]
         sweep = _DiscSweep(path, radius, self.field.ray_angles)
         for a, b in itertools.pairwise(bounds):
-            for low, high in zip(*sweep.covered(begin[a], stop[a]), strict=True):
+            for low, high in zip(*sweep.find_covered_area(begin[a], stop[a]), strict=True):
                 rays = np.flatnonzero(high > low)
                 if len(rays):
                     yield RayCut(slice(first + a, first + b), rays, low[rays], high[rays])
@@ -276,11 +276,11 @@ class MilledPart:
 
     def _take(self, reaches: Iterator[RayCut], met: RemovedMaterial) -> RemovedMaterial:
         for reach in reaches:
-            met = met.combine(self.field.intersect(*reach))
+            met = met.combine(self.field.find_removed_material(*reach))
         return met
 
     def _met(self, reaches: Iterator[RayCut]) -> bool:
-        return any(self.field.intersect(*reach, remove=False) for reach in reaches)
+        return any(self.field.find_removed_material(*reach, remove=False) for reach in reaches)
 
 
 class _DiscSweep:
@@ -294,7 +294,7 @@ class _DiscSweep:
         self._radius, self._angles = radius, angles
         self._whole, self._covered = np.zeros(len(self._start), dtype=np.bool_), self._layers([], 0.0, 0.0)
 
-    def covered(self, begin: FloatArray, stop: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def find_covered_area(self, begin: FloatArray, stop: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the area that is covered between two fractions of each line (m,), as layers (k, rays)."""
         whole = (begin == 0.0) & (stop == 1.0)
         if np.any(whole != self._whole):

@@ -172,7 +172,7 @@ class PolarField:
             self.outer_radii[:, column],
         )
 
-    def intersect(
+    def find_removed_material(
         self,
         columns: slice,
         rays: IntArray | slice,

@@ -82,18 +82,18 @@ class _LitFace(NamedTuple):
     """
 
     points: FloatArray
-    shade: FloatArray | float
+    brightness: FloatArray | float
 
 
 class _Viewer(NamedTuple):
     """The position of the viewer and the visible range.
 
-    ``turn`` is the rotation into coordinates to the right, up and toward the viewer. ``z`` and ``x`` are
+    ``rotation`` is the rotation into coordinates to the right, up and toward the viewer. ``z`` and ``x`` are
     the visible ranges in mm.
     """
 
-    turn: FloatArray
-    scale: float
+    rotation: FloatArray
+    pixels_per_mm: float
     z: tuple[float, float]
     x: tuple[float, float]
 
@@ -111,7 +111,7 @@ def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
         if clamping.jaw_length:
             edges += [body + _STEP, body + clamping.jaw_length]
             columns += [(inside, jaws)] * 2
-    tailstock = clamping.tailstock
+    tailstock = clamping.tailstock_solid
     if tailstock is not None:
         (tip, _), (end, radius), (back, _) = tailstock.outside_profile
         cone = np.linspace(tip, end, _CONE + 1)
@@ -185,14 +185,14 @@ def _prism_faces(polygon: FloatArray, lift: float, thick: float, eye: _Viewer) -
             inside = _points_inside(polygon, eye)
             yield _LitFace(np.column_stack([inside, np.full(len(inside), height)]), float(shade))
     turned = float(np.sign(_area(polygon)) or 1.0)
-    down = np.linspace(lift, -thick, max(math.ceil((thick + lift) * eye.scale), 2))
+    down = np.linspace(lift, -thick, max(math.ceil((thick + lift) * eye.pixels_per_mm), 2))
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         vector = b - a
         length = math.hypot(*vector)
         shade = _face_brightness(eye, np.array([vector[1], -vector[0], 0.0]) * (turned / max(length, 1e-9)))
         if length < 1e-9 or shade <= 0.0:
             continue
-        share = np.linspace(0.0, 1.0, max(math.ceil(length * eye.scale), 1), endpoint=False)
+        share = np.linspace(0.0, 1.0, max(math.ceil(length * eye.pixels_per_mm), 1), endpoint=False)
         edge = a + share[:, None] * vector
         edge = edge[_seen(edge[:, 0], eye.z) & _seen(edge[:, 1], eye.x)]
         points = np.column_stack([np.repeat(edge, len(down), axis=0), np.tile(down, len(edge))])
@@ -205,7 +205,7 @@ def _seen(values: FloatArray, span: tuple[float, float]) -> npt.NDArray[np.bool_
 
 def _face_brightness(eye: _Viewer, normals: FloatArray) -> FloatArray:
     """Return the brightness of faces with the given normals (…, 3), or 0 for faces that face away."""
-    turned = normals @ eye.turn.T
+    turned = normals @ eye.rotation.T
     light = 0.35 + 0.65 * np.clip(turned @ _LIGHT, 0.0, 1.0)
     return np.where(turned[..., 2] > 0.0, light, 0.0)
 
@@ -216,10 +216,12 @@ def _revolved_surface(polygon: FloatArray, round_: RoundAxis, eye: _Viewer) -> _
     span = eye.z if axis == 0 else eye.x
     low, high = max(polygon[:, axis].min(), span[0]), min(polygon[:, axis].max(), span[1])
     middle = 0.5 * (polygon[:, across].min() + polygon[:, across].max())
-    at = np.linspace(low, high, max(math.ceil((high - low) * eye.scale), 2))
+    at = np.linspace(low, high, max(math.ceil((high - low) * eye.pixels_per_mm), 2))
     first, last = _crossing_range(polygon, axis, at)
     radius = np.nan_to_num(np.maximum(last - middle, middle - first))
-    angles = np.linspace(0.0, 2.0 * math.pi, max(math.ceil(2.0 * math.pi * radius.max() * eye.scale), 12))
+    angles = np.linspace(
+        0.0, 2.0 * math.pi, max(math.ceil(2.0 * math.pi * radius.max() * eye.pixels_per_mm), 12)
+    )
     lean = np.gradient(radius, at) if high > low else np.zeros(len(at))
     cos, sin = np.cos(angles), np.sin(angles)
     points, normals = np.empty((len(at), len(angles), 3)), np.empty((len(at), len(angles), 3))
@@ -250,11 +252,11 @@ def _points_inside(polygon: FloatArray, eye: _Viewer) -> FloatArray:
     low, high = max(polygon[:, 0].min(), eye.z[0]), min(polygon[:, 0].max(), eye.z[1])
     if high < low:
         return np.zeros((0, 2))
-    at = np.linspace(low, high, max(math.ceil((high - low) * eye.scale), 2))
+    at = np.linspace(low, high, max(math.ceil((high - low) * eye.pixels_per_mm), 2))
     first, last = (np.clip(each, *eye.x) for each in _crossing_range(polygon, 0, at))
     there = last >= first
     at, first, last = at[there], first[there], last[there]
-    count = np.maximum(np.ceil((last - first) * eye.scale), 1.0).astype(np.intp)
+    count = np.maximum(np.ceil((last - first) * eye.pixels_per_mm), 1.0).astype(np.intp)
     index = np.repeat(np.arange(len(at)), count)
     nth = np.arange(len(index)) - (np.cumsum(count) - count)[index]
     share = (nth + 0.5) / count[index]
@@ -272,7 +274,7 @@ def _make_layer(
     """Return a layer of the given faces, with the nearest point at each pixel."""
     width, height = size
     points = np.concatenate([face.points for face in faces])
-    light = np.concatenate([np.broadcast_to(face.shade, len(face.points)) for face in faces])
+    light = np.concatenate([np.broadcast_to(face.brightness, len(face.points)) for face in faces])
     place = (points - np.array([view.center_z_mm, 0.0, 0.0])) @ _view_rotation(view).T * view.pixels_per_mm
     column = np.floor(place[:, 0] + 0.5 * width).astype(np.int64)
     row = np.floor(0.5 * height - place[:, 1]).astype(np.int64)

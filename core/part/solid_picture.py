@@ -52,13 +52,13 @@ class _PointGroup(NamedTuple):
     ``first`` is the number of the first point.
     """
 
-    first: int
-    points: int
+    first_point_index: int
+    point_count: int
     wall: LayerWall | None = None
     columns: IntArray | None = None
     rays: slice = slice(None)
     patch: SurfacePatch | None = None
-    edge: float = 0.0  # phi of a cut face
+    cut_face_phi: float = 0.0  # phi of a cut face
     z: Float32Array | None = None
 
 
@@ -101,7 +101,7 @@ class SolidPicture:
             image = self.draw(solid, half, *small, version=version, hit_z_spans=hit_z_spans, scene=scene)
             return image.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
         surface = self._kept(solid, view, width, version)
-        image, depth = _PictureDrawing(surface, view, width, height).image(
+        image, depth = _PictureDrawing(surface, view, width, height).draw_image(
             self._table, self.colors.background, hit_z_spans
         )
         if scene.chuck is not None:
@@ -121,7 +121,7 @@ class SolidPicture:
         if self._held is None or self._held[0] != seen:
             painter = SolidPicture(self.colors._replace(outside=self.colors.chuck, section=self.colors.chuck))
             surface = painter._kept(chuck, view, width, 0)
-            drawn = _PictureDrawing(surface, view, width, height).image(painter._table, 0, ())
+            drawn = _PictureDrawing(surface, view, width, height).draw_image(painter._table, 0, ())
             self._held = seen, ImageLayer(*drawn)
         return self._held[1]
 
@@ -218,7 +218,7 @@ class _PictureDrawing:
                 metal |= (low[:, ray, None] <= r) & (r < high[:, ray, None])
             column, place = np.nonzero(metal)
             z = surface.z_px[column]
-            group = _PointGroup(self._next, len(column), edge=side * (edge or 1e-9), z=z)
+            group = _PointGroup(self._next, len(column), cut_face_phi=side * (edge or 1e-9), z=z)
             up, near = np.array([math.sin(edge)], np.float32), np.array([math.cos(edge)], np.float32)
             self._put(group, z[:, None], r[place][:, None], up, near)
 
@@ -243,9 +243,11 @@ class _PictureDrawing:
         for start in range(0, len(z), block):
             rows = slice(start, start + block)
             turned = (up[rows], near[rows]) if up.ndim == 2 else (up, near)
-            self._put_block(group.first + start * across, z[rows], r[rows], *turned, masked=masked)
+            self._put_block(
+                group.first_point_index + start * across, z[rows], r[rows], *turned, masked=masked
+            )
         self.groups.append(group)
-        self._next += group.points
+        self._next += group.point_count
 
     def _put_block(
         self,
@@ -278,7 +280,7 @@ class _PictureDrawing:
 
     # --- lighting of the nearest points
 
-    def image(self, table: ImageArray, ground: int, hits: ZSpans) -> tuple[ImageArray, DepthArray]:
+    def draw_image(self, table: ImageArray, ground: int, hits: ZSpans) -> tuple[ImageArray, DepthArray]:
         """Return the picture and the depth of each pixel.
 
         ``table`` is the color table and has the shape (colors, shades).
@@ -288,12 +290,14 @@ class _PictureDrawing:
         point = inside[pixel] & _NUMBER
         shade, colour = np.zeros(len(point), np.float32), np.zeros(len(point), np.int16)
         rough = np.zeros(len(point), np.bool_)
-        bounds = np.array([group.first for group in self.groups[1:]], np.int64)
+        bounds = np.array([group.first_point_index for group in self.groups[1:]], np.int64)
         which = np.searchsorted(bounds, point, side="right").astype(np.int8)
         for number, group in enumerate(self.groups):
             own = np.flatnonzero(which == number)
             if len(own):
-                shade[own], colour[own], rough[own] = self._lit(group, point[own] - group.first, hits)
+                shade[own], colour[own], rough[own] = self._lit(
+                    group, point[own] - group.first_point_index, hits
+                )
         if rough.any():
             self._smooth(pixel, shade, rough)
         codes = np.full(inside.shape, -1, np.int16)
@@ -328,7 +332,7 @@ class _PictureDrawing:
             shade, z, colour, rough = self._patch_light(group, group.patch, index)
         else:
             assert group.z is not None
-            shade, z = self._section_light(group.edge, len(index)), group.z[index]
+            shade, z = self._section_light(group.cut_face_phi, len(index)), group.z[index]
         if not hits:
             return shade, colour, rough
         at = z / self.view.pixels_per_mm + self.view.center_z_mm

@@ -27,7 +27,7 @@ class Stock:
     ``specification`` is the user's specification, or empty if the user specified no stock.
     """
 
-    specification: str
+    specification_text: str
     outside_profile: tuple[Point, ...]
     bore_profile: tuple[Point, ...] = ()
 
@@ -112,7 +112,7 @@ class Clamping:
     center_z_mm: float = 0.0
 
     @property
-    def outline(self) -> tuple[Point, ...]:
+    def chuck_outline(self) -> tuple[Point, ...]:
         """Return the outside points (Z, r) of the chuck, with Z ascending."""
         face, body = -self.stick_out, -self.stick_out - self.jaw_length
         front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaw_length else ()
@@ -121,11 +121,11 @@ class Clamping:
     def make_chuck_around(self, stock: Stock) -> Stock:
         """Return the material of the chuck or collet around the clamped stock."""
         inside = min(stock.max_radius_mm, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
-        back, front = self.outline[0][0], self.outline[-1][0]
-        return Stock("", self.outline, ((back, inside), (front, inside)))
+        back, front = self.chuck_outline[0][0], self.chuck_outline[-1][0]
+        return Stock("", self.chuck_outline, ((back, inside), (front, inside)))
 
     @property
-    def tailstock(self) -> Stock | None:
+    def tailstock_solid(self) -> Stock | None:
         """Return the center and the quill of the tailstock, or None without a tailstock."""
         if not self.quill_diameter:
             return None

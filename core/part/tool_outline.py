@@ -81,11 +81,11 @@ class _OutlineDrawing:
     """The drawing of one tool in the pose that all tools share."""
 
     shape: ToolShape
-    cutting: list[FloatArray] = field(default_factory=list)
-    body: list[FloatArray] = field(default_factory=list)
-    assumed: list[str] = field(default_factory=list)
+    cutting_outlines: list[FloatArray] = field(default_factory=list)
+    body_outlines: list[FloatArray] = field(default_factory=list)
+    assumed_fields: list[str] = field(default_factory=list)
 
-    def size(self, name: str, usual: float) -> float:
+    def get_size(self, name: str, usual: float) -> float:
         """Return the size in a field of the shape, or the usual size if the field is not specified.
 
         The name of a field with the usual size is recorded.
@@ -93,7 +93,7 @@ class _OutlineDrawing:
         stated = float(getattr(self.shape, name))
         if stated > 0.0:
             return stated
-        self.assumed.append(name)
+        self.assumed_fields.append(name)
         return usual
 
     @property
@@ -101,28 +101,28 @@ class _OutlineDrawing:
         """Return the tool holder, as far as it is specified."""
         return parse_holder(self.shape.holder) or ToolHolder()
 
-    def shank(self, usual: float) -> ToolHolder:
+    def make_shank(self, usual: float) -> ToolHolder:
         """Return the specified shank, or the usual shank of the width ``usual``."""
         holder = self.holder
         if holder.shank_width_mm:
             return holder
-        self.assumed.append("holder")
+        self.assumed_fields.append("holder")
         return make_standard_shank(usual)
 
     @property
-    def sided(self) -> bool:
+    def is_tip_in_quadrant(self) -> bool:
         """Return whether the tip is in a quadrant between the axes."""
         return 0 not in self.shape.direction
 
     @property
-    def tip(self) -> FloatArray:
+    def tip_position(self) -> FloatArray:
         """Return the position of the tip relative to the center of the nose, in nose radii.
 
         The position applies to the pose of the drawing.
         """
         if self.shape.tip in {0, 9}:
             return np.zeros(2)
-        return np.array([-1.0 if self.sided else 0.0, -1.0])
+        return np.array([-1.0 if self.is_tip_in_quadrant else 0.0, -1.0])
 
 
 def make_outline(shape: ToolShape) -> ToolOutline:
@@ -134,17 +134,17 @@ def make_outline(shape: ToolShape) -> ToolOutline:
     drawing = _OutlineDrawing(shape)
     _DRAW[shape.kind](drawing)
     if pieces := drawing.holder.outline:
-        drawing.body = []
+        drawing.body_outlines = []
     pose = _rotate_to_direction if shape.is_rotating else _mirror_to_quadrant
     placed = _as_drawn if shape.kind is ToolKind.FORM else pose
     return ToolOutline(
-        tuple(placed(each, shape.direction) for each in drawing.cutting),
+        tuple(placed(each, shape.direction) for each in drawing.cutting_outlines),
         (
-            *(placed(each, shape.direction) for each in drawing.body),
+            *(placed(each, shape.direction) for each in drawing.body_outlines),
             *(split_into_convex_pieces(pieces) if pieces else ()),
         ),
         shape.is_rotating and shape.direction[1] == 0,
-        tuple(dict.fromkeys(drawing.assumed)),
+        tuple(dict.fromkeys(drawing.assumed_fields)),
     )
 
 
@@ -189,7 +189,7 @@ def _rotate_to_direction(points: FloatArray, direction: tuple[int, int]) -> Floa
 def _insert(drawing: _OutlineDrawing, usual_circle: float) -> Insert:
     shape = drawing.shape
     if not shape.insert.strip():
-        drawing.assumed.append("insert")
+        drawing.assumed_fields.append("insert")
         return make_insert("C", usual_circle, shape.nose_radius or DEFAULT_NOSE_RADIUS_MM)
     insert = decode_insert_code(shape.insert)
     if not insert.corner_angles:
@@ -201,7 +201,7 @@ def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, 
     """Return the direction of the end cutting edge from the tip, in degrees from +z to +r."""
     shape, holder, point = drawing.shape, drawing.holder, insert.point_angle
     entry = shape.entry or holder.entering_angle_deg
-    if not entry and (not drawing.sided or shape.hand is Hand.NEUTRAL):
+    if not entry and (not drawing.is_tip_in_quadrant or shape.hand is Hand.NEUTRAL):
         return 90.0 - point / 2.0
     if holder.is_facing_angle and not shape.entry and not shape.internal:
         return entry - 90.0
@@ -216,12 +216,12 @@ def _seat_insert(
     seat = 1.0 - 2.0 * min(1.0, _INSERT_OVERHANG_FRACTION * insert.inscribed_circle) / insert.inscribed_circle
     if not insert.corner_angles:
         nose = make_circle(radius)
-        return nose - drawing.tip * radius, nose * seat - drawing.tip * radius
+        return nose - drawing.tip_position * radius, nose * seat - drawing.tip_position * radius
     sharp = make_polygon_from_edges(
         insert.corner_angles, insert.edge_lengths, _edge_heading(drawing, insert, usual)
     )
     radius = min(radius, 0.99 * find_max_corner_radius(sharp))
-    shift = -radius * drawing.tip - (find_nose_center(sharp, radius) if radius else sharp[0])
+    shift = -radius * drawing.tip_position - (find_nose_center(sharp, radius) if radius else sharp[0])
     chords = [MAX_NOSE_CHORD_ERROR_MM] + [MAX_BODY_CHORD_ERROR_MM] * (len(sharp) - 1)
     middle = sharp.mean(axis=0)
     nosed = round_corners(sharp, [radius] * len(sharp), chords)
@@ -233,11 +233,11 @@ def _seat_insert(
 def _turning(drawing: _OutlineDrawing) -> None:
     insert = _insert(drawing, 12.7)
     cutting, seat = _seat_insert(drawing, insert, ENTERING_ANGLES)
-    drawing.cutting.append(cutting)
+    drawing.cutting_outlines.append(cutting)
     across = insert.inscribed_circle
     head = max(2.5 * across, 2.0 * max(insert.edge_lengths, default=across))
-    holder = drawing.shank(next(wide for least, wide in _SHANKS if across >= least))
-    centred = not drawing.sided or drawing.shape.hand is Hand.NEUTRAL
+    holder = drawing.make_shank(next(wide for least, wide in _SHANKS if across >= least))
+    centred = not drawing.is_tip_in_quadrant or drawing.shape.hand is Hand.NEUTRAL
     far = holder.shank_width_mm / 2.0 if centred else holder.reach_mm
     _add_shank(drawing, seat, (far - holder.shank_width_mm, far), head)
 
@@ -247,10 +247,10 @@ _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  
 
 def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
     """Add a head from the seat to the shank, and add the shank up to its stick-out."""
-    drawing.body.append(find_convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
+    drawing.body_outlines.append(find_convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
-        drawing.body.append(make_rectangle(side, (head, end)))
+        drawing.body_outlines.append(make_rectangle(side, (head, end)))
 
 
 def _boring(drawing: _OutlineDrawing) -> None:
@@ -258,10 +258,10 @@ def _boring(drawing: _OutlineDrawing) -> None:
     bar = shape.diameter or drawing.holder.bar_diameter_mm
     insert = _insert(drawing, next(circle for least, circle in _BAR_INSERTS if bar >= least))
     cutting, seat = _seat_insert(drawing, insert, BORING_ENTERING_ANGLES)
-    drawing.cutting.append(cutting)
+    drawing.cutting_outlines.append(cutting)
     if not bar:
         bar = next(wide for least, wide in _INSERT_BARS if insert.inscribed_circle >= least)
-        drawing.assumed.append("diameter")
+        drawing.assumed_fields.append("diameter")
     axis = float(np.interp(bar, *_BARS)) if bar < _BARS[0][-1] else 0.7 * bar
     _add_bar(drawing, seat, bar, axis, min(insert.inscribed_circle, bar) / 2.0)
 
@@ -279,12 +279,14 @@ def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float
     away = np.array([back, 1.0])
     low, high = axis - bar / 2.0, axis + bar / 2.0
     start = min(head, float((seat * away)[:, 0].max()))
-    end = drawing.size("stick_out", 4.0 * bar)
-    drawing.body.append(find_convex_hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away)
+    end = drawing.get_size("stick_out", 4.0 * bar)
+    drawing.body_outlines.append(
+        find_convex_hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away
+    )
     if end > start:
-        drawing.body.append(make_rectangle((start, end), (low, high)) * away)
+        drawing.body_outlines.append(make_rectangle((start, end), (low, high)) * away)
     if drawing.shape.stick_out:
-        drawing.body.append(make_rectangle((end, end + 2.0 * bar), (axis - bar, axis + bar)) * away)
+        drawing.body_outlines.append(make_rectangle((end, end + 2.0 * bar), (axis - bar, axis + bar)) * away)
 
 
 # --- grooving, parting, threading: edge, blade, then shank or bar -------------------------------------------
@@ -292,13 +294,17 @@ def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float
 
 def _grooving(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
-    width = drawing.size("width", 3.0)
+    width = drawing.get_size("width", 3.0)
     nose = min(shape.nose_radius, 0.49 * width)
     depth = shape.length or (0.0 if shape.internal else shape.stick_out) or _usual_depth(shape, width)
     high = max(min(depth, max(1.5 * width, 2.0)), nose + MAX_NOSE_CHORD_ERROR_MM)
     left = _left_edge_end(drawing, width, nose)
-    sharp = make_rectangle((left, left + width), (0.0, high)) - np.array([0.0, nose * (1.0 + drawing.tip[1])])
-    drawing.cutting.append(round_corners(sharp, [nose, nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 4))
+    sharp = make_rectangle((left, left + width), (0.0, high)) - np.array(
+        [0.0, nose * (1.0 + drawing.tip_position[1])]
+    )
+    drawing.cutting_outlines.append(
+        round_corners(sharp, [nose, nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 4)
+    )
     thin = (1.0 - _BLADE) / 2.0 * width
     _blade_behind(drawing, (left + thin, left + width - thin), high, depth)
 
@@ -308,9 +314,9 @@ def _left_edge_end(drawing: _OutlineDrawing, width: float, nose: float) -> float
 
     The control point is the corner of the edge, its middle or a nose center.
     """
-    if not drawing.sided:
+    if not drawing.is_tip_in_quadrant:
         return -width / 2.0
-    return -nose * (1.0 + float(drawing.tip[0]))
+    return -nose * (1.0 + float(drawing.tip_position[0]))
 
 
 def _usual_depth(shape: ToolShape, width: float) -> float:
@@ -320,35 +326,39 @@ def _usual_depth(shape: ToolShape, width: float) -> float:
 def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: float, depth: float) -> None:
     shape = drawing.shape
     if depth > high:
-        drawing.body.append(make_rectangle(side, (high, depth)))
+        drawing.body_outlines.append(make_rectangle(side, (high, depth)))
     if shape.internal:
-        bar = drawing.size("diameter", 12.0)
+        bar = drawing.get_size("diameter", 12.0)
         _add_bar(drawing, make_rectangle(side, (depth, depth + bar)), bar, depth + bar / 2.0, side[0])
     elif shape.length or shape.stick_out:
-        wide = drawing.shank(20.0).shank_width_mm
+        wide = drawing.make_shank(20.0).shank_width_mm
         end = max(shape.stick_out, depth + 2.0 * wide)
-        drawing.body.append(make_rectangle((side[0], side[0] + wide), (depth, end)))
+        drawing.body_outlines.append(make_rectangle((side[0], side[0] + wide), (depth, end)))
     else:
-        drawing.assumed.append("length")
+        drawing.assumed_fields.append("length")
 
 
 def _draw_threading(drawing: _OutlineDrawing) -> None:
     """Draw a V-shaped point with a nose radius or with a flat of one eighth of the pitch (ISO 68-1)."""
     shape = drawing.shape
-    angle = math.radians(drawing.size("point", _POINTS[ToolKind.THREADING]))
+    angle = math.radians(drawing.get_size("point", _POINTS[ToolKind.THREADING]))
     high = shape.length or max(shape.pitch, 3.0)
     flat = 0.0 if shape.nose_radius else shape.pitch / 8.0
     half = flat / 2.0 + high * math.tan(angle / 2.0)
     if flat:
         points = [(-flat / 2.0, 0.0), (flat / 2.0, 0.0), (half, high), (-half, high)]
-        drawing.cutting.append(make_polygon(points) - np.array([drawing.tip[0] * flat / 2.0, 0.0]))
+        drawing.cutting_outlines.append(
+            make_polygon(points) - np.array([drawing.tip_position[0] * flat / 2.0, 0.0])
+        )
     else:
         sharp = make_polygon([(0.0, 0.0), (half, high), (-half, high)])
         nose = min(shape.nose_radius, 0.5 * find_max_corner_radius(sharp))
-        shift = -nose * drawing.tip - (find_nose_center(sharp, nose) if nose else sharp[0])
-        drawing.cutting.append(round_corners(sharp, [nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 3) + shift)
-    top = drawing.cutting[0][:, 1].max()
-    left = float(drawing.cutting[0][:, 0].min())
+        shift = -nose * drawing.tip_position - (find_nose_center(sharp, nose) if nose else sharp[0])
+        drawing.cutting_outlines.append(
+            round_corners(sharp, [nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 3) + shift
+        )
+    top = drawing.cutting_outlines[0][:, 1].max()
+    left = float(drawing.cutting_outlines[0][:, 0].min())
     _blade_behind(drawing, (left, left + 2.0 * half), top, top + 2.0 * half)
 
 
@@ -368,19 +378,21 @@ def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -
     """Add the shank up to its clamping, and the clamping if its position is specified."""
     end = drawing.shape.stick_out or length + 2.0 * diameter
     if end > length:
-        drawing.body.append(_cylinder(length, end, diameter / 2.0))
+        drawing.body_outlines.append(_cylinder(length, end, diameter / 2.0))
     if drawing.shape.stick_out:
-        drawing.body.append(_cylinder(end, end + 2.0 * diameter + 10.0, diameter / 2.0 + 5.0))
+        drawing.body_outlines.append(_cylinder(end, end + 2.0 * diameter + 10.0, diameter / 2.0 + 5.0))
 
 
 def _drill(drawing: _OutlineDrawing) -> None:
-    diameter = drawing.size("diameter", 6.0)
+    diameter = drawing.get_size("diameter", 6.0)
     radius = diameter / 2.0
-    length = drawing.size("length", 8.0 * diameter)
-    cone = radius / math.tan(math.radians(drawing.size("point", _POINTS[ToolKind.DRILL]) / 2.0))
+    length = drawing.get_size("length", 8.0 * diameter)
+    cone = radius / math.tan(math.radians(drawing.get_size("point", _POINTS[ToolKind.DRILL]) / 2.0))
     length = max(length, cone)
     point = [(0.0, 0.0)] if cone > MAX_NOSE_CHORD_ERROR_MM else []  # a flat drill has no point
-    drawing.cutting.append(_mirror_half([*point, (cone if point else 0.0, radius), (length, radius)]))
+    drawing.cutting_outlines.append(
+        _mirror_half([*point, (cone if point else 0.0, radius), (length, radius)])
+    )
     _add_round_shank(drawing, length, diameter)
 
 
@@ -389,56 +401,60 @@ def _draw_center_drill(drawing: _OutlineDrawing) -> None:
 
     If the ``width`` of the shape is specified, it is the diameter of the pilot.
     """
-    diameter = drawing.size("diameter", 6.0)
+    diameter = drawing.get_size("diameter", 6.0)
     pilot = drawing.shape.width or 0.4 * diameter
     tip = pilot / 2.0 / math.tan(math.radians(60.0))
     root = 1.2 * pilot
-    angle = math.radians(drawing.size("point", _POINTS[ToolKind.CENTER_DRILL]) / 2.0)
+    angle = math.radians(drawing.get_size("point", _POINTS[ToolKind.CENTER_DRILL]) / 2.0)
     end = root + (diameter - pilot) / 2.0 / math.tan(angle)
-    drawing.cutting.append(_mirror_half([(0.0, 0.0), (tip, pilot / 2.0), (root, pilot / 2.0)]))
-    drawing.cutting.append(
+    drawing.cutting_outlines.append(_mirror_half([(0.0, 0.0), (tip, pilot / 2.0), (root, pilot / 2.0)]))
+    drawing.cutting_outlines.append(
         _mirror_half([(root, pilot / 2.0), (end, diameter / 2.0), (end + 0.5, diameter / 2.0)])
     )
     _add_round_shank(drawing, end + 0.5, diameter)
 
 
 def _reamer(drawing: _OutlineDrawing) -> None:
-    diameter = drawing.size("diameter", 6.0)
-    length = drawing.size("length", 5.0 * diameter)
+    diameter = drawing.get_size("diameter", 6.0)
+    length = drawing.get_size("length", 5.0 * diameter)
     lead = min(0.1 * diameter, 0.5)  # at 45°
     radius = diameter / 2.0
-    drawing.cutting.append(_mirror_half([(0.0, radius - lead), (lead, radius), (length, radius)]))
+    drawing.cutting_outlines.append(_mirror_half([(0.0, radius - lead), (lead, radius), (length, radius)]))
     _add_round_shank(drawing, length, diameter)
 
 
 def _draw_tap(drawing: _OutlineDrawing) -> None:
     """Draw a tap with a chamfer lead that is three pitches long and starts below the core (ISO 68-1)."""
-    diameter = drawing.size("diameter", 6.0)
-    pitch = drawing.size("pitch", diameter / 6.0)
-    length = drawing.size("length", 2.5 * diameter + _TAP_LEAD * pitch)
+    diameter = drawing.get_size("diameter", 6.0)
+    pitch = drawing.get_size("pitch", diameter / 6.0)
+    length = drawing.get_size("length", 2.5 * diameter + _TAP_LEAD * pitch)
     end = max(diameter - 1.2 * pitch, 0.5 * diameter) / 2.0
     lead = min(_TAP_LEAD * pitch, length)
-    drawing.cutting.append(_mirror_half([(0.0, end), (lead, diameter / 2.0), (length, diameter / 2.0)]))
+    drawing.cutting_outlines.append(
+        _mirror_half([(0.0, end), (lead, diameter / 2.0), (length, diameter / 2.0)])
+    )
     _add_round_shank(drawing, length, diameter)
 
 
 def _end_mill(drawing: _OutlineDrawing) -> None:
-    diameter = drawing.size("diameter", 6.0)
-    length = drawing.size("length", 3.0 * diameter)
+    diameter = drawing.get_size("diameter", 6.0)
+    length = drawing.get_size("length", 3.0 * diameter)
     nose = min(drawing.shape.nose_radius, diameter / 2.0)
     radii = [nose, 0.0, 0.0, nose]
     body = _cylinder(0.0, length, diameter / 2.0)
-    drawing.cutting.append(round_corners(body, radii, [MAX_NOSE_CHORD_ERROR_MM] * 4) if nose else body)
+    drawing.cutting_outlines.append(
+        round_corners(body, radii, [MAX_NOSE_CHORD_ERROR_MM] * 4) if nose else body
+    )
     _add_round_shank(drawing, length, diameter)
 
 
 def _form(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
     if shape.profile:
-        drawing.cutting.extend(split_into_convex_pieces(shape.profile))
+        drawing.cutting_outlines.extend(split_into_convex_pieces(shape.profile))
     else:
-        drawing.assumed.append("profile")
-        drawing.cutting.extend(make_nose_circle(shape.nose_radius, shape.tip).cutting_outlines)
+        drawing.assumed_fields.append("profile")
+        drawing.cutting_outlines.extend(make_nose_circle(shape.nose_radius, shape.tip).cutting_outlines)
 
 
 _DRAW: Mapping[ToolKind, Callable[[_OutlineDrawing], None]] = {

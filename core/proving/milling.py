@@ -174,7 +174,7 @@ class MillingState:
         )
         everywhere = slice(0, len(field.column_centers))
         for start, end in _iter_gaps(*sort_intervals(turned.inner_radii[:, at], turned.outer_radii[:, at])):
-            field.intersect(everywhere, slice(None), start[:, None], end[:, None])
+            field.find_removed_material(everywhere, slice(None), start[:, None], end[:, None])
 
 
 def _section_profiles(edges: FloatArray, low: FloatArray, high: FloatArray) -> PartedPiece:

@@ -158,7 +158,7 @@ class PartHistory:
         return self._seen.copy()
 
     @property
-    def tools(self) -> ProgramTools:
+    def program_tools(self) -> ProgramTools:
         """Return the tools of the program, as specified or as assumed."""
         return self._tools
 

@@ -137,7 +137,11 @@ def _clamping_hit(
     """
     if cut is None or clamping is None or stock is None:
         return None
-    body = clamping.tailstock if finding.check_name == "into-tailstock" else clamping.make_chuck_around(stock)
+    body = (
+        clamping.tailstock_solid
+        if finding.check_name == "into-tailstock"
+        else clamping.make_chuck_around(stock)
+    )
     if body is None:
         return None
     low, high = (

@@ -360,7 +360,7 @@ class PartSimulation:
             assumptions=tuple(assumed),
             findings=self.findings.diagnostics,
             unchecked_data=(*self._unchecked, *_cut_standing(self._standing)),
-            shapes={
+            tool_shapes={
                 n: self._tools.find_shape(n)
                 for n, use in self._tools.tool_uses.items()
                 if use.moves or use.live_steps

@@ -185,13 +185,13 @@ class InputChoice:
     """The assumed state of one input at one program line."""
 
     line: int
-    terminal: str
+    terminal_name: str
     is_on: bool
 
     @property
     def description(self) -> str:
         """Return the choice as a text for the operator."""
-        name = "7" if self.terminal == "TB2-9" else self.terminal
+        name = "7" if self.terminal_name == "TB2-9" else self.terminal_name
         return Message(
             "input {number} is {state} at line {line}",
             number=name,
@@ -209,8 +209,10 @@ class _BranchPass:
     choices: tuple[InputChoice, ...] = ()
     rest_state: RestState | None = None  # None: not reached, because the path before it has errors
     checks: CuttingChecks | None = None
-    asked: list[_BranchPass | None] = field(default_factory=list)  # in the order of its conditional calls
-    answered: int = 0
+    branches_by_call: list[_BranchPass | None] = field(
+        default_factory=list
+    )  # in the order of its conditional calls
+    answered_call_count: int = 0
 
 
 def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
@@ -270,7 +272,7 @@ class BranchProof:
         seen = self._seen[statement.line, not on]
         if len(self._waiting) >= _MAX_WAITING and seen:
             self._unproved += 1
-            self._current.asked.append(None)
+            self._current.branches_by_call.append(None)
             return
         self._seen[statement.line, not on] += 1
         choice = InputChoice(statement.line, get_input_terminal(statement), not on)
@@ -279,9 +281,9 @@ class BranchProof:
             ProgramBranch(preceding_block_count=branch.block_count),
             other,
             (*self._current.choices, choice),
-            asked=[None],
+            branches_by_call=[None],
         )
-        self._current.asked.append(branch_pass)
+        self._current.branches_by_call.append(branch_pass)
         rank = (int(other.has_input_change), seen, len(branch_pass.choices), next(self._turn))
         heapq.heappush(self._waiting, (rank, branch_pass))
 
@@ -315,11 +317,11 @@ class BranchProof:
     ) -> None:
         """Record the state at a conditional call, from which the copy of the pass continues."""
         branch_pass = (
-            current_pass.asked[current_pass.answered]
-            if current_pass.answered < len(current_pass.asked)
+            current_pass.branches_by_call[current_pass.answered_call_count]
+            if current_pass.answered_call_count < len(current_pass.branches_by_call)
             else None
         )
-        current_pass.answered += 1
+        current_pass.answered_call_count += 1
         if branch_pass is not None:
             branch_pass.rest_state, branch_pass.checks = (
                 timeline.rest_state,

@@ -49,7 +49,7 @@ class RangeTracker:
     def __init__(self) -> None:
         self.minimum, self.maximum = math.inf, -math.inf
 
-    def extend(self, *values: float) -> None:
+    def include_values(self, *values: float) -> None:
         """Extend the range to include the given values."""
         self.minimum = min(self.minimum, *values)
         self.maximum = max(self.maximum, *values)
@@ -118,7 +118,7 @@ class ProgramTotals:
         self.rapid_length_mm += float(length[rapid].sum())
         self.cutting_length_mm += float(length[~rapid].sum())
         for span, column in ((self.x_range, 2), (self.z_range, 3), (self.c_range, 4)):
-            span.extend(float(table[column].min()), float(table[column].max()))
+            span.include_values(float(table[column].min()), float(table[column].max()))
         in_degrees = turned | (length == 0.0)  # rapids of C only, and blocks without motion
         if not in_degrees.all():
             self._feeds(*table[5:8, ~in_degrees])
@@ -136,9 +136,9 @@ class ProgramTotals:
             self.rapid_length_mm += total
         else:
             self.cutting_length_mm += total
-        self.x_range.extend(float(x.min()), float(x.max()))
-        self.z_range.extend(float(z.min()), float(z.max()))
-        self.c_range.extend(*(part.pattern.c for part in parts))
+        self.x_range.include_values(float(x.min()), float(x.max()))
+        self.z_range.include_values(float(z.min()), float(z.max()))
+        self.c_range.include_values(*(part.pattern.c for part in parts))
         first = 0
         for part in parts:
             like, moves = part.pattern, length[first : first + len(part)] != 0.0
@@ -165,12 +165,12 @@ class ProgramTotals:
         if not self.axis_ranges:
             self.axis_ranges = [RangeTracker() for _ in block.machine_end]
         for span, reach in zip(self.axis_ranges, block.compute_machine_bounds(), strict=True):
-            span.extend(*reach)
+            span.include_values(*reach)
 
     def _reach(self, block: Block) -> None:
         low_x, high_x, low_z, high_z = block.reach()
-        self.x_range.extend(low_x, high_x)
-        self.z_range.extend(low_z, high_z)
+        self.x_range.include_values(low_x, high_x)
+        self.z_range.include_values(low_z, high_z)
 
     def _arc(self, block: Block) -> float:
         self._reach(block)
@@ -182,18 +182,18 @@ class ProgramTotals:
     def _plane(self, block: Block, plane_move: PlaneMove) -> float:
         self._reach(block)
         low, high = plane_move.find_travel_range()
-        self.c_range.extend(float(low[2]), float(high[2]))
+        self.c_range.include_values(float(low[2]), float(high[2]))
         return plane_move.length
 
     def _feeds(self, rpm: FloatArray, feed: FloatArray, per_rev: FloatArray) -> None:
         path_speed = np.where(per_rev > 0, feed * np.abs(rpm) / 60, feed)
-        self.feed_range.extend(float(path_speed.min()), float(path_speed.max()))
+        self.feed_range.include_values(float(path_speed.min()), float(path_speed.max()))
 
     def _add_spindle_speeds(self, rpm: FloatArray) -> None:
         """Extend the range of spindle speeds, ignoring rotations of the C axis."""
         turning = np.abs(rpm[rpm != 0])
         if turning.size:
-            self.rpm_range.extend(float(turning.min()), float(turning.max()))
+            self.rpm_range.include_values(float(turning.min()), float(turning.max()))
 
 
 def _summed_columns(part: BlockGroup) -> FloatArray:

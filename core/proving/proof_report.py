@@ -125,8 +125,8 @@ def sort_findings(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
 class PartReport:
     """The results of the part, in mm and mm³.
 
-    ``last_piece`` is the last piece that was parted off, or the material in the chuck. ``shapes`` are the
-    tool shapes by T number, specified or assumed; a shape is None if no cutting shape is known.
+    ``last_piece`` is the last piece that was parted off, or the material in the chuck. ``tool_shapes`` are
+    the tool shapes by T number, specified or assumed; a shape is None if no cutting shape is known.
     ``assumptions`` contains a sentence for each assumption, and ``unchecked_data`` lists the missing data
     that prevented checks.
     """
@@ -141,5 +141,5 @@ class PartReport:
     assumptions: tuple[str, ...]
     findings: tuple[Diagnostic, ...]
     unchecked_data: tuple[str, ...] = ()
-    shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
+    tool_shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
     section_halves: tuple[PartedPiece, PartedPiece] | None = None

@@ -35,10 +35,10 @@ def iter_setpoints(timeline: Timeline, interval_s: float) -> Iterator[SetpointRo
     sampler = _SpanSampler(timeline, interval_s)
     for span in timeline.iter_spans():
         if isinstance(span, MotionSpan):
-            yield sampler.moved(span)
+            yield sampler.sample_motion(span)
         else:
-            yield from sampler.rested(span)
-    yield sampler.standing(1)
+            yield from sampler.sample_rest(span)
+    yield sampler.make_standstill_rows(1)
 
 
 class _SpanSampler:
@@ -53,7 +53,7 @@ class _SpanSampler:
         self._angle = 0.0
         self._rpm = 0.0  # rpm of the last row
 
-    def moved(self, span: MotionSpan) -> SetpointRows:
+    def sample_motion(self, span: MotionSpan) -> SetpointRows:
         """Return the rows of a span of motion."""
         profile = span.chunk.profile
         _, positions, numbers = sample_positions(
@@ -67,15 +67,15 @@ class _SpanSampler:
         self._at = tuple(profile.positions_at(profile.duration_s)[0].tolist())
         return self._rows(positions, lines, by_radius)
 
-    def rested(self, span: RestSpan) -> Iterator[SetpointRows]:
+    def sample_rest(self, span: RestSpan) -> Iterator[SetpointRows]:
         """Yield the rows of a span at rest."""
         if span.block is not None:
             self._line = span.block.line
         count = max(0, math.ceil((span.end_time_s - self._row * self._dt) / self._dt - 1e-9))
         for done in range(0, count, REST_BATCH_ROWS):
-            yield self.standing(min(REST_BATCH_ROWS, count - done), span.block)
+            yield self.make_standstill_rows(min(REST_BATCH_ROWS, count - done), span.block)
 
-    def standing(self, count: int, block: Block | None = None) -> SetpointRows:
+    def make_standstill_rows(self, count: int, block: Block | None = None) -> SetpointRows:
         """Return ``count`` rows without motion."""
         by_radius = dict.fromkeys(range(count), block) if block is not None and _follows_radius(block) else {}
         return self._rows(np.tile(self._at, (count, 1)), np.full(count, self._line), by_radius)

@@ -78,7 +78,7 @@ class FirstMove:
     path: tuple[tuple[float, float, bool], ...]
     part_zero: Point = (0.0, 0.0)
     hit_body: CollisionBody | None = None
-    tool: int = 0
+    tool_number: int = 0
     hit_z_mm: float = 0.0
     is_inside_at_start: bool = False
     safe_jog_direction: str = ""
@@ -157,7 +157,7 @@ class StartCheck:
                     found,
                     part_zero=self._part_zero_for_tool(tool) or found.part_zero,
                     hit_body=body,
-                    tool=tool,
+                    tool_number=tool,
                     hit_z_mm=z,
                     is_inside_at_start=inside,
                     safe_jog_direction=self._find_safe_jog(making, start_state),
@@ -188,7 +188,9 @@ class StartCheck:
             and not self.is_stock_specified
         ):
             return True
-        return start_state.interrupted_block is None and not self.part_history.tools.is_specified(tool)
+        return start_state.interrupted_block is None and not self.part_history.program_tools.is_specified(
+            tool
+        )
 
     def _metal(self, making: PartSimulation) -> Iterator[tuple[CollisionBody, TurnedPart]]:
         if making.part is not None and making.milling is None and not making.is_collet_open:
@@ -258,7 +260,7 @@ class StartCheck:
 
     def _cut(self, body: CollisionBody, metal: TurnedPart, move: TipMove, now: StartState) -> None:
         cutter = (
-            self.part_history.tools.make_cutter(move.modal.tool)
+            self.part_history.program_tools.make_cutter(move.modal.tool)
             if self._is_intended_cut(body, move, now)
             else None
         )
@@ -314,7 +316,7 @@ class StartCheck:
 
         For other tools, return only the parts that are certain: the nose, or the flutes of a drill.
         """
-        tools = self.part_history.tools
+        tools = self.part_history.program_tools
         shape = tools.find_shape(tool)
         if shape is None:
             return make_nose_circle(_NOSE, 0).cutting_outlines

@@ -287,7 +287,7 @@ def make_record(
     seen = np.searchsorted(ticks[:, 0], times, side="right") - 1
     source = _Source(layout, samples, ticks, seen)
     wanted = [each for each in layout.channels if names is None or each.name in names]
-    columns = {each.name: source.column(each.name) for each in wanted}
+    columns = {each.name: source.get_channel_values(each.name) for each in wanted}
     started = layout.clock_zero_utc_s + (float(times[0]) if len(times) else 0.0)
     return ScopeRecord(tuple(wanted), times, columns, started, layout.sampling_rate_hz, layout.description)
 
@@ -298,7 +298,7 @@ class _Source:
     def __init__(self, layout: RingLayout, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
         self._recorded, self._samples, self._ticks, self._seen = layout, samples, ticks, np.asarray(seen)
 
-    def column(self, name: str) -> FloatArray:
+    def get_channel_values(self, name: str) -> FloatArray:
         """Return the values of one channel at the times of the samples."""
         recorded, axes = self._recorded, list(self._recorded.is_rotary_by_axis)
         letter, _, what = name.partition(" ")

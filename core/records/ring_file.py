@@ -196,9 +196,9 @@ def is_ring_file(path: Path) -> bool:
 class _Found:
     """The header of a ring file."""
 
-    recorded: RingLayout
-    rooms: tuple[int, int]
-    head: int
+    ring_layout: RingLayout
+    row_capacities: tuple[int, int]
+    header_size: int
 
 
 def read_ring_file(path: Path, start_time_s: float = -np.inf, end_time_s: float = np.inf) -> ScopeRecord:
@@ -215,10 +215,10 @@ def _read_ring(path: Path, begin: float, end: float) -> ScopeRecord:
         with open_input_file(path, MAX_RECORD_BYTES) as file:
             data = file.read(_START.size)
             found = _described(path, data, file.read)
-            file.seek(found.head - 2 * _COUNTS.size)
+            file.seek(found.header_size - 2 * _COUNTS.size)
             counts = list(_COUNTS.iter_unpack(file.read(2 * _COUNTS.size)))
             rings = list(_rings(path, found, file.read))
-            file.seek(found.head - 2 * _COUNTS.size)
+            file.seek(found.header_size - 2 * _COUNTS.size)
             now = list(_COUNTS.iter_unpack(file.read(2 * _COUNTS.size)))
     except OSError as error:
         raise why(path, error) from error
@@ -226,7 +226,7 @@ def _read_ring(path: Path, begin: float, end: float) -> ScopeRecord:
         _unrolled(data, whole, begun) for data, (_, whole), (begun, _) in zip(rings, counts, now, strict=True)
     )
     times = samples[:, 0]
-    return make_record(found.recorded, samples[(times >= begin) & (times <= end)], ticks)
+    return make_record(found.ring_layout, samples[(times >= begin) & (times <= end)], ticks)
 
 
 def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found:
@@ -269,8 +269,8 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
 
 
 def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[FloatArray]:
-    widths = (found.recorded.sample_width, found.recorded.tick_width)
-    for room, width in zip(found.rooms, widths, strict=True):
+    widths = (found.ring_layout.sample_width, found.ring_layout.tick_width)
+    for room, width in zip(found.row_capacities, widths, strict=True):
         size = room * (width + 1) * 8
         if not 0 < size <= MAX_RECORD_BYTES:
             raise InconsistentRecordError(

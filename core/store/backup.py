@@ -187,7 +187,7 @@ def _replace_users(rows: tuple[UserRow, ...] | None, copy: sqlite3.Connection) -
     If ``rows`` is None, no store existed before, so the copy retains the users of the backup.
     """
     if rows or (rows is not None and row_checksums.list_checksummed_columns(copy, "people")):
-        database.migrate(copy, database.load_migrations())
+        database.upgrade_tables(copy, database.load_migrations())
         user_records.replace_all_users(copy, rows)
 
 

@@ -191,7 +191,7 @@ def make_row_label(name: str, key: row_checksums.RowKey) -> str:
         return f"{table.letter}{key}"
     return (
         Message("the tool shape of {key}", key=format_edge_name(key))
-        if table.row is ShapeRow
+        if table.row_type is ShapeRow
         else format_edge_name(key)
     )
 
@@ -206,7 +206,7 @@ def find_last_entered_values(
     kind = next((kind for kind, table in OFFSET_TABLES.items() if table.name == name), None)
     if kind is None:
         return None
-    log = OFFSET_TABLES[kind].log
+    log = OFFSET_TABLES[kind].history_table
     sides = ", ".join(log.key_column if column == log.key_column else f"new_{column}" for column in columns)
     last = f"WHERE {log.key_column} = ? AND {log.kind_expression} = ? ORDER BY id DESC LIMIT 1"
     found = row_checksums.query_raw_rows(

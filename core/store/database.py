@@ -184,7 +184,7 @@ def _rebuild_indexes(
     return (INDEX_REBUILT_MESSAGE,)
 
 
-def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
+def upgrade_tables(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
     """Upgrade the tables to the newest version, with one transaction for each version.
 
     After the upgrade, this connection writes a checksum for every row that it changes. Raises StoreError if
@@ -247,7 +247,7 @@ def create_store_file(path: Path) -> None:
             connection.execute("PRAGMA synchronous = OFF")
             connection.execute("PRAGMA journal_mode = MEMORY")
             connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            migrate(connection, load_migrations())
+            upgrade_tables(connection, load_migrations())
             connection.execute("PRAGMA journal_mode = WAL")
         replace_atomically(unfinished, path)
     except (OSError, sqlite3.Error) as error:
@@ -259,7 +259,7 @@ def create_empty_store() -> sqlite3.Connection:
     connection = configure_connection(
         sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
     )
-    migrate(connection, load_migrations())
+    upgrade_tables(connection, load_migrations())
     return connection
 
 
@@ -276,7 +276,7 @@ class OpenedStore:
     path: Path
     reader: sqlite3.Connection
     writer: sqlite3.Connection | None = None
-    lock: WriterLock | None = None
+    writer_lock: WriterLock | None = None
     repair_messages: tuple[str, ...] = ()  # messages about repaired damage of the file itself
 
     def close(self) -> None:
@@ -287,8 +287,8 @@ class OpenedStore:
         self.reader.close()
         if self.writer:
             self.writer.close()
-        if self.lock:
-            self.lock.close()
+        if self.writer_lock:
+            self.writer_lock.close()
 
 
 def open_read_only(folder: Path) -> OpenedStore:
@@ -387,7 +387,7 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
             _save_copy(connection, path.with_name(f"{path.stem}-version-{version}.db"))
         connection.execute("PRAGMA journal_mode = WAL")
         mended = _rebuild_indexes(connection, path, wrong)
-        migrate(connection, load_migrations())
+        upgrade_tables(connection, load_migrations())
     except (OSError, sqlite3.Error) as error:
         connection.close()
         raise why(path, error) from error

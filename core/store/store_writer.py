@@ -31,17 +31,17 @@ MAX_PENDING_EVENTS = 20_000
 class _Parts(NamedTuple):
     """A pending change of a program's part count: an optional reset, followed by the parts to add."""
 
-    reset: bool = False
-    more: int = 0
-    last: str = ""
+    resets_count: bool = False
+    added_part_count: int = 0
+    last_part_time: str = ""
 
 
 class _Cycles(NamedTuple):
     """The pending complete cycles of a program, with their times in seconds."""
 
     cycle_count: int
-    best: float
-    latest: float
+    best_time_s: float
+    latest_time_s: float
 
 
 class UnwrittenEntries:
@@ -71,16 +71,18 @@ class UnwrittenEntries:
     def add_parts(self, program: str, count: int) -> None:
         """Add parts to a part count, or subtract them if ``count`` is negative."""
         before = self._parts.get(program, _Parts())
-        self._parts[program] = before._replace(more=before.more + count, last=get_utc_now_text())
+        self._parts[program] = before._replace(
+            added_part_count=before.added_part_count + count, last_part_time=get_utc_now_text()
+        )
 
     def reset_parts(self, program: str) -> None:
         """Set a part count to zero."""
-        self._parts[program] = _Parts(reset=True, last=get_utc_now_text())
+        self._parts[program] = _Parts(resets_count=True, last_part_time=get_utc_now_text())
 
     def add_cycle(self, program: str, seconds: float) -> None:
         """Add a complete cycle and its time in seconds."""
         before = self._cycles.get(program, _Cycles(0, seconds, seconds))
-        self._cycles[program] = _Cycles(before.cycle_count + 1, min(before.best, seconds), seconds)
+        self._cycles[program] = _Cycles(before.cycle_count + 1, min(before.best_time_s, seconds), seconds)
 
     def replace_operation(self, name: tuple[str, str], operation: Operation[object]) -> None:
         """Add an operation, replacing a pending operation with the same name."""
@@ -89,9 +91,13 @@ class UnwrittenEntries:
 
     def count_entries(self, reason: str) -> PendingEntries:
         """Return the numbers of the pending entries, with the reason ``reason`` for the delay."""
-        parts = sum(abs(each.more) for each in self._parts.values())
-        others = len(self._latest) + len(self._cycles) + sum(each.reset for each in self._parts.values())
-        counts = {program: (each.reset, each.more) for program, each in self._parts.items()}
+        parts = sum(abs(each.added_part_count) for each in self._parts.values())
+        others = (
+            len(self._latest) + len(self._cycles) + sum(each.resets_count for each in self._parts.values())
+        )
+        counts = {
+            program: (each.resets_count, each.added_part_count) for program, each in self._parts.items()
+        }
         return PendingEntries(reason, len(self._events), parts, others, self._dropped, counts)
 
     def write_all(self, connection: sqlite3.Connection) -> None:
@@ -137,18 +143,18 @@ def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
 
 def _writing_parts(program: str, parts: _Parts) -> Operation[object]:
     def write(connection: sqlite3.Connection) -> None:
-        if parts.reset:
+        if parts.resets_count:
             job_queue.save_count_before_reset(connection, program)
             program_records.reset_parts(connection, program)
-        if parts.more:
-            program_records.add_parts(connection, program, parts.more, parts.last)
+        if parts.added_part_count:
+            program_records.add_parts(connection, program, parts.added_part_count, parts.last_part_time)
 
     return write
 
 
 def _writing_cycles(program: str, cycles: _Cycles) -> Operation[object]:
     return lambda connection: program_records.record_complete_cycles(
-        connection, program, cycles.latest, cycles.cycle_count, cycles.best
+        connection, program, cycles.latest_time_s, cycles.cycle_count, cycles.best_time_s
     )
 
 

@@ -27,13 +27,19 @@ def create_follower(
     config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
 ) -> SetpointFollower:
     """Create the setpoint follower for the motion mode ``config.bus.mode``."""
-    if config.bus.mode == "pp":
+    if config.bus_settings.mode == "pp":
         return ProfiledFollower(drives.axes, drives.axis_indices, queue)
-    if MOTION_MODES[config.bus.mode].is_cyclic:
+    if MOTION_MODES[config.bus_settings.mode].is_cyclic:
         return CyclicFollower(
-            drives.axes, drives.axis_indices, queue, MOTION_MODES[config.bus.mode].drive_mode, schedule
+            drives.axes,
+            drives.axis_indices,
+            queue,
+            MOTION_MODES[config.bus_settings.mode].drive_mode,
+            schedule,
         )
-    return PvtFollower(drives.axes, drives.axis_indices, queue, config.commit_time_s, config.bus.record)
+    return PvtFollower(
+        drives.axes, drives.axis_indices, queue, config.commit_time_s, config.bus_settings.record
+    )
 
 
 _HISTORY_S = 0.5  # Age in s of setpoints that are still available.
@@ -53,12 +59,12 @@ class CanopenAxes:
         self.config = config
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit_time_s
-        self.drives = DriveSet(config.axes, bus, MOTION_MODES[config.bus.mode])
+        self.drives = DriveSet(config.axes, bus, MOTION_MODES[config.bus_settings.mode])
         tolerance = JunctionTolerance.from_axes(config.axes)
         self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit_time_s, tolerance)
-        self.sync_schedule = SyncSchedule(config.bus.sync, bus.clock.now())
+        self.sync_schedule = SyncSchedule(config.bus_settings.sync, bus.clock.now())
         self.follower = create_follower(config, self.drives, self.queue, self.sync_schedule)
-        self.is_cyclic = MOTION_MODES[config.bus.mode].is_cyclic
+        self.is_cyclic = MOTION_MODES[config.bus_settings.mode].is_cyclic
         self.active_homing: CanopenHoming | None = None
         self.fault = ""
         self.other_device_fault = ""  # Fault of another device on the bus.

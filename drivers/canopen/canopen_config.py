@@ -97,11 +97,11 @@ class PotConfig:
 class CanopenConfig:
     """Configuration of the complete machine on the bus."""
 
-    bus: CanopenTable
+    bus_settings: CanopenTable
     axes: tuple[AxisConfig, ...]
     spindle: SpindleConfig | None = None
     encoder: EncoderConfig | None = None  # For a spindle that another device drives.
-    modules: tuple[CanNode, ...] = ()
+    io_modules: tuple[CanNode, ...] = ()
     outputs: Mapping[str, OutputConfig] = field(default_factory=dict)
     inputs: Mapping[str, CanTerminal] = field(default_factory=dict)
     pots: Mapping[str, PotConfig] = field(default_factory=dict)

@@ -81,7 +81,7 @@ class CanopenMachine:
     def __init__(self, config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
         self.config = config
         self.clock = clock
-        self.bus = CanBus(config.bus, clock, idle)
+        self.bus = CanBus(config.bus_settings, clock, idle)
         self._next = clock.now()
         # Replies to the last SYNC are read; setpoints are being calculated.
         self._looked = self._feeding = False
@@ -102,12 +102,14 @@ class CanopenMachine:
             self.encoder = self._encoder(drives)
             self.spindle_c = self._spindle_c()
             self.touch_input = (
-                CanopenProbe(self.axes, self.io, config.bus.sync) if PROBE_INPUT in config.inputs else None
+                CanopenProbe(self.axes, self.io, config.bus_settings.sync)
+                if PROBE_INPUT in config.inputs
+                else None
             )
             self.samples = CanopenSamples(
                 self.axes,
                 self._turning,
-                config.bus.sync,
+                config.bus_settings.sync,
                 self.spindle.drive if self.spindle is not None else None,
             )
             self.axes.reconnect_bus = self._reconnect
@@ -150,7 +152,7 @@ class CanopenMachine:
             samples=self.samples,
             touch=self.touch_input,
             unknown=self.find_unknown_items,
-            untraced=_UNTRACED_REASON if self.config.bus.mode == "pp" else "",
+            untraced=_UNTRACED_REASON if self.config.bus_settings.mode == "pp" else "",
             warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
         )
 
@@ -231,7 +233,7 @@ class CanopenMachine:
             self.bus.send_sync()
             self._looked = False
             self._count += 1
-            counted = self._count % self.config.bus.slow_reply_divisor == 0
+            counted = self._count % self.config.bus_settings.slow_reply_divisor == 0
             self._record_sync(now, reply_expected=counted)
             if not self._feeding:  # Otherwise a homing is waiting for a node.
                 self._feeding = True
@@ -291,7 +293,9 @@ class CanopenMachine:
                 self.encoder.supervise()
             early = _EPSILON if self._waits else self._early
             if exchange and (now >= self._next - early or self.axes.follower.must_send_now):
-                self._next = max(self._next, now - self.config.bus.sync) + self.config.bus.sync
+                self._next = (
+                    max(self._next, now - self.config.bus_settings.sync) + self.config.bus_settings.sync
+                )
                 self._sent = now
                 self.axes.follower.must_send_now = False
                 self._exchange()
@@ -308,7 +312,7 @@ class CanopenMachine:
         The result is 0 if ``is_asleep`` is false, while a drive moves, or after a bus failure. While the
         control is asleep, the drives must reply only ten times per second.
         """
-        bus = self.config.bus
+        bus = self.config.bus_settings
         apart = max(bus.sync, _IDLE_REPLY_PERIOD_S / bus.slow_reply_divisor if is_asleep else 0.0)
         self._next, self._early = self._sent + apart, _MAX_EARLY_FRACTION * apart if is_asleep else _EPSILON
         if not is_asleep or self.bus.failure or self.axes.follower.must_send_now or self.axes.sample().moving:

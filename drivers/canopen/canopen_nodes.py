@@ -89,14 +89,14 @@ NODE_REFERENCE = TableReference(
 class CanTerminal:
     """Terminal on the bus: one bit of an object of an I/O module or axis drive.
 
-    If ``bit`` is -1, the terminal is the whole number in the object.
+    If ``bit_number`` is -1, the terminal is the whole number in the object.
     """
 
-    node: str
+    node_name: str
     index: int
     subindex: int
-    bit: int = -1
-    active_low: bool = False
+    bit_number: int = -1
+    is_active_low: bool = False
 
 
 def get_slow_reply_divisor(sync_period_s: float) -> int:
@@ -136,9 +136,9 @@ def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
     Return None if the text is not a terminal address.
     """
     found = parse_terminal(text)
-    if found is None or found.node != FIRST_MODULE_ADDRESS:
+    if found is None or found.node_name != FIRST_MODULE_ADDRESS:
         return found
-    return replace(found, node=next(iter(list_module_names(file)), FIRST_MODULE_ADDRESS))
+    return replace(found, node_name=next(iter(list_module_names(file)), FIRST_MODULE_ADDRESS))
 
 
 def generate_input_addresses() -> Iterator[str]:

@@ -92,7 +92,7 @@ def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDict
         found.add_object(_variable(profile.home_offset_object, 0, I32))
     if profile.input_entry.object_index not in found:
         found.add_object(
-            _record(profile.input_entry.object_index, ((profile.input_entry.subindex, U16, "ro"),))
+            _record(profile.input_entry.object_index, ((profile.input_entry.object_subindex, U16, "ro"),))
         )
     if profile.record_queue is not None:
         order = _variable(profile.record_queue.object_index, 0, U64)

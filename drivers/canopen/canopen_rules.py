@@ -367,7 +367,7 @@ def _check_terminals(file: MachineFileReading) -> Iterator[FileFinding]:
 def _wrong_terminal(file: MachineFileReading, text: str, *, output: bool, analog: bool) -> str:
     terminal = parse_terminal(text)
     sample = "401.6401.1" if analog else "401.6200.1.0" if output else "401.6000.1.0"
-    if terminal is None or (terminal.bit < 0) != analog:
+    if terminal is None or (terminal.bit_number < 0) != analog:
         template = (
             'the address must consist of node, object and sub-index, such as "{sample}"'
             if analog
@@ -375,15 +375,15 @@ def _wrong_terminal(file: MachineFileReading, text: str, *, output: bool, analog
         )
         return Message(template, sample=sample)
     modules = list_module_names(file)
-    plain = terminal.node == FIRST_MODULE_ADDRESS
-    profile = (MODULE if modules else 0) if plain else read_node_profile(file, terminal.node)
+    plain = terminal.node_name == FIRST_MODULE_ADDRESS
+    profile = (MODULE if modules else 0) if plain else read_node_profile(file, terminal.node_name)
     if not profile:
         return Message(
             "the address must name an I/O module of [canopen.nodes]: {modules}",
             modules=", ".join(modules) or "none defined",
         )
     if profile == DRIVE:
-        right = terminal.index == _DRIVE_INPUT and not output and not analog and terminal.bit < 32
+        right = terminal.index == _DRIVE_INPUT and not output and not analog and terminal.bit_number < 32
         return (
             ""
             if right
@@ -397,4 +397,4 @@ def _wrong_terminal(file: MachineFileReading, text: str, *, output: bool, analog
             expected=f"{wanted:04X}",
             maximum=most,
         )
-    return "" if terminal.bit < BITS else "the bit number must be from 0 to 7"
+    return "" if terminal.bit_number < BITS else "the bit number must be from 0 to 7"

@@ -205,9 +205,9 @@ class NodeSetup:
     def require_objects(self, *entries: PdoEntry) -> None:
         """Raise DriverError that names all objects of ``entries`` that the node lacks."""
         missing = [
-            f"{entry.object_index:04X}:{entry.subindex}"
+            f"{entry.object_index:04X}:{entry.object_subindex}"
             for entry in entries
-            if not self.has_object(entry.object_index, entry.subindex)
+            if not self.has_object(entry.object_index, entry.object_subindex)
         ]
         if missing:
             raise self._setup_error(

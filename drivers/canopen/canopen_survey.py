@@ -31,7 +31,7 @@ class SurveyResult(NamedTuple):
     name: str
     node_id: int
     error_text: str
-    detail: str
+    detail_text: str
 
 
 class _SilentBus(CanBus):
@@ -52,10 +52,12 @@ def identify_nodes(
     ``advance_time`` is passed to the bus and advances the time in tests. Raises DriverError if the bus
     cannot be opened.
     """
-    bus = _SilentBus(config.bus, clock, advance_time)
+    bus = _SilentBus(config.bus_settings, clock, advance_time)
     axes = {axis.name: axis for axis in config.axes}
     try:
-        return [_asked(bus, wanted, axes.get(wanted.name), config.bus.mode) for wanted in _wanted(config)]
+        return [
+            _asked(bus, wanted, axes.get(wanted.name), config.bus_settings.mode) for wanted in _wanted(config)
+        ]
     finally:
         bus.close()
 
@@ -66,7 +68,7 @@ def _wanted(config: CanopenConfig) -> Iterator[CanNode]:
         yield config.spindle.node
     if config.encoder is not None and config.encoder.node is not None:
         yield config.encoder.node
-    yield from config.modules
+    yield from config.io_modules
 
 
 def _asked(bus: CanBus, config: CanNode, axis: AxisConfig | None, mode: str) -> SurveyResult:

@@ -185,7 +185,7 @@ class CanopenIO:
         self._config = config
         self._bus = bus
         self._drives = drives
-        self.modules = {module.name: Cia401Module(module, bus) for module in config.modules}
+        self.modules = {module.name: Cia401Module(module, bus) for module in config.io_modules}
         wheel = config.pots.get("handwheel")
         if wheel is not None:
             self._module(wheel.terminal).counter_subindices.add(wheel.terminal.subindex)
@@ -200,21 +200,23 @@ class CanopenIO:
         Raises DriverError.
         """
         for where in self._required_terminals():
-            drive = self._drives.get(where.node)
+            drive = self._drives.get(where.node_name)
             if drive is not None and not drive.reports_inputs:
                 raise DriverError(
                     "{node}: the drive does not report digital inputs; in the machine file, assign the "
                     "inputs to an I/O module",
-                    node=where.node,
+                    node=where.node_name,
                 )
         for name, module in self.modules.items():
-            module.read_terminal_counts(where for where in self._required_terminals() if where.node == name)
+            module.read_terminal_counts(
+                where for where in self._required_terminals() if where.node_name == name
+            )
             safe, keep = bytearray(PDO_BYTE_COUNT), bytearray(PDO_BYTE_COUNT)
             for output in self._config.outputs.values():
                 where = output.terminal
-                if where.node == name:
+                if where.node_name == name:
                     table = keep if output.safe_state is None else safe
-                    table[where.subindex - 1] |= (output.safe_state is not False) << where.bit
+                    table[where.subindex - 1] |= (output.safe_state is not False) << where.bit_number
             module.connect(bytes(safe), bytes(keep))
         for name, output in self._config.outputs.items():
             self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
@@ -279,9 +281,9 @@ class CanopenIO:
 
     def _switch(self, name: str, where: CanTerminal, on: bool) -> None:
         module = self._module(where)
-        raw = on is not where.active_low
-        byte = module.outputs[where.subindex - 1] & ~(1 << where.bit)
-        module.outputs[where.subindex - 1] = byte | raw << where.bit
+        raw = on is not where.is_active_low
+        byte = module.outputs[where.subindex - 1] & ~(1 << where.bit_number)
+        module.outputs[where.subindex - 1] = byte | raw << where.bit_number
         self._written[name] = on
 
     def switch_to_safe_state(self) -> None:
@@ -326,18 +328,18 @@ class CanopenIO:
         return self._module(where).analog[where.subindex - 1]
 
     def _read(self, where: CanTerminal) -> bool:
-        if where.node in self.modules:
-            raw = self._bit(self.modules[where.node].inputs, where)
+        if where.node_name in self.modules:
+            raw = self._bit(self.modules[where.node_name].inputs, where)
         else:
-            raw = bool(self._drives[where.node].digital_inputs >> where.bit & 1)
-        return raw is not where.active_low
+            raw = bool(self._drives[where.node_name].digital_inputs >> where.bit_number & 1)
+        return raw is not where.is_active_low
 
     def _module(self, where: CanTerminal) -> Cia401Module:
-        return self.modules[where.node]
+        return self.modules[where.node_name]
 
     @staticmethod
     def _bit(data: bytearray, where: CanTerminal) -> bool:
-        return bool(data[where.subindex - 1] >> where.bit & 1)
+        return bool(data[where.subindex - 1] >> where.bit_number & 1)
 
 
 # --- Probe.

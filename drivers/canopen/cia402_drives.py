@@ -145,7 +145,7 @@ class Cia402Drive:
             1, self._shown, *shown, every=1 if setup_data.is_axis else self.bus.config.slow_reply_divisor
         )
         self._told_as = tuple(
-            each for each in self._asked_for if setup.has_object(each.object_index, each.subindex)
+            each for each in self._asked_for if setup.has_object(each.object_index, each.object_subindex)
         )
         if self._told_as:
             more = [_to_object_address(entry) for entry in self._told_as]
@@ -286,7 +286,7 @@ class Cia402Drive:
 
 def _to_object_address(entry: PdoEntry) -> tuple[int, int]:
     """Return a PDO entry as a pair of (index + sub-index · 65536, bits)."""
-    return entry.object_index | entry.subindex << 16, entry.bit_count
+    return entry.object_index | entry.object_subindex << 16, entry.bit_count
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ class PdoEntry(NamedTuple):
     """Object that is mapped to a PDO."""
 
     object_index: int
-    subindex: int
+    object_subindex: int
     bit_count: int
     is_signed: bool = False
 

@@ -70,7 +70,7 @@ def clear_host_faults(link: HostLink) -> HostLink:
     Raises DriverError if the faults cannot be cleared.
     """
     answer = link.send_request(Message({"do": "do", "what": "clear_fault"}, NO_NUMBERS))
-    if why := read_fault(answer.head, "error", "driver"):
+    if why := read_fault(answer.header, "error", "driver"):
         raise DriverError(why)
     return link
 
@@ -117,10 +117,10 @@ class HostConnection:
         except DriverError as error:
             self.fault = error.fault
             raise
-        if "tripped" in answer.head:
-            raise TrippedError(text(answer.head, "tripped"))
-        if why := read_fault(answer.head, "error", "driver"):
-            raise DriverError(why, reason=text(answer.head, "reason"))
+        if "tripped" in answer.header:
+            raise TrippedError(text(answer.header, "tripped"))
+        if why := read_fault(answer.header, "error", "driver"):
+            raise DriverError(why, reason=text(answer.header, "reason"))
         return answer
 
     def send_command(self, command: str, **values: object) -> None:
@@ -171,7 +171,7 @@ class HostConnection:
                 sleeps, self._sleeps = self._sleeps, False
                 answer = self.send_request(Message({"do": "look", "rests": sleeps}, NO_NUMBERS))
                 self._asleep = sleeps
-                self._state = answer.head
+                self._state = answer.header
                 if len(answer.numbers):
                     self.sample_batches.append(answer.numbers)
             except DriverError as error:
@@ -202,7 +202,7 @@ class HostConnection:
 
         Raises DriverError if the driver host uses another version of the protocol.
         """
-        hello = self.send_request(Message({"do": "hello"}, NO_NUMBERS)).head
+        hello = self.send_request(Message({"do": "hello"}, NO_NUMBERS)).header
         if hello.get("version") != PROTOCOL_VERSION:
             raise DriverError(
                 "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
@@ -305,7 +305,7 @@ class SocketLink:
 
         Raises DriverError after a loss of the connection or a timeout.
         """
-        limit = _LONG_TIMEOUTS_S.get(text(message.head, "what"), _REPLY_TIMEOUT_S)
+        limit = _LONG_TIMEOUTS_S.get(text(message.header, "what"), _REPLY_TIMEOUT_S)
         try:
             self._socket.settimeout(limit)
             self._socket.sendall(encode_message(message))

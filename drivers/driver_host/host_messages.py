@@ -22,7 +22,7 @@ PROTOCOL_VERSION = 5  # Version of the protocol, which both sides exchange first
 class Message(NamedTuple):
     """A request or a reply, with its numbers in one flat row."""
 
-    head: Mapping[str, object]
+    header: Mapping[str, object]
     numbers: FloatArray
 
 
@@ -31,7 +31,7 @@ NO_NUMBERS: FloatArray = np.empty(0)
 
 def encode_message(message: Message) -> bytes:
     """Return a message encoded as bytes."""
-    head = json.dumps(message.head).encode()
+    head = json.dumps(message.header).encode()
     numbers = np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
     return _LENGTHS.pack(len(head), len(numbers)) + head + numbers
 
@@ -130,11 +130,11 @@ def decode_cam(message: Message, axis_count: int) -> Cam:
 
     Raises DriverError if the cam is invalid.
     """
-    split = int(number(message.head, "way"))
+    split = int(number(message.header, "way"))
     path_numbers, then = message.numbers[:split], message.numbers[split:]
     return Cam(
-        number(message.head, "zero"),
-        number(message.head, "sign"),
+        number(message.header, "zero"),
+        number(message.header, "sign"),
         parse_segments(path_numbers, axis_count),
         parse_segments(then, axis_count) if len(then) else None,
     )

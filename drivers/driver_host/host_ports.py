@@ -56,7 +56,7 @@ class HostAxes(_HostPort):
 
     def horizon(self) -> float:
         """Return the end time of the setpoint queue in seconds."""
-        return number(self._line.send_request(Message({"do": "horizon"}, NO_NUMBERS)).head, "value")
+        return number(self._line.send_request(Message({"do": "horizon"}, NO_NUMBERS)).header, "value")
 
     def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
@@ -306,7 +306,7 @@ class HostTripMonitor(_HostPort):
             int(number_), away_s, spindle is True, tuple(parse_texts(outputs)), found is True
         )
 
-    def acknowledge(self, trip: DriverHostTrip) -> None:
+    def acknowledge_trip(self, trip: DriverHostTrip) -> None:
         """Acknowledge a trip, so that the machine may continue."""
         self._line.send_command("acknowledge", number=trip.trip_number)
 

@@ -204,8 +204,8 @@ class DriverHost:
         """
         self._hear()
         began = self._heard
-        what = text(message.head, "do")
-        self.is_asleep = what == "rest" or (what == "look" and message.head.get("rests") is True)
+        what = text(message.header, "do")
+        self.is_asleep = what == "rest" or (what == "look" and message.header.get("rests") is True)
         answer = self._answers.get(what)
         if answer is None:
             return _refused(
@@ -425,7 +425,7 @@ class DriverHost:
         return _value(0.0)
 
     def _demand(self, message: Message) -> Message:
-        p, v = self._ports.axes.demand_at(number(message.head, "t"))
+        p, v = self._ports.axes.demand_at(number(message.header, "t"))
         return Message({}, np.array([*p, *v]))
 
     def _mesh(self, message: Message) -> Message:
@@ -434,15 +434,15 @@ class DriverHost:
         return _value(0.0)
 
     def _act(self, message: Message) -> Message:
-        if text(message.head, "what") == "acknowledge":
-            self._guard.acknowledge_trip(number(message.head, "number"))
+        if text(message.header, "what") == "acknowledge":
+            self._guard.acknowledge_trip(number(message.header, "number"))
         else:
-            execute_command(self._ports, message.head)
+            execute_command(self._ports, message.header)
         return _value(0.0)
 
     def _hand(self, message: Message) -> Message:
         return Message(
-            {"value": call_station_control(self._driven.station_controls, message.head)}, NO_NUMBERS
+            {"value": call_station_control(self._driven.station_controls, message.header)}, NO_NUMBERS
         )
 
 

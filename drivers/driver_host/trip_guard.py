@@ -24,11 +24,11 @@ class TripGuard:
 
         Such actions are a motion, a start of the spindle, and switching on an output.
         """
-        what = text(message.head, "what")
-        turns = what == "orient" or (what == "run" and number(message.head, "rpm") != 0.0)
-        switches = what == "write" and message.head.get("on") is True
+        what = text(message.header, "what")
+        turns = what == "orient" or (what == "run" and number(message.header, "rpm") != 0.0)
+        switches = what == "write" and message.header.get("on") is True
         if self.active_trip is not None and (
-            text(message.head, "do") in _MOTION_COMMANDS or what == "home" or turns or switches
+            text(message.header, "do") in _MOTION_COMMANDS or what == "home" or turns or switches
         ):
             raise TrippedError(
                 Text(

@@ -46,7 +46,7 @@ class GrblInput:
     """
 
     terminal: str
-    active_low: bool
+    is_active_low: bool
 
 
 @dataclass(frozen=True, slots=True)

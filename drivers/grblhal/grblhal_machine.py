@@ -115,7 +115,7 @@ class GrblMachine:
             self._trips, unheard, bool({"S", "C"} & set(letters)), tuple(on), was_connection_lost=True
         )
 
-    def acknowledge(self, trip: DriverHostTrip) -> None:
+    def acknowledge_trip(self, trip: DriverHostTrip) -> None:
         """Clear a trip after the control has handled it."""
         if trip.trip_number == self._trips:
             self._trips, self.controller.active_at_silence = self._trips + 1, None

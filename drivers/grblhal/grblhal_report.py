@@ -131,7 +131,7 @@ class ControllerIdentity(NamedTuple):
     size of the line buffer in bytes.
     """
 
-    version: str
+    firmware_version: str
     planner_block_count: int
     buffer_byte_count: int
     axis_letters: str

@@ -48,7 +48,7 @@ class GrblInputs:
         for name, wired in self._c.config.inputs.items():
             letter = wired.terminal.removeprefix(_PIN)
             if wired.terminal.startswith(_PIN) and self._c.has_pin(letter):
-                states[name] = (letter in report.pins) != wired.active_low
+                states[name] = (letter in report.pins) != wired.is_active_low
         return states
 
     def list_missing_inputs(self) -> dict[str, str]:
@@ -93,7 +93,7 @@ class GrblInputs:
             c.request_report(full=True)
         elif ask.is_done and c.full_report_count >= self._fulls and c.report is not None:
             if c.report.input is not None:
-                self._read[name] = (c.report.input > 0) != self._c.config.inputs[name].active_low
+                self._read[name] = (c.report.input > 0) != self._c.config.inputs[name].is_active_low
             self._asked, self._fulls = None, 0
 
     def _port(self, name: str) -> int | None:

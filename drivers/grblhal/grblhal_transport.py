@@ -189,7 +189,7 @@ class SentLine:
     is_done: bool = False
     error_code: int = 0
     sent_time_s: float = 0.0
-    ticket: int = 0  # Ticket of a block, 0 for other lines.
+    ticket_number: int = 0  # Ticket of a block, 0 for other lines.
 
     @property
     def size_bytes(self) -> int:
@@ -224,7 +224,7 @@ class LineSender:
         """Send a line, or queue the line until it fits into the buffer of the controller."""
         assert line.isascii(), line
         assert len(line) < _MAX_LINE_BYTES, line
-        ask = SentLine(line, sent_time_s=now_s, ticket=ticket)
+        ask = SentLine(line, sent_time_s=now_s, ticket_number=ticket)
         self.waiting_lines.append(ask)
         self.send_waiting_lines(now_s)
         return ask

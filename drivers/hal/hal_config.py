@@ -55,7 +55,7 @@ class HalOutput:
     chain does not switch it to its safe state. Only a silent bridge does.
     """
 
-    pin: str
+    pin_name: str
     safe_state: bool | None = False
     is_lamp: bool = False
 
@@ -64,7 +64,7 @@ class HalOutput:
 class HalInput:
     """An input with its pin."""
 
-    pin: str
+    pin_name: str
     is_active_low: bool = False
 
 
@@ -75,7 +75,7 @@ class HalPot:
     ``switch_input`` is the name of the input of its switch.
     """
 
-    pin: str
+    pin_name: str
     low_value: float = 0.0
     high_value: float = 1.0
     switch_input: str = ""

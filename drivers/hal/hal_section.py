@@ -34,7 +34,7 @@ class MachineLink:
     """
 
     path: str
-    pin: str
+    pin_name: str
     hal_type: str
     is_driven: bool
     turndesk_signals: tuple[str, ...]
@@ -58,7 +58,9 @@ class HalSection:
         default_factory=list
     )  # Complete loadrt lines of components without instances.
     function_calls: list[str] = field(default_factory=list)
-    nets: dict[str, list[str]] = field(default_factory=dict)  # Pins by signal, with the source first.
+    pins_by_signal: dict[str, list[str]] = field(
+        default_factory=dict
+    )  # Pins by signal, with the source first.
     pin_values: list[tuple[str, float]] = field(default_factory=list)
     machine_links: list[MachineLink] = field(default_factory=list)
     bridge_pins: list[BridgePin] = field(default_factory=list)
@@ -76,7 +78,7 @@ class HalSection:
 
     def connect_pins(self, signal: str, *pins: str) -> None:
         """Connect pins to one of TurnDesk's signals."""
-        self.nets.setdefault(signal, []).extend(pins)
+        self.pins_by_signal.setdefault(signal, []).extend(pins)
 
     def add_bridge_pin(self, name: str, hal_type: str, direction: str, signal: str = "") -> str:
         """Add a pin of the bridge, connect it to a signal, and return its name."""
@@ -213,7 +215,7 @@ def _add_estop(border: HalSection, config: HalConfig) -> None:
     wired = config.inputs["estop"]
     raw = "td-in-estop"
     border.add_bridge_pin("in.estop", BIT, "in", raw)
-    border.connect_machine_output("io.in.estop", wired.pin, BIT, raw)
+    border.connect_machine_output("io.in.estop", wired.pin_name, BIT, raw)
     if wired.is_active_low:
         border.add_component("and2", "td.estop", in0=raw, in1=raw, out="td-estop-ok")
     else:
@@ -385,15 +387,15 @@ def _terminals(border: HalSection, config: HalConfig) -> None:
         else:
             allows = "td-alive" if output.is_lamp else "td-ok"
             border.add_component("and2", f"td.out-{name}", in0=wanted, in1=allows, out=real)
-        border.connect_machine_input(f"io.out.{name}", output.pin, BIT, real)
+        border.connect_machine_input(f"io.out.{name}", output.pin_name, BIT, real)
     for name, wired in config.inputs.items():
         if name != "estop":
             border.add_bridge_pin(f"in.{name}", BIT, "in", f"td-in-{name}")
-            border.connect_machine_output(f"io.in.{name}", wired.pin, BIT, f"td-in-{name}")
+            border.connect_machine_output(f"io.in.{name}", wired.pin_name, BIT, f"td-in-{name}")
     for name, pot in config.pots.items():
         kind = COUNT if name == "handwheel" else FLOAT
         border.add_bridge_pin(f"analog.{name}", kind, "in", f"td-analog-{name}")
-        border.connect_machine_output(f"io.analog.{name}", pot.pin, kind, f"td-analog-{name}")
+        border.connect_machine_output(f"io.analog.{name}", pot.pin_name, kind, f"td-analog-{name}")
 
 
 # --- Output as text.
@@ -469,7 +471,7 @@ def _section_lines(border: HalSection, thread: str, modules: Mapping[str, list[s
     yield from (f"loadrt {component} names={','.join(names)}" for component, names in modules.items())
     yield from (f"addf {call} {thread}" for call in border.function_calls)
     yield from (f"setp {pin} {value:.17g}" for pin, value in border.pin_values)
-    for signal, pins in border.nets.items():
+    for signal, pins in border.pins_by_signal.items():
         inner = [pin for pin in pins if not pin.startswith(Message("{what}.", what=BRIDGE_COMPONENT))]
         if inner:
             yield f"net {signal} {' '.join(inner)}"
@@ -477,7 +479,7 @@ def _section_lines(border: HalSection, thread: str, modules: Mapping[str, list[s
 
 def list_bridge_nets(border: HalSection) -> Iterator[tuple[str, list[str]]]:
     """Yield each signal with the bridge's own pins that are connected to it."""
-    for signal, pins in border.nets.items():
+    for signal, pins in border.pins_by_signal.items():
         own = [pin for pin in pins if pin.startswith(Message("{what}.", what=BRIDGE_COMPONENT))]
         if own:
             yield signal, own

@@ -144,7 +144,7 @@ class PinVerdict(NamedTuple):
     """The result of the check of one pin, with its key in the machine file, its name and its error."""
 
     path: str
-    pin: str
+    pin_name: str
     error_text: str
 
 
@@ -304,7 +304,7 @@ class HalSession:
                     words = Message(
                         template,
                         path=first.path,
-                        pin=first.pin,
+                        pin=first.pin_name,
                         fault=first.error_text,
                         count=len(wrong) - 1,
                     )
@@ -450,7 +450,7 @@ def _bridge_settings(
         "name": BRIDGE_COMPONENT,
         "only_check": only_check,
         "wanted": [
-            (link.path, link.pin, link.hal_type, link.is_driven, link.turndesk_signals[0])
+            (link.path, link.pin_name, link.hal_type, link.is_driven, link.turndesk_signals[0])
             for link in section.machine_links
         ],
         "pins": [(pin.name, pin.hal_type, pin.direction) for pin in section.bridge_pins],

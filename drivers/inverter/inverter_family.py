@@ -94,7 +94,7 @@ WriteParameter = Callable[[int, int], None]
 class RequiredParameter(NamedTuple):
     """A required parameter value, with its register, its name at the keypad and its purpose."""
 
-    register: int
+    register_address: int
     value: int
     name: str
     purpose: str
@@ -105,7 +105,7 @@ class RequiredParameter(NamedTuple):
         The parameter is not written.
         """
         try:
-            there = read_value(self.register)
+            there = read_value(self.register_address)
         except RequestRejectedError as error:
             return Message(
                 "{name} cannot be read ({error}); its value must be {value} ({why})",
@@ -174,7 +174,7 @@ def _apply_setting(
     for setting in required:
         if setting.describe_difference(read):
             try:
-                write(setting.register, setting.value)
+                write(setting.register_address, setting.value)
             except (RequestRejectedError, NoResponseError):
                 continue  # Reported below with the present value.
     return [text for setting in required if (text := setting.describe_difference(read))]

@@ -39,16 +39,18 @@ class SimulatedIoModule:
         self.values: dict[tuple[int, int], int] = {}
         self._wired: dict[int, list[tuple[str, CanTerminal]]] = {}  # Inputs by sub-index.
         for name_of_input, where in config.inputs.items():
-            if where.node == name:
+            if where.node_name == name:
                 self._wired.setdefault(where.subindex, []).append((name_of_input, where))
         self._hands: object = None  # State of the plant that ``_bytes`` represents.
         self._bytes: dict[int, int] = {}
         self._pots = {
-            pot.terminal.subindex: (of, pot) for of, pot in config.pots.items() if pot.terminal.node == name
+            pot.terminal.subindex: (of, pot)
+            for of, pot in config.pots.items()
+            if pot.terminal.node_name == name
         }
         for output, model in config.outputs.items():
             if plant.terminals.output_states.get(output):
-                self.output_bytes[model.terminal.subindex - 1] |= 1 << model.terminal.bit
+                self.output_bytes[model.terminal.subindex - 1] |= 1 << model.terminal.bit_number
 
     def read(self, index: int, subindex: int) -> int | None:
         """Return the value of an object that the module calculates.
@@ -93,9 +95,13 @@ class SimulatedIoModule:
         now = self._plant.clock.now()
         for name, output in self._config.outputs.items():
             where = output.terminal
-            on = bool(value >> where.bit & 1)
+            on = bool(value >> where.bit_number & 1)
             board = self._plant.terminals
-            if where.node == self._name and where.subindex == sub and board.output_states.get(name) is not on:
+            if (
+                where.node_name == self._name
+                and where.subindex == sub
+                and board.output_states.get(name) is not on
+            ):
                 board.write(name, on, now)
 
     def _inputs(self, sub: int) -> int:
@@ -110,7 +116,7 @@ class SimulatedIoModule:
         byte = 0
         for name, where in self._wired.get(sub, ()):
             on = getattr(state, name) if name in _STATION_NAMES else inputs.get(name)
-            byte |= (bool(on) is not where.active_low) << where.bit
+            byte |= (bool(on) is not where.is_active_low) << where.bit_number
         return byte
 
     def _analog(self, sub: int) -> int:
@@ -258,7 +264,7 @@ class CanopenDevices:
         self.machine = PlantControls(self.plant)
         if sim.planned_faults:
             self.plant.apply_due_faults = FaultSchedule(self.machine, sim.planned_faults).apply_due_actions
-        self.network = DeviceNetwork(open_interface(config.bus))
+        self.network = DeviceNetwork(open_interface(config.bus_settings))
         self.nodes: dict[str, DeviceNode] = {}
         self.encoder: SimulatedEncoder | None = None
         self.is_cable_disconnected = False  # The cable is disconnected.
@@ -332,7 +338,7 @@ class CanopenDevices:
                 self._add(config.encoder.name, config.encoder.node.id, encoder, od.build_encoder_dictionary())
             else:
                 plant.axis_drives[config.encoder.name].read_second_encoder = lambda: encoder.position
-        for module in config.modules:
+        for module in config.io_modules:
             board = SimulatedIoModule(module.name, config, plant)
             self._add(module.name, module.id, board, od.build_module_dictionary())
 

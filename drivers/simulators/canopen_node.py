@@ -83,7 +83,7 @@ _SIGNED = frozenset(datatypes.SIGNED_TYPES)
 class _ReceivePdo(NamedTuple):
     """RPDO and the objects that are mapped to it."""
 
-    number: int
+    pdo_number: int
     waits_for_sync: bool  # The RPDO takes effect at the next SYNC.
     entries: list[_Entry]
 

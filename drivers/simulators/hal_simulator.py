@@ -48,12 +48,12 @@ class ServoThread:
     def __init__(self, hal_section: HalSection) -> None:
         self.cells: SignalCells = {}
         self._cell: dict[str, str] = {
-            pin: signal for signal, pins in hal_section.nets.items() for pin in pins
+            pin: signal for signal, pins in hal_section.pins_by_signal.items() for pin in pins
         }
         self.machine_cells = {
-            link.pin: link.turndesk_signals[0] for link in hal_section.machine_links
+            link.pin_name: link.turndesk_signals[0] for link in hal_section.machine_links
         }  # Cells of the machine's pins.
-        self.cells.update(dict.fromkeys([*hal_section.nets, *self.machine_cells.values()], 0.0))
+        self.cells.update(dict.fromkeys([*hal_section.pins_by_signal, *self.machine_cells.values()], 0.0))
         self.setpoint_fifos = (RowFifo(), RowFifo())
         self.sample_fifo = RowFifo()
         component = {name: kind for kind, names in hal_section.module_instances.items() for name in names}
@@ -344,12 +344,14 @@ class HalSimulator:
         )
         for name, wired in config.inputs.items():
             on = getattr(state, name) if name in _STATION_NAMES else inputs.get(name)
-            cells[theirs[wired.pin]] = bool(on) is not wired.is_active_low
+            cells[theirs[wired.pin_name]] = bool(on) is not wired.is_active_low
         for name, pot in config.pots.items():
             if name == "handwheel":
-                self._set(pot.pin, state.handwheel)
+                self._set(pot.pin_name, state.handwheel)
             else:
-                self._set(pot.pin, (getattr(state, name) - pot.low_value) / (pot.high_value - pot.low_value))
+                self._set(
+                    pot.pin_name, (getattr(state, name) - pot.low_value) / (pot.high_value - pot.low_value)
+                )
 
     def _set_encoder(self, turns: float) -> None:
         """Simulate the spindle encoder, whose count restarts at the index when the thread requests this."""
@@ -384,7 +386,9 @@ class HalSimulator:
             plant.spindle.command_speed(t, rpm)
         self._orient(t)
         for name, output in config.outputs.items():
-            on = bool(self._get(output.pin)) and not (self.is_thread_stopped and output.safe_state is False)
+            on = bool(self._get(output.pin_name)) and not (
+                self.is_thread_stopped and output.safe_state is False
+            )
             if plant.terminals.output_states.get(name) is not on:
                 plant.terminals.write(name, on, t)
 

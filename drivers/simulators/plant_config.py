@@ -14,7 +14,7 @@ class SimAxis(AxisProperties):
     """Configuration of a simulated servo axis."""
 
     power_up_position: float = 0.0  # Position relative to home at power-up.
-    bandwidth: float = 40.0  # Bandwidth of the position loop in Hz.
+    bandwidth_hz: float = 40.0  # Bandwidth of the position loop in Hz.
     feed_forward: float = 0.9  # Fraction of the velocity; the rest appears as following error.
     accel_reserve: float = 1.3  # Factor by which the servo can exceed amax.
     own_drive: bool = False  # C only: the axis can be positioned while the spindle turns.
@@ -45,7 +45,7 @@ class SimOutput:
     """
 
     safe_state: bool | None = False
-    initial_state: bool = False
+    power_up_state: bool = False
 
 
 @dataclass(frozen=True, slots=True)

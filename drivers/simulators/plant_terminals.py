@@ -51,7 +51,7 @@ class SimulatedTerminals:
         self, outputs: Mapping[str, SimOutput], inputs: tuple[str, ...], collet: SimCollet, seed: int
     ) -> None:
         self._models = dict(outputs)
-        self.output_states = {name: model.initial_state for name, model in outputs.items()}
+        self.output_states = {name: model.power_up_state for name, model in outputs.items()}
         self.input_states = {
             name: name == _GUARD_INPUT for name in inputs
         }  # The guard is closed at the start.

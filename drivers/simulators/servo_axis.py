@@ -42,7 +42,7 @@ class SimulatedServo:
         self.over = 0.0  # Seconds outside the following error window.
         self.load = 0.0  # Percent of the drive's capacity, signed.
         self.feeds = (_FEEDS, _CUTS * axis.vmax)  # Speed range in which the axis is assumed to cut.
-        self._wn = 2 * math.pi * axis.bandwidth
+        self._wn = 2 * math.pi * axis.bandwidth_hz
         self._loop = ServoLoop(self._wn * step_s, axis.feed_forward) if self._wn * step_s < 0.5 else None
 
     @property
@@ -318,7 +318,7 @@ class SetpointPolynomial(NamedTuple):
     At grid point k, the setpoint is position + linear_term · k + quadratic_term · k².
     """
 
-    position: float
+    constant_term: float
     linear_term: float
     quadratic_term: float
 

@@ -150,7 +150,7 @@ ADDITIONAL_TEXTS = (
     "settings",
     "presets",
     "jobs",
-    "users",
+    "user_list",
     "tools",
     "RED",
     # Of the signal tower.

@@ -70,7 +70,7 @@ def _figures(shift: NightShift, operator: Operator, marks: dict[str, Footprint])
 
 def counted(shift: NightShift) -> dict[str, int]:
     """Parts by everybody who counts them, and what was seen of the slides."""
-    by = {"executor": shift.shot.parts, "desk": shift.desk.program_runs.part_counter.count}
+    by = {"executor": shift.shot.parts, "desk": shift.desk.program_runs.part_counter.part_count}
     return by | counted_in(shift.store, shift.witness.truth)
 
 

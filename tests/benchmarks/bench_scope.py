@@ -206,8 +206,8 @@ def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, ScopeRecorder]
     (bench.folder / "fro.nc").write_text(program())
     bench.desk.program_choice.load_by_name("fro")
     session = bench.desk.program_loader
-    bench.until(lambda: session.loaded.phase in {LoadingPhase.READY, LoadingPhase.REFUSED})
-    assert not session.loaded.blocking_errors, session.loaded.blocking_errors[0].message
+    bench.until(lambda: session.loaded_program.phase in {LoadingPhase.READY, LoadingPhase.REFUSED})
+    assert not session.loaded_program.blocking_errors, session.loaded_program.blocking_errors[0].message
     if rested:
         bench.until(lambda: bench.window.page_preloader is not None and bench.window.page_preloader.is_done)
     bench.start()

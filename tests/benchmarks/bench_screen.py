@@ -162,9 +162,11 @@ class Bench:
         self.frames.clear()
         self.desk.program_choice.load_by_name("many")
         session = self.desk.program_loader
-        self.until(lambda: session.loaded.phase in {LoadingPhase.READY, LoadingPhase.REFUSED}, LOADING)
-        if session.loaded.blocking_errors:
-            raise ValueError(session.loaded.blocking_errors[0].message)
+        self.until(
+            lambda: session.loaded_program.phase in {LoadingPhase.READY, LoadingPhase.REFUSED}, LOADING
+        )
+        if session.loaded_program.blocking_errors:
+            raise ValueError(session.loaded_program.blocking_errors[0].message)
         self.say(self.frames.row("loading"))
         path = self.window.frame.automatic_page.path_view if self.window.frame else None
         assert path is not None

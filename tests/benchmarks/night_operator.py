@@ -224,7 +224,8 @@ class Operator:
                 desk.renewal.is_requested or desk.offset_book.is_saving or desk.program_loader.worker.is_busy
             )
             return (
-                desk.program_loader.loaded.phase in {LoadingPhase.READY, LoadingPhase.REFUSED} and not waits
+                desk.program_loader.loaded_program.phase in {LoadingPhase.READY, LoadingPhase.REFUSED}
+                and not waits
             )
 
         self.shift.settle(ready)

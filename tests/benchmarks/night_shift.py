@@ -212,7 +212,7 @@ class NightShift:
 
     def _jobs(self) -> dict[str, float]:
         """X of T1 of the job on the desk, by its digest; the last few that were."""
-        job = self.desk.program_loader.loaded.job
+        job = self.desk.program_loader.loaded_program.job
         if job is not None and job.digest not in self._offsets:
             self._offsets = dict([*self._offsets.items()][-3:])
             self._offsets[job.digest] = job.setup.tools[1].x

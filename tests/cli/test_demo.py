@@ -48,7 +48,7 @@ def test_lathe_demo_has_specified_stock_in_a_collet(home: Path) -> None:
     with Store.open(open_demo(None), read_only=True) as store:
         kept = load_stored_part(store.settings.read_setting, "bushing.nc")
         assert load_stored_part(store.settings.read_setting, "pinbar.nc") == EMPTY_STORED_PART
-    assert (kept.stock, kept.stick_out_mm) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
+    assert (kept.stock_text, kept.stick_out_mm) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
     assert read_machine(None).clamping.diameter == pytest.approx(2.5 * INCH)
 
 

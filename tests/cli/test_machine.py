@@ -116,7 +116,7 @@ def test_driver_without_a_connection_is_reported_as_not_checked(
 @pytest.mark.parametrize("state", FAILED_STATES)
 def test_failed_row_remains_failed_if_nothing_was_measured(state: str) -> None:
     row = CheckRow("X", "", state, "why").mark_unchecked(())
-    assert (row.verdict, row.state, row.detail) == ("FAIL", state, "why")
+    assert (row.result_text, row.state, row.detail) == ("FAIL", state, "why")
 
 
 @pytest.mark.parametrize(

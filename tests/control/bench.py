@@ -119,7 +119,7 @@ class Screen:
 
     def hear(self, message: EventMessage) -> None:
         """Say that the event is kept."""
-        self.end.send(EventStoredMessage(message.number))
+        self.end.send(EventStoredMessage(message.event_number))
 
     def lose(self) -> None:
         """As a killed screen leaves it."""

@@ -130,7 +130,7 @@ class Ear:
         self.events.append(event)
         if receipt is not None:
             self.origins.append(receipt.origin)
-            receipt.confirm()
+            receipt.confirm_storage()
 
     def note(self, job: InterruptedJob | None) -> None:
         """What is interrupted."""

@@ -57,7 +57,7 @@ class Desk:
     def hear(self, event: LogEvent, receipt: Receipt | None) -> None:
         self.events.append(event)
         if receipt is not None:
-            receipt.confirm()
+            receipt.confirm_storage()
 
     @property
     def state(self) -> MachineState:

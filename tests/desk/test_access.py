@@ -365,7 +365,7 @@ def test_changes_of_settings_sounds_and_notes_are_logged(room: Room) -> None:
     room.desk.select_next_readout()  # many times a shift: no line
     room.find(LampsAndSoundFunction)._choose(40, frozenset())
     sheet = room.find(SetupSheetFunction)
-    room.desk.program_loader._now = replace(room.desk.program_loader.loaded, path=Path("pin.nc"))
+    room.desk.program_loader._now = replace(room.desk.program_loader.loaded_program, path=Path("pin.nc"))
     sheet._keep(["soft jaws"])
     sheet._keep(["soft jaws", "stop 12 mm"])
     sheet._keep(["stop 12 mm"])
@@ -413,7 +413,7 @@ def test_last_service_user_can_only_be_removed_after_all_others(room: Room) -> N
     for name in ("BEN", "CARLA", "ANNA"):
         room.journal.require_store().people.remove_user(name).result()
     room.access.reload()
-    assert not room.access.users.is_access_restricted
+    assert not room.access.user_list.is_access_restricted
 
 
 def test_damaged_user_row_denies_access_and_is_reported(room: Room, tmp_path: Path) -> None:
@@ -421,8 +421,8 @@ def test_damaged_user_row_denies_access_and_is_reported(room: Room, tmp_path: Pa
     with closing(sqlite3.connect(tmp_path / "home" / STORE_FILE_NAME)) as outside, outside:
         outside.execute("UPDATE people SET level = 3 WHERE name = 'CARLA'")
     room.access.reload()
-    assert room.access.users.is_access_restricted
-    assert room.access.users.find_user("CARLA") is None
+    assert room.access.user_list.is_access_restricted
+    assert room.access.user_list.find_user("CARLA") is None
     assert any(
         begins(text, "desk.not-as-saved", what=f"{wording('desk.pin-of')} CARLA")
         for text in room.store.find_damaged_rows()
@@ -435,7 +435,7 @@ def test_store_of_an_older_version_has_no_levels_and_retains_its_log(tmp_path: P
     before = next(n for n, text in enumerate(database.load_migrations()) if "CREATE TABLE people" in text)
     with closing(sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
-        database.migrate(connection, database.load_migrations()[:before])
+        database.upgrade_tables(connection, database.load_migrations()[:before])
         connection.execute("INSERT INTO events (at, kind, text) VALUES ('2026-01-02', 'start', 'pin.nc')")
         connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, -1.0, 0.0)")
     with Store.open(folder) as store:

@@ -75,7 +75,7 @@ def test_program_is_not_loaded_while_another_one_is_active(
 
 def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:
     assert desk.program_choice.load_by_name("nosuch") is False
-    assert desk.program_loader.loaded.phase is LoadingPhase.EMPTY
+    assert desk.program_loader.loaded_program.phase is LoadingPhase.EMPTY
 
 
 def test_block_delete_needs_a_loaded_program_at_rest(desk: Desk, machine: FakeMachine) -> None:
@@ -85,10 +85,10 @@ def test_block_delete_needs_a_loaded_program_at_rest(desk: Desk, machine: FakeMa
     at(machine, MachineState.HOLD)
     desk.program_choice.toggle_block_delete()
     assert shows(desk.prompt_notice, "desk.block-delete-between-cycles")
-    assert desk.program_loader.loaded.block_delete is False
+    assert desk.program_loader.loaded_program.has_block_delete is False
     at(machine, MachineState.IDLE)
     desk.program_choice.toggle_block_delete()
-    assert desk.program_loader.loaded.block_delete is True
+    assert desk.program_loader.loaded_program.has_block_delete is True
 
 
 @pytest.mark.parametrize("state", list(MachineState))
@@ -308,20 +308,20 @@ def test_silent_control_is_reported_and_its_values_are_not_shown_as_valid(
     seconds = [100.0]
     desk.station_controls.clock = lambda: seconds[0]
     at(machine, MachineState.RUN)
-    assert desk.update()[1].tone is Tone.RUN
+    assert desk.update()[1].state_tone is Tone.RUN
     machine.alive = False
     for _ in range(20):
         seconds[0] += 0.1
         snapshot, view, loaded = desk.update()
-    assert (view.state_text, view.tone) == (CONTROL_SILENT_TITLE, Tone.ALARM)
+    assert (view.state_text, view.state_tone) == (CONTROL_SILENT_TITLE, Tone.ALARM)
     assert make_page_prompt(desk, snapshot, loaded) == CONTROL_SILENT
     machine.alive = True
-    assert desk.update()[1].tone is Tone.RUN
+    assert desk.update()[1].state_tone is Tone.RUN
 
 
 def test_reset_only_restarts_a_silent_control(machine: FakeMachine, desk: Desk) -> None:
     restarts = list[int]()
-    desk.desk_control.restart = lambda: restarts.append(1)
+    desk.desk_control.restart_control = lambda: restarts.append(1)
     seconds = [100.0]
     desk.station_controls.clock = lambda: seconds[0]
     at(machine, MachineState.RUN)

@@ -180,7 +180,7 @@ def test_escape_cancels_the_question(desk: Desk) -> None:
     assert desk.program_choice.load_by_name("OTHER.NC")
     assert desk.handle_escape()
     desk.confirm_question()
-    assert desk.program_loader.loaded.name == "PIN.NC"
+    assert desk.program_loader.loaded_program.name == "PIN.NC"
     assert posted(desk) == [ConfirmStart(broken_off().at)]
     desk.close()
 
@@ -189,7 +189,7 @@ def test_message_does_not_replace_an_open_question(desk: Desk) -> None:
     assert desk.program_choice.load_by_name("OTHER.NC")
     has_been_read(desk)
     desk.say("NOT KEPT: the disk is full")
-    assert (desk.prompt_answers.message, bool(desk.prompt_answers.question)) == (
+    assert (desk.prompt_answers.message, bool(desk.prompt_answers.question_text)) == (
         "NOT KEPT: the disk is full",
         True,
     )

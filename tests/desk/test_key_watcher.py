@@ -114,7 +114,7 @@ def test_stop_key_is_not_sent_before_the_window_opens(bench: Bench) -> None:
 def test_esc_is_sent_only_with_motion_and_the_current_keyboard_layout(bench: Bench) -> None:
     bench.show(MOVING)
     bench.watcher.handle_press(RawKey(ESC, 5000))
-    assert [each.kind for each in bench.sent()] == [StopKind.ESC]
+    assert [each.stop_kind for each in bench.sent()] == [StopKind.ESC]
     bench.keys.escape = 66
     bench.watcher.handle_press(RawKey(ESC, 5100))
     assert bench.sent() == []
@@ -136,7 +136,7 @@ def test_key_watcher_continues_after_the_control_has_ended(bench: Bench) -> None
     bench.show(HERE)
     bench.control.close()
     bench.watcher.handle_press(RawKey(PAUSE, 5000))
-    assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)).kind is StopKind.HOLD
+    assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)).stop_kind is StopKind.HOLD
 
 
 @pytest.mark.parametrize("record", [b"", b"1", bytes(8), bytes(10), b"\x09" + bytes(8)])

@@ -49,7 +49,7 @@ class Room:
 
     @property
     def prompt(self) -> str:
-        return make_page_prompt(self.desk, self.desk.read_snapshot(), self.desk.program_loader.loaded)
+        return make_page_prompt(self.desk, self.desk.read_snapshot(), self.desk.program_loader.loaded_program)
 
     @property
     def section(self) -> MachineFileFunction:

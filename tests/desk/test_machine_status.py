@@ -179,8 +179,11 @@ def test_every_machine_state_has_a_text_and_a_tone() -> None:
     for state in MachineState:
         view = make_status(replace(AT, state=state), ReadoutKind.POSITION, True)
         assert view.state_text == state.value
-        assert isinstance(view.tone, Tone)
-    assert make_status(replace(AT, state=MachineState.FAULT), ReadoutKind.POSITION, True).tone is Tone.ALARM
+        assert isinstance(view.state_tone, Tone)
+    assert (
+        make_status(replace(AT, state=MachineState.FAULT), ReadoutKind.POSITION, True).state_tone
+        is Tone.ALARM
+    )
 
 
 def test_wait_state_shows_its_condition() -> None:

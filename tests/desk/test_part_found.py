@@ -33,7 +33,7 @@ LIMIT = 60.0
 SHAFT = "G90G94F100\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.008Z-.5\nX.45Z-.6\nX.55\nG94F100Z.05\nM30\n"
 SLIP = SHAFT.replace("M30", "X.3\nG00Z-.3\nX.55\nM30")  # the G00 of line 11 goes into metal
 TURNING = ToolShape(ToolKind.TURNING, tip=3, insert="DCMT11T304")
-BAR = StoredPart(stock="bar:1.0+.02")
+BAR = StoredPart(stock_text="bar:1.0+.02")
 TOOLS = {1: ToolOffset(-12.7, -50.8)}
 
 
@@ -133,7 +133,7 @@ def test_proof_waits_for_the_part_check_if_that_may_refuse_the_start(desk: Make)
     for kept, given in ((BAR, [LoadJob]), (StoredPart(), [LoadJob, SupplyProof])):
         bench = desk(kept, {1: TURNING})
         making, go_on = threading.Event(), threading.Event()
-        real = bench.session.steps.prove_part
+        real = bench.session.loading_steps.prove_part
 
         def held(
             picture: ProgramPicture,
@@ -146,13 +146,13 @@ def test_proof_waits_for_the_part_check_if_that_may_refuse_the_start(desk: Make)
             assert let.wait(LIMIT)
             return then(picture, watch)
 
-        bench.session.steps = replace(bench.session.steps, prove_part=held)
+        bench.session.loading_steps = replace(bench.session.loading_steps, prove_part=held)
         (bench.folder / "part.nc").write_text(SLIP)
         bench.session.start_loading(bench.folder / "part.nc")
         assert making.wait(LIMIT)
         assert bench.kinds == given
-        assert bench.session.loaded.is_busy is (kept is BAR)
-        assert bench.session.loaded.picture is not None  # what there is, is shown
+        assert bench.session.loaded_program.is_busy is (kept is BAR)
+        assert bench.session.loaded_program.picture is not None  # what there is, is shown
         go_on.set()
         bench.session.wait_until_loaded(LIMIT)
 
@@ -178,7 +178,7 @@ def test_chuck_overspeed_error_needs_no_stock(desk: Make) -> None:
 
 @pytest.mark.parametrize("stock", ["rod", "profile:gone.csv", "after:gone.nc"])
 def test_unusable_stock_is_reported_before_the_start(desk: Make, stock: str) -> None:
-    loaded = desk(StoredPart(stock=stock)).load(SHAFT)
+    loaded = desk(StoredPart(stock_text=stock)).load(SHAFT)
     (found,) = loaded.diagnostics
     assert (found.line, found.code, found.severity) == (0, NO_STOCK, Severity.WARNING)
     assert part_of(loaded).warning_texts == (wording("desk.not-as-specified"),)
@@ -187,7 +187,7 @@ def test_unusable_stock_is_reported_before_the_start(desk: Make, stock: str) -> 
 
 def test_stock_may_be_the_part_left_by_another_program(desk: Make, tmp_path: Path) -> None:
     (tmp_path / "before.nc").write_text(SHAFT)
-    loaded = desk(StoredPart(stock=f"after:{tmp_path / 'before.nc'}")).load(SHAFT)
+    loaded = desk(StoredPart(stock_text=f"after:{tmp_path / 'before.nc'}")).load(SHAFT)
     report = part_of(loaded).report
     assert report is not None
     assert report.removed_volume_mm3 == pytest.approx(0.0, abs=1.0)  # mm³: it is made already

@@ -141,7 +141,7 @@ def test_impossible_stock_dimension_is_rejected(name: StockField, text: str) -> 
 
 def test_bar_stock_is_entered_saved_and_used_for_the_proof(bench: Bench) -> None:
     bench.load(SLIP)
-    assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
+    assert bench.desk.program_loader.loaded_program.phase is LoadingPhase.READY
     bench.press("F2")
     assert bench.page.shown_section is PartSection.STOCK
     assert bench.cells["STOCK"] == ("–", "BAR")  # what is assumed stands beside it
@@ -150,14 +150,14 @@ def test_bar_stock_is_entered_saved_and_used_for_the_proof(bench: Bench) -> None
     assert make_table(bench.page).notes == (wording("desk.still-to-say", field="DIAMETER"),)
     bench.press("Down")
     bench.types("1")
-    assert bench.kept.stock == "bar:1"
+    assert bench.kept.stock_text == "bar:1"
     assert bench.cells["DIAMETER"] == ("1.00000", "")
     assert (
-        bench.desk.program_loader.loaded.phase is LoadingPhase.REFUSED
+        bench.desk.program_loader.loaded_program.phase is LoadingPhase.REFUSED
     )  # the tool has a shape: nothing is assumed
     bench.press("Down", "Down")
     bench.types(".02")
-    assert bench.kept.stock == "bar:1+0.02"
+    assert bench.kept.stock_text == "bar:1+0.02"
     bench.press("Down")
     bench.types(".8")
     assert bench.kept == StoredPart("bar:1+0.02", pytest.approx(20.32))
@@ -170,7 +170,7 @@ def test_entered_stock_can_be_cleared(bench: Bench) -> None:
     bench.types("1")
     bench.press("F6")
     assert bench.kept == StoredPart()
-    assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
+    assert bench.desk.program_loader.loaded_program.phase is LoadingPhase.READY
     assert shows(bench.desk.prompt_notice, "desk.stock-forgotten")
     bench.press("F6")
     assert bench.desk.prompt_notice == wording("desk.no-stock")
@@ -187,8 +187,8 @@ def test_stock_file_is_found_next_to_the_program_and_saved_with_full_path(bench:
     assert shows(bench.desk.prompt_notice, "desk.no-file-beside", name="gone.csv")
     bench.press(*["Back"] * 8)
     bench.types("blank.csv")
-    assert bench.kept.stock == f"profile:{bench.folder / 'blank.csv'}"
-    part = bench.desk.program_loader.loaded.part_proof
+    assert bench.kept.stock_text == f"profile:{bench.folder / 'blank.csv'}"
+    part = bench.desk.program_loader.loaded_program.part_proof
     assert part is not None
     assert part.report is not None
     assert part.report.stock is not None
@@ -242,7 +242,7 @@ def test_failure_to_save_the_stock_is_reported(bench: Bench, monkeypatch: pytest
     bench.press("F2", "Right", "Down")
     bench.types("1")
     assert bench.desk.prompt_notice == wording("screen.not-kept", why="the disk is full")
-    assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
+    assert bench.desk.program_loader.loaded_program.phase is LoadingPhase.READY
 
 
 # --- findings -----------------------------------------------------------------------------------------
@@ -265,12 +265,12 @@ def test_check_is_disabled_with_a_reason_and_enabled_again(bench: Bench) -> None
     assert shows(bench.desk.prompt_notice, "desk.reason-needed")
     bench.types("drilled before")
     assert bench.kept.silenced_checks == {"rapid-into-stock": "drilled before"}
-    (found,) = bench.desk.program_loader.loaded.diagnostics
+    (found,) = bench.desk.program_loader.loaded_program.diagnostics
     assert (found.severity, found.downgrade_reason) == (Severity.NOTE, "drilled before")
     assert bench.page.make_function_keys()["F4"].label == "UNDO"
     bench.press("F4")
     assert bench.kept == StoredPart()
-    assert bench.desk.program_loader.loaded.diagnostics[0].severity is Severity.WARNING
+    assert bench.desk.program_loader.loaded_program.diagnostics[0].severity is Severity.WARNING
 
 
 def test_escape_leaves_the_check_on(bench: Bench) -> None:

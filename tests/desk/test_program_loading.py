@@ -98,7 +98,7 @@ def test_program_is_posted_without_a_proof_while_it_is_proved(bench: Bench) -> N
     (load,) = bench.posted
     assert isinstance(load, LoadJob)
     assert load.proof is None
-    assert bench.session.loaded.phase is LoadingPhase.PROVING
+    assert bench.session.loaded_program.phase is LoadingPhase.PROVING
 
 
 def test_newer_choice_replaces_a_load_in_progress(bench: Bench) -> None:
@@ -163,4 +163,4 @@ def test_closing_cancels_a_load_in_progress(bench: Bench) -> None:
     closing.join(LIMIT)
     assert not closing.is_alive()
     assert len(bench.posted) <= 2
-    assert bench.session.loaded.picture is None
+    assert bench.session.loaded_program.picture is None

@@ -23,7 +23,7 @@ class Shop(Bench):
         super().__init__()
         self.renewals = 0
         self.broken = False
-        self.session.steps = LoadingSteps(self.read, self.make, self.prove, self.draw, self.renewed)
+        self.session.loading_steps = LoadingSteps(self.read, self.make, self.prove, self.draw, self.renewed)
         self.renewing = RunningRenewal(self.session)
         self.session.start_loading(Path("part.nc"))
         self.settled()
@@ -63,13 +63,13 @@ def test_changed_offsets_are_announced_before_the_new_proof(shop: Shop) -> None:
 
 
 def test_screen_shows_the_old_job_until_the_executor_uses_the_new_one(shop: Shop) -> None:
-    before = shop.session.loaded
+    before = shop.session.loaded_program
     shop.renewing.begin_renewal()
     shop.renewing.worker.wait_for_results(LIMIT)
     assert not shop.renewing.is_in_use(shop.running("digest of part.nc"))
-    assert shop.session.loaded is before
+    assert shop.session.loaded_program is before
     assert shop.renewing.is_in_use(shop.running("renewed 1"))
-    now = shop.session.loaded
+    now = shop.session.loaded_program
     assert now.job is not None
     assert (now.job.digest, now.phase, now.path) == ("renewed 1", LoadingPhase.READY, before.path)
     assert now.picture is not None
@@ -109,7 +109,7 @@ def test_errors_of_new_offsets_are_reported_once_while_the_part_runs(shop: Shop)
     assert shop.renewing.poll_error() == BAD.message
     assert shop.renewing.poll_error() == ""
     assert shop.renewing.is_in_use(shop.running("renewed 1"))
-    assert shop.session.loaded.phase is LoadingPhase.REFUSED
+    assert shop.session.loaded_program.phase is LoadingPhase.REFUSED
 
 
 def test_unreadable_offsets_are_reported_to_the_executor(shop: Shop) -> None:

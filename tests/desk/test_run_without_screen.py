@@ -62,7 +62,7 @@ class Stopped(Idle):
 def test_estop_ends_a_headless_run_as_an_alarm(released: bool) -> None:
     ended = outcome(Stopped(snapshot=Snapshot(state=MachineState.DISABLED), released=released), [])
     assert ended.final_state == "alarm"
-    assert ended.reason.startswith(ESTOP.text)
+    assert ended.failure_reason.startswith(ESTOP.text)
 
 
 def test_headless_run_times_out_if_the_palm_buttons_are_not_pressed() -> None:
@@ -70,10 +70,10 @@ def test_headless_run_times_out_if_the_palm_buttons_are_not_pressed() -> None:
     ended = outcome(Idle(), said)
     assert said == ["homing X, Z, C", "palms"]
     assert ended.final_state == "waiting"
-    assert "no Cycle Start received" in ended.reason
+    assert "no Cycle Start received" in ended.failure_reason
 
 
 def test_headless_run_is_not_complete_if_homing_does_not_finish() -> None:
     ended = outcome(Idle(homes=False), [])
     assert ended.final_state == "waiting"
-    assert "homing did not finish" in ended.reason
+    assert "homing did not finish" in ended.failure_reason

@@ -11,12 +11,12 @@ from app.desk.screen_settings import SETTINGS_KEY, DisplayUnits, ScreenSettings,
 def test_chosen_setting_is_saved() -> None:
     keep = Persistence()
     SettingsStore(keep).choose("theme", "light")
-    assert SettingsStore(keep).current == ScreenSettings(theme="light")
+    assert SettingsStore(keep).current_settings == ScreenSettings(theme="light")
 
 
 @pytest.mark.parametrize("kept", [{"theme": "pink"}, {"dock": 1}, {"nothing": 2}, ["dark"], "dark", None, 7])
 def test_invalid_saved_setting_is_ignored(kept: object) -> None:
-    assert SettingsStore(Persistence({SETTINGS_KEY: kept})).current == ScreenSettings()
+    assert SettingsStore(Persistence({SETTINGS_KEY: kept})).current_settings == ScreenSettings()
 
 
 @pytest.mark.parametrize(("name", "value"), [("theme", "pink"), ("colour", "dark"), ("dock", 1)])
@@ -24,7 +24,7 @@ def test_invalid_setting_is_rejected(name: str, value: object) -> None:
     book = SettingsStore()
     with pytest.raises(ValueError, match=name):
         book.choose(name, value)
-    assert book.current == ScreenSettings()
+    assert book.current_settings == ScreenSettings()
 
 
 @pytest.mark.parametrize(

@@ -90,11 +90,11 @@ def code(asked: FirstMoveQuery) -> tuple[str, bool]:
 def test_a_sample_starts_from_home_and_repeats(name: str, *, described: bool) -> None:
     part = known(name, described=described)
     seen = FirstMoveChecker().check_first_move(question(part, HOME)._replace(active_tool=0), watch)
-    assert [(each.code, each.warned, each.is_for_repeat) for each in seen.verdicts] == [
+    assert [(each.code, each.warned, each.is_for_repeat) for each in seen.clearances] == [
         ("", "", False),
         ("", "", True),
     ]
-    assert len(seen.legs) >= 2
+    assert len(seen.approach_legs) >= 2
 
 
 def test_start_with_the_tool_inside_specified_stock_is_refused() -> None:

@@ -40,12 +40,12 @@ def test_releasing_a_palm_that_is_not_pressed_does_nothing() -> None:
 def test_override_pot_moves_gradually_to_its_target() -> None:
     pot = OverridePot(1.5)
     pot.set(0.2)
-    assert pot.advance(0.1) is True
-    assert pot.position == pytest.approx(0.9)
+    assert pot.turn_toward_target(0.1) is True
+    assert pot.current_fraction == pytest.approx(0.9)
     for _ in range(20):
-        pot.advance(0.1)
-    assert pot.position == 0.2
-    assert pot.advance(0.1) is False
+        pot.turn_toward_target(0.1)
+    assert pot.current_fraction == 0.2
+    assert pot.turn_toward_target(0.1) is False
 
 
 @pytest.mark.parametrize(("asked", "stands"), [(9.0, 1.5), (-1.0, 0.0)])

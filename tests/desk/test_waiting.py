@@ -58,9 +58,9 @@ def test_unknown_wait_condition_gives_no_prompt() -> None:
 def test_not_homed_is_shown_as_its_own_state() -> None:
     lost = replace(Snapshot(), state=MachineState.IDLE, homed=(True, False, True))
     view = make_status(lost, ReadoutKind.POSITION, has_c_axis=True)
-    assert (view.state_text, view.tone) == (NOT_HOMED_TITLE, Tone.OFF)
+    assert (view.state_text, view.state_tone) == (NOT_HOMED_TITLE, Tone.OFF)
     known = make_status(replace(lost, homed=(True,) * 3), ReadoutKind.POSITION, has_c_axis=True)
-    assert (known.state_text, known.tone) == (MachineState.IDLE.value, Tone.READY)
+    assert (known.state_text, known.state_tone) == (MachineState.IDLE.value, Tone.READY)
     off = make_status(replace(lost, state=MachineState.DISABLED), ReadoutKind.POSITION, has_c_axis=True)
     assert off.state_text == MachineState.DISABLED.value  # the drives come first
 
@@ -97,7 +97,7 @@ def test_question_ends_with_its_state_and_a_message_does_not_replace_it() -> Non
     answers = PromptLine(lambda: now[0], str, lambda: 0.0)
     answers.ask_question("PRESS Y", lambda: done.append("yes"))
     answers.say("REFUSED: NO")
-    assert (answers.question, answers.message) == ("PRESS Y", "REFUSED: NO")
+    assert (answers.question_text, answers.message) == ("PRESS Y", "REFUSED: NO")
     answers.remove_expired(now[0])
     assert answers.on_confirmed is not None
     answers.remove_expired(replace(Snapshot(), state=MachineState.ESTOP))

@@ -160,7 +160,7 @@ class Ran:
 def ran(dialect: Dialect, entry: CodeBookEntry, lines: str, machine: str = "") -> Ran:
     """Run these lines as the book's entry stands: between head and tail, with the programs beside it."""
     ground, book = GROUNDS[dialect], get_code_book(dialect)
-    head, tail = ("", "") if entry.whole else (book.head, book.tail)
+    head, tail = ("", "") if entry.whole else (book.head, book.lines_after_example)
     lines = lines if lines.endswith("\n") or entry.whole else f"{lines}\n"
     last = "" if entry.whole else entry.behind + ground.last
     files = tuple(ProgramSource(name, each) for name, each in entry.files)

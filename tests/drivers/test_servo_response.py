@@ -80,7 +80,7 @@ def test_following_window_includes_the_initial_offset() -> None:
 @pytest.mark.parametrize(("share", "foreseen"), [(0.9, True), (1.1, False)])
 def test_force_of_the_first_step_limits_the_prediction(share: float, foreseen: bool) -> None:
     """In its fast mode alone the servo needs more force in the first step than in all that follow."""
-    loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth * DT, SLIDE.feed_forward)
+    loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth_hz * DT, SLIDE.feed_forward)
     first = share * SLIDE.amax * SLIDE.accel_reserve * DT * DT
     p = first * loop.fast_mode / loop.fast_curvature
     servo = moving(p, (p - p / loop.fast_mode) / DT)
@@ -114,5 +114,5 @@ def test_worn_axis_is_stepped(worn: str) -> None:
 def test_oscillating_loop_is_rejected_and_its_axis_is_stepped() -> None:
     with pytest.raises(ValueError, match=r"0\.5"):
         ServoLoop(0.5, 1.0)
-    stiff = SimulatedServo(dataclasses.replace(SLIDE, bandwidth=100.0), DT)
+    stiff = SimulatedServo(dataclasses.replace(SLIDE, bandwidth_hz=100.0), DT)
     assert stiff.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 10) is None

@@ -99,7 +99,7 @@ def context_of(controller: PlayedController | None, machine: Machine | None = No
 
 def turn_feed_pot(context: MachineContext, feed: float) -> None:
     """The pot of the feed stands at this fraction."""
-    context.signals = StationSignals(
+    context.station_signals = StationSignals(
         is_estop_pressed=False,
         is_start_requested=False,
         is_hold_requested=False,

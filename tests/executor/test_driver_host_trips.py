@@ -30,7 +30,7 @@ class PlayedDriverHost:
     def get_active_trip(self) -> DriverHostTrip | None:
         return self.trip
 
-    def acknowledge(self, trip: DriverHostTrip) -> None:
+    def acknowledge_trip(self, trip: DriverHostTrip) -> None:
         self.acknowledged.append(trip.trip_number)
         self.trip = None
 

@@ -83,7 +83,7 @@ def test_repeat_is_allowed_without_pending_offsets() -> None:
 )
 def test_drive_test_is_rejected_in_feed_hold_or_with_guard_open(held: bool, guard: bool, why: str) -> None:
     context = context_of(None)
-    context.signals = StationSignals(
+    context.station_signals = StationSignals(
         is_estop_pressed=False,
         is_start_requested=False,
         is_hold_requested=held,

@@ -137,7 +137,7 @@ def test_thread_chain_starts_at_its_first_position_and_lead() -> None:
     """Half a turn more lead each turn: 3 mm in two turns are 1.5 on average, 1 at the begin."""
     growing = thread(1, 0.0, -3.0, 1.5, growth=0.5, x0=4.0)
     path = ThreadPath.from_blocks([growing, thread(2, -3.0, -7.0, 2.0), OUT], LIMITS)
-    assert (path.x, path.z, path.lead) == pytest.approx((4.0, 0.0, 1.0))
+    assert (path.x, path.z, path.lead_mm) == pytest.approx((4.0, 0.0, 1.0))
 
 
 def test_thread_joints_closer_than_a_revolution_are_followed() -> None:

@@ -58,7 +58,7 @@ def test_z_follows_the_next_lead_after_a_joint() -> None:
     curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.length_mm == pytest.approx(6.0)
     for s, z, lead in ((2.0, -2.0, -1.0), (5.0, -6.0, -2.0)):
-        assert curve.evaluate(s) == pytest.approx((5.0, z, 0.0, lead))
+        assert curve.evaluate_at(s) == pytest.approx((5.0, z, 0.0, lead))
         assert curve.find_s(z) == pytest.approx(s)
     assert curve.compute_max_acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
 
@@ -68,7 +68,7 @@ def test_joint_is_rounded_using_half_of_the_acceleration() -> None:
     curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.s_mm[1] == pytest.approx(4.0 - 1.0 / A)
     assert curve.s_mm[-2] == pytest.approx(4.0 + 1.0 / A)
-    assert curve.evaluate(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
+    assert curve.evaluate_at(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
 
 
 def test_joint_rounding_is_set_by_the_axis_that_changes_speed_most() -> None:
@@ -77,7 +77,7 @@ def test_joint_rounding_is_set_by_the_axis_that_changes_speed_most() -> None:
     curve = build_thread_curve(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
     assert curve.s_mm[1] == pytest.approx(4.0 - 4.0 / A)
     assert curve.s_mm[-2] == pytest.approx(4.0 + 4.0 / A)
-    assert curve.evaluate(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
+    assert curve.evaluate_at(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
 
 
 def test_joint_without_a_change_is_unchanged() -> None:
@@ -90,8 +90,8 @@ def test_growing_lead_is_followed_per_revolution() -> None:
     curve = build_thread_curve([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
     assert len(curve.s_mm) == 33  # sixteen a turn
     assert curve.length_mm == pytest.approx(2.0)
-    assert curve.evaluate(1.0)[1] == pytest.approx(-1.25)
-    assert curve.evaluate(2.0)[1] == pytest.approx(-3.0)
+    assert curve.evaluate_at(1.0)[1] == pytest.approx(-1.25)
+    assert curve.evaluate_at(2.0)[1] == pytest.approx(-3.0)
 
 
 @pytest.mark.parametrize("block", [thread(1, -4.0, -4.0, 1.0), thread(1, 0.0, -4.0, 0.0)])
@@ -103,7 +103,7 @@ def test_thread_without_length_or_lead_is_rejected(block: Block) -> None:
 def test_axes_follow_a_thread_chain_and_leave_it_by_its_rapid() -> None:
     """At 1 mm/s of s: Z −2 after two seconds, −6 after five, at rest at −8; then X goes out to 9."""
     path = ThreadPath.from_blocks([*CHAIN, OUT], LIMITS)
-    assert (path.lead, path.z_direction, path.retract_x_mm, path.exit_length_mm) == (1.0, -1.0, 9.0, 0.0)
+    assert (path.lead_mm, path.z_direction, path.retract_x_mm, path.exit_length_mm) == (1.0, -1.0, 9.0, 0.0)
     way, left = path.plan_remaining_pass(0.0, 0.0, 1.0, [])
     assert place(way, 2.0) == pytest.approx((5.0, -2.0))
     assert place(way, 5.0) == pytest.approx((5.0, -6.0))

@@ -139,7 +139,9 @@ def _seeds(dialect: Dialect) -> tuple[str, ...]:
     book = get_code_book(dialect)
     end = "END PGM EXAMPLE MM\n" if dialect is Dialect.KLARTEXT else ""
     return tuple(
-        each.example if each.whole else f"{book.head}{each.example}\n{book.tail}{each.behind}{end}"
+        each.example
+        if each.whole
+        else f"{book.head}{each.example}\n{book.lines_after_example}{each.behind}{end}"
         for each in book.entries
     )
 

@@ -182,14 +182,14 @@ def test_tilted_jog_ends_with_plane_and_needs_a_plane() -> None:
     tilt = TiltedJog(build_kinematics(load_shipped_machine("ac-table-mill")), ended.append, told.append)
     flat = shot("ac-table-mill", *(0.0,) * 5)
     tilt.update(flat)
-    tilt.toggle()
+    tilt.toggle_tilted_frame()
     assert not tilt.is_on
     assert shows(told[-1], "screen.nothing-tilted")
     there = shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True)
     tilt.update(there)
-    tilt.toggle("A PROGRAM IS UNDER WAY")
+    tilt.toggle_tilted_frame("A PROGRAM IS UNDER WAY")
     assert (tilt.is_on, told[-1]) == (False, "A PROGRAM IS UNDER WAY")
-    tilt.toggle()
+    tilt.toggle_tilted_frame()
     assert tilt.find_direction("Z") == pytest.approx((0.0, 0.0, 1.0))
     tilt.update(flat)  # PLANE RESET
     assert (tilt.is_on, tilt.find_direction("Z")) == (False, None)

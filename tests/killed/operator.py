@@ -62,7 +62,7 @@ class Operator:
             yield False
 
     def _until_drawn(self) -> Iterator[bool]:
-        while self._frame.desk.program_loader.loaded.picture is None:
+        while self._frame.desk.program_loader.loaded_program.picture is None:
             yield False
 
     def _switch_on(self) -> Iterator[bool]:

@@ -26,7 +26,7 @@ MILL = load_shipped_machine("ac-table-mill")
 
 
 def errors_of(entry: CodeBookEntry, lines: str) -> list[Diagnostic]:
-    text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.tail}{entry.behind}{END}"
+    text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.lines_after_example}{entry.behind}{END}"
     files = tuple(ProgramSource(name, each) for name, each in entry.files)
     setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("EXAMPLE.H", text, subprograms=files), setup, MILL)

@@ -21,7 +21,7 @@ def test_no_two_jog_directions_share_a_key_or_cell() -> None:
     for machine in (MILL, LATHE):
         ways = make_jog_directions(machine)
         assert len({way.key_name for way in ways}) == len(ways)
-        cells = {(way.column, way.row) for way in ways}
+        cells = {(way.cell_column, way.cell_row) for way in ways}
         assert len(cells) == len(ways)
         assert (1, 1) not in cells  # the figures stand there
 

@@ -187,7 +187,7 @@ def test_plane_z_is_vertical_in_machine_view(chamfers: tuple[MillScene, list[Blo
     instant = make_run_instant(scene, snapshot_at(cut_of(blocks, chamfer)))
     for aspect in ("FRONT", "RIGHT"):
         made, _ = drawn(scene, instant, aspect)
-        z = next(stroke for stroke in made.strokes if stroke.role == "z")
+        z = next(stroke for stroke in made.strokes if stroke.color_role == "z")
         foot, tip = z.points
         assert tip[0] == pytest.approx(foot[0], abs=1e-6)
         assert tip[1] < foot[1]  # up on the screen
@@ -200,9 +200,9 @@ def test_tool_is_drawn_at_end_of_finished_path(chamfers: tuple[MillScene, list[B
     assert cut.swivel is not None
     made, camera = drawn(scene, make_run_instant(scene, snapshot_at(cut)), aspect)
     tip = camera.project_points(np.array([cut.swivel.machine_position]), WIDE, HIGH)[0, :2]
-    ends = [stroke.points[-1] for stroke in made.strokes if stroke.role == "done"]
+    ends = [stroke.points[-1] for stroke in made.strokes if stroke.color_role == "done"]
     assert min(np.linalg.norm(end - tip) for end in ends) < 1e-6
-    tool = np.vstack([face.points for face in made.faces if face.role == "tool"])
+    tool = np.vstack([face.points for face in made.faces if face.color_role == "tool"])
     low, high = tool.min(axis=0) - 1e-6, tool.max(axis=0) + 1e-6
     assert (low <= tip).all()
     assert (tip <= high).all()
@@ -214,7 +214,7 @@ def test_table_rotation_changes_its_drawing(chamfers: tuple[MillScene, list[Bloc
     level, _ = drawn(scene, SceneInstant(dict.fromkeys(NAMES, 0.0), None), "FRONT")
     tilted, _ = drawn(scene, make_run_instant(scene, snapshot_at(cut_of(blocks, 1))), "FRONT")
     heights = [
-        np.ptp(next(face for face in made.faces if face.role.startswith("table")).points[:, 1])
+        np.ptp(next(face for face in made.faces if face.color_role.startswith("table")).points[:, 1])
         for made in (level, tilted)
     ]
     assert heights[0] == pytest.approx(0.0, abs=1e-9)
@@ -228,7 +228,7 @@ def test_everything_on_table_is_in_view(
     for chamfer in range(1, 5):
         made, _ = drawn(scene, make_run_instant(scene, snapshot_at(cut_of(blocks, chamfer))))
         for face in made.faces:
-            if face.role.startswith(("table", "blank")):
+            if face.color_role.startswith(("table", "blank")):
                 assert (face.points >= -20.0).all()
                 assert (face.points <= (WIDE + 20.0, HIGH + 20.0)).all()
 
@@ -240,7 +240,7 @@ def test_small_blank_at_edge_is_drawn_on_top_of_table() -> None:
         "TOOL CALL 1 Z S900\nL X+0 Y+0 Z+5 R0 FMAX\nEND PGM S MM\n"
     )
     scene, _blocks = scene_of(small)
-    roles = [face.role for face in drawn(scene, make_line_instant(scene, 5))[0].faces]
+    roles = [face.color_role for face in drawn(scene, make_line_instant(scene, 5))[0].faces]
     assert roles[0] == "table"
     assert {"blank", "blank-top"} <= set(roles[1:])
 
@@ -256,12 +256,12 @@ def test_tilted_head_does_not_move_workpiece_in_view(chamfers: tuple[MillScene, 
     )
 
     def shapes(figure: SceneDrawing, *roles: str) -> list[list[list[float]]]:
-        return [face.points.tolist() for face in figure.faces if face.role in roles]
+        return [face.points.tolist() for face in figure.faces if face.color_role in roles]
 
     assert shapes(upright, "table", "blank", "blank-top") == shapes(leaning, "table", "blank", "blank-top")
     assert shapes(upright, "tool") != shapes(leaning, "tool")
     lines = [
-        [each.points.tolist() for each in figure.strokes if each.role == "axis"]
+        [each.points.tolist() for each in figure.strokes if each.color_role == "axis"]
         for figure in (upright, leaning)
     ]
     assert len(lines[0]) == 1

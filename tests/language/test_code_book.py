@@ -109,10 +109,10 @@ def test_every_word_meaning_belongs_to_a_code(dialect: Dialect) -> None:
     book = get_code_book(dialect)
     used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.list_words(entry)}
     bare = {each.rpartition(".")[2] for each in used}
-    assert {word for word in book.meanings if "." not in word} <= bare
+    assert {word for word in book.word_meanings if "." not in word} <= bare
     told = {
         word
-        for word in book.meanings
+        for word in book.word_meanings
         if "." in word and word.partition(".")[0].startswith(("CYCLE", "HOLES"))
     }
     assert told <= used

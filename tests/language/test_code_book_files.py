@@ -40,7 +40,7 @@ def book(folder: Path, codes: str, **further: str) -> CodeBook:
 
 def test_entry_has_values_of_its_file(tmp_path: Path) -> None:
     found = book(tmp_path, CODE)
-    assert (found.head, found.tail, found.comment_sign) == ("BEGIN\n", "END\n", ";")
+    assert (found.head, found.lines_after_example, found.comment_sign) == ("BEGIN\n", "END\n", ";")
     (entry,) = found.entries
     assert (entry.form, entry.what, entry.example) == ("G1", "Straight line.", "G1 X5 F2")
     assert (entry.refused, entry.why, entry.written, entry.whole) == ("G1 F-1", "F", "G1", False)
@@ -97,7 +97,7 @@ def test_a_chapter_continues_in_the_next_file(tmp_path: Path) -> None:
     assert [(title, [each.head for each in entries]) for title, entries in found.chapters] == [
         ("Codes", ["G1", "G2"])
     ]
-    assert found.meanings == {"F": "feed"}
+    assert found.word_meanings == {"F": "feed"}
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ def test_start_is_rejected_when_program_cannot_be_reloaded(room: Room, posted: l
     def gone(path: Path) -> None:
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
-    object.__setattr__(room.desk.program_loader.steps, "read_source", gone)
+    object.__setattr__(room.desk.program_loader.loading_steps, "read_source", gone)
     room.desk.offset_book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "X .2")
     room.store.write(lambda _connection: None).result(LIMIT)
     room.desk.update()

@@ -40,7 +40,7 @@ def put(desk: Desk, text: str) -> None:
     job = steps.make_job(ProgramSource("part.nc", text), False)
     steps.prove_job(job, lambda _count: None)
     picture = steps.draw_path(job, lambda _count: None)
-    desk.program_loader.replace_loaded(replace(desk.program_loader.loaded, job=job, picture=picture))
+    desk.program_loader.replace_loaded(replace(desk.program_loader.loaded_program, job=job, picture=picture))
 
 
 def turned_to_part(shown: EffectDisplay) -> None:
@@ -105,7 +105,7 @@ def test_program_without_part_shows_message(room: Room, shown: EffectDisplay) ->
 
 
 def test_part_of_too_long_program_is_not_compared(room: Room, shown: EffectDisplay) -> None:
-    now = room.desk.program_loader.loaded
+    now = room.desk.program_loader.loaded_program
     assert now.picture is not None
     long = replace(now.picture, part=None, no_part="70000 blocks: too many")
     room.desk.program_loader.replace_loaded(replace(now, picture=long))

@@ -227,7 +227,7 @@ def test_offset_change_reloads_program(room: Room) -> None:
     room.enter(page, "1", ".1", "", "", asked=True)
     room.desk.program_loader.wait_until_loaded(LIMIT)
     assert room.loads == ["part.nc", "part.nc"]
-    assert room.desk.program_loader.loaded.block_delete
+    assert room.desk.program_loader.loaded_program.has_block_delete
 
 
 UNDER_WAY = [

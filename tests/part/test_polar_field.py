@@ -24,7 +24,9 @@ def take(
     field: PolarField, start: float, end: float, columns: slice | None = None, *, cut: bool = True
 ) -> float:
     there = columns or slice(0, len(field.column_centers))
-    return field.intersect(there, ALL, np.full((1, 1), start), np.full((1, 1), end), remove=cut).volume_mm3
+    return field.find_removed_material(
+        there, ALL, np.full((1, 1), start), np.full((1, 1), end), remove=cut
+    ).volume_mm3
 
 
 # --- from a half section
@@ -91,7 +93,7 @@ def test_cut_outside_material_or_with_reversed_bounds_removes_nothing(start: flo
 
 def test_cut_reports_position_and_depth() -> None:
     field = ring()
-    told = field.intersect(slice(3, 6), ALL, np.full((3, 1), 4.5), np.full((3, 1), math.inf))
+    told = field.find_removed_material(slice(3, 6), ALL, np.full((3, 1), 4.5), np.full((3, 1), math.inf))
     assert (told.back_z_mm, told.front_z_mm, told.depth_mm) == pytest.approx((-7.0, -4.0, 0.5))
 
 

@@ -10,7 +10,7 @@ from tests.coded import raises_code
 
 def test_bar_without_length_is_as_long_as_program_needs() -> None:
     stock = parse_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit_mm=25.4)
-    assert stock.specification == "bar:1.0+.02"
+    assert stock.specification_text == "bar:1.0+.02"
     assert stock.max_radius_mm == pytest.approx(12.7)
     assert stock.front_z_mm == pytest.approx(0.508)
     assert stock.back_z_mm < -25.4

@@ -105,7 +105,7 @@ def test_arc_on_face_stays_on_circle_and_has_its_center() -> None:
     assert (face.x <= 1e-9).all()  # it bulges upwards
     chords = np.hypot(np.diff(face.z), np.diff(face.x))
     assert (2 - np.sqrt(4 - (chords / 2) ** 2)).max() <= MAX_CHORD_ERROR_MM * 1.001
-    assert face.centers.tolist() == [[4.0, 0.0]]
+    assert face.arc_centers.tolist() == [[4.0, 0.0]]
 
 
 def test_the_side_is_unrolled_at_the_diameter_of_the_plane() -> None:

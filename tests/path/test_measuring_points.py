@@ -45,7 +45,7 @@ def test_intermediate_arc_points_are_not_snap_points() -> None:
 
 
 def test_arc_centers_are_snap_points() -> None:
-    features = SnapPoints(replace(SQUARE, centers=np.array([[2.0, 2.0]])))
+    features = SnapPoints(replace(SQUARE, arc_centers=np.array([[2.0, 2.0]])))
     assert features.find_nearest(2.4, 2.1) == SnapPoint(2, 2, PointKind.CENTER)
 
 

@@ -46,7 +46,7 @@ def clock() -> Clock:
 
 @pytest.fixture
 def player(clock: Clock) -> Iterator[PartPlayer]:
-    made = PartPlayer(clock=clock)
+    made = PartPlayer(read_time_s=clock)
     yield made
     made.close()
 

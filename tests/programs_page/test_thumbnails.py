@@ -44,7 +44,7 @@ def go_on(_count: float) -> None:
 def seen(picture: Thumbnail | None) -> int:
     """How many pixels are part."""
     assert picture is not None
-    assert (picture.width, picture.height) == (WIDE, HIGH)
+    assert (picture.width_px, picture.height_px) == (WIDE, HIGH)
     return int((np.frombuffer(picture.pixels, np.uint32) >> 24 > 0).sum())
 
 

@@ -442,5 +442,5 @@ def test_live_tool_in_zc_plane_is_radial() -> None:
     path = FOLDER / "plane-zc-figure-eight.nc"
     _, part = proved(path.read_text(), make_bar(0.98 * INCH, 0.0, -1.5 * INCH), {})
     assert part.last_piece is not None
-    (shape,) = (each for each in part.shapes.values() if each is not None)
+    (shape,) = (each for each in part.tool_shapes.values() if each is not None)
     assert shape.direction[0] == 0

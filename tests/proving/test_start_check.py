@@ -92,7 +92,7 @@ def line_of(text: str, at: tuple[float, ...], tool: int) -> Job:
 
 
 def met(found: FirstMove) -> tuple[CollisionBody | None, int, bool]:
-    return found.hit_body, found.tool, found.is_inside_at_start
+    return found.hit_body, found.tool_number, found.is_inside_at_start
 
 
 def test_start_at_line_1_from_inside_bore_hits_bore_wall() -> None:
@@ -199,7 +199,7 @@ def test_tool_jogged_into_specified_stock_is_inside_part() -> None:
 def test_safe_jog_direction_is_for_active_tool_when_other_tool_hits_part() -> None:
     job = job_of(BORE)
     found = check_of(job).check_start(passes(job), interrupted(job, (3, 1.0, 0.2), line=9))
-    assert (found.hit_body, found.tool, found.safe_jog_direction) == (CollisionBody.PART, 1, "Z+")
+    assert (found.hit_body, found.tool_number, found.safe_jog_direction) == (CollisionBody.PART, 1, "Z+")
 
 
 def test_first_move_path_is_drawn_for_incoming_tool() -> None:

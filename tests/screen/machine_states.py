@@ -57,10 +57,14 @@ def choose(day: Day, program: str) -> None:
     assert day.desk.program_choice.load_by_name(program)
     day.sees(
         lambda: (
-            not day.desk.program_loader.loaded.is_busy and bool(day.shot.program) and not day.shot.needs_proof
+            not day.desk.program_loader.loaded_program.is_busy
+            and bool(day.shot.program)
+            and not day.shot.needs_proof
         )
     )
-    assert not day.desk.program_loader.loaded.blocking_errors, day.desk.program_loader.loaded.blocking_errors
+    assert not day.desk.program_loader.loaded_program.blocking_errors, (
+        day.desk.program_loader.loaded_program.blocking_errors
+    )
 
 
 def drives_on(day: Day) -> None:

@@ -107,8 +107,8 @@ def test_correction_during_run_is_applied_without_stopping(day: Day) -> None:
     assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR / 2)  # this part as it was begun
     day.until(lambda: made(day) == "2")
     assert turning(day) == pytest.approx(0.45 - 0.0015 + T1[0], abs=NEAR / 2)
-    day.sees(lambda: day.desk.program_loader.loaded.picture is not None)
-    job = day.desk.program_loader.loaded.job
+    day.sees(lambda: day.desk.program_loader.loaded_program.picture is not None)
+    job = day.desk.program_loader.loaded_program.job
     assert job is not None
     assert job.digest == day.shot.job
     assert day.shot.cycle_repeat

@@ -59,15 +59,15 @@ def opening(window: MainWindow) -> FileOpening:
 def test_dropped_program_is_loaded_and_file_is_not_moved(opening: FileOpening, window: MainWindow) -> None:
     assert drop(opening, window, PIN) == Qt.DropAction.CopyAction
     assert window.frame is not None
-    assert window.frame.desk.program_loader.loaded.name == "pin.nc"
+    assert window.frame.desk.program_loader.loaded_program.name == "pin.nc"
     assert window.frame.current_page.NAME == AUTOMATIC
 
 
 def test_a_drop_that_can_only_move_the_file_is_rejected(opening: FileOpening, window: MainWindow) -> None:
     assert window.frame is not None
-    before = window.frame.desk.program_loader.loaded.name
+    before = window.frame.desk.program_loader.loaded_program.name
     drop(opening, window, PIN, offered=Qt.DropAction.MoveAction)
-    assert window.frame.desk.program_loader.loaded.name == before
+    assert window.frame.desk.program_loader.loaded_program.name == before
 
 
 @pytest.mark.parametrize("paths", [(PIN, SAMPLES / "knob.nc"), (SAMPLES,)])
@@ -75,9 +75,9 @@ def test_several_files_and_folders_are_rejected(
     opening: FileOpening, window: MainWindow, paths: tuple[Path, ...]
 ) -> None:
     assert window.frame is not None
-    before = window.frame.desk.program_loader.loaded.name
+    before = window.frame.desk.program_loader.loaded_program.name
     drop(opening, window, *paths)
-    assert window.frame.desk.program_loader.loaded.name == before
+    assert window.frame.desk.program_loader.loaded_program.name == before
     assert window.frame.desk.prompt_notice
 
 
@@ -86,9 +86,9 @@ def test_no_program_is_loaded_while_one_runs(
 ) -> None:
     machine.now = replace(machine.now, state=MachineState.HOLD)
     assert window.frame is not None
-    before = window.frame.desk.program_loader.loaded.name
+    before = window.frame.desk.program_loader.loaded_program.name
     drop(opening, window, PIN)
-    assert window.frame.desk.program_loader.loaded.name == before
+    assert window.frame.desk.program_loader.loaded_program.name == before
     assert window.frame.desk.prompt_notice
 
 

@@ -146,7 +146,10 @@ def test_log_does_not_translate_text_of_program(code: AlarmCode, number: int) ->
 
 @pytest.mark.usefixtures("spanish")
 def test_an_event_of_an_older_store_stays_english() -> None:
-    assert logged("accepted", "machine file a.toml accepted by BEN") == "machine file a.toml accepted by BEN"
+    assert (
+        logged("accept_connection", "machine file a.toml accepted by BEN")
+        == "machine file a.toml accepted by BEN"
+    )
 
 
 @pytest.mark.usefixtures("spanish")
@@ -170,11 +173,13 @@ def test_stop_message_of_program_is_not_translated(spanish: Hands, code: AlarmCo
 
 def test_active_program_comment_is_not_translated(spanish: Hands) -> None:
     point = Checkpoint(ModalState(comment=" FACE ", outputs=frozenset({"coolant"})))
-    told = {row.key: tr(row.value) for row in make_modal_rows(point)}
+    told = {row.key: tr(row.active_code) for row in make_modal_rows(point)}
     assert told["comment"] == "FACE"
     assert told["outputs"] == "COOLANT"
     assert told["units"] == "G70 PULGADAS"
-    assert {row.key: row.value for row in make_modal_rows(Checkpoint(ModalState()))}["comment"] == NO_CODE
+    assert {row.key: row.active_code for row in make_modal_rows(Checkpoint(ModalState()))}[
+        "comment"
+    ] == NO_CODE
 
 
 @pytest.mark.usefixtures("spanish")

@@ -35,7 +35,7 @@ def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
     desk.closing_sequence.close_drivers = lambda: closed.append(True)
 
     def leave() -> None:
-        if desk.program_loader.loaded.picture is None:
+        if desk.program_loader.loaded_program.picture is None:
             QTimer.singleShot(5, leave)
             return
         (window,) = (w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible())
@@ -43,7 +43,7 @@ def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
 
     QTimer.singleShot(0, leave)
     assert run_screen(program_file=str(SAMPLES / "pin.nc"), build_model=lambda: desk) == 0
-    assert desk.program_loader.loaded.name == "pin.nc"
+    assert desk.program_loader.loaded_program.name == "pin.nc"
     assert closed == [True]
 
 
@@ -52,7 +52,7 @@ def test_computer_shutdown_closes_screen_in_feed_hold(machine: FakeMachine) -> N
     desk.closing_sequence.close_drivers = lambda: closed.append(machine.now.state)
 
     def strike() -> None:
-        if desk.program_loader.loaded.picture is None:
+        if desk.program_loader.loaded_program.picture is None:
             QTimer.singleShot(5, strike)
             return
         machine.now = replace(machine.now, state=MachineState.HOLD)

@@ -35,7 +35,7 @@ def page_of(operator: Operator) -> MdiPage:
 
 
 def value(operator: Operator, key: str) -> str:
-    return next(row.value for row in page_of(operator).modal_panel.rows if row.key == key)
+    return next(row.active_code for row in page_of(operator).modal_panel.rows if row.key == key)
 
 
 def test_mdi_line_is_proved_and_run_and_its_modes_remain(at_mdi: Operator) -> None:

@@ -232,7 +232,7 @@ def test_searchto_shows_table_and_plane_at_line(mill: Mill, qtbot: QtBot) -> Non
     assert page.plane_view.words.startswith(
         f"{wording('screen.tilted-plane', line=line - 1)}:  A+30.000  C+180.000"
     )
-    shown = page.plane_view.instant
+    shown = page.plane_view.scene_instant
     assert shown is not None
     assert (shown.axis_positions["A"], shown.axis_positions["C"]) == pytest.approx(
         (30.0, 180.0)

@@ -76,7 +76,7 @@ def test_notice_row_does_not_move_target_during_jog_by_touch(hands: Hands) -> No
 
 def test_executed_part_of_interrupted_program_remains_drawn(hands: Hands) -> None:
     hands.load("pin")
-    job = hands.desk.program_loader.loaded.job
+    job = hands.desk.program_loader.loaded_program.job
     assert job is not None
     found = broken_off(program="pin.nc", text=job.text_digest, tool=1, block=9, line=8)
     hands.machine.now = replace(hands.machine.now, interrupted=found)

@@ -64,7 +64,7 @@ def test_correction_is_entered_shown_and_used_in_next_cycle(hands: Hands, store:
     page = page_of(hands)
     assert hands.frame.title_line.page_title == page_table.SECCMP
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == wording("screen.offset-number"))
-    assert (page.entry_panel.entry_texts.subject, page.entry_panel.entry_texts.footer_text) == (
+    assert (page.entry_panel.entry_texts.subject_text, page.entry_panel.entry_texts.footer_text) == (
         "Secondary offset number:",
         "Press Esc to exit offset adjustment screen        Press C to clear all offsets",
     )
@@ -185,7 +185,7 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     assert sum(isinstance(command, LoadJob) for command in hands.machine.posted) == loads
     hands.machine.idle()  # a machine that did not take it up: it is read anew
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
-    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    hands.sees(lambda: hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
     assert used[-1].secondary[1].x == pytest.approx(0.0025 * 25.4)
 
@@ -374,7 +374,7 @@ def test_effect_is_shown_for_entered_and_for_saved_change(hands: Hands, store: S
     hands.sees(page.table_panel.isVisible)
     answer(hands, "", "", "")
     hands.sees(lambda: 1 in page.table_panel.offsets)
-    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    hands.sees(lambda: hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     hands.key(Key.Key_F6)
     hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
     hands.key(Key.Key_Escape)

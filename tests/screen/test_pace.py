@@ -153,7 +153,9 @@ def test_change_other_than_time_is_drawn_in_next_frame(hands: Hands, counted: Co
 
 
 def test_another_program_is_drawn_in_next_frame(hands: Hands, counted: Counted) -> None:
-    hands.desk.program_loader.replace_loaded(replace(hands.desk.program_loader.loaded, progress=7))
+    hands.desk.program_loader.replace_loaded(
+        replace(hands.desk.program_loader.loaded_program, progress_percent=7)
+    )
     assert counted.tick() == 1
 
 

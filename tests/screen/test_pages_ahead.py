@@ -107,7 +107,7 @@ def test_nothing_is_preloaded_while_program_is_loading(idle: Desk, monkeypatch: 
     entries(monkeypatch, ONE)
     asked = Asked()
     ahead = PagePreloader(idle, asked)
-    before = idle.program_loader.loaded
+    before = idle.program_loader.loaded_program
     idle.program_loader.replace_loaded(replace(before, phase=LoadingPhase.PROVING))
     with pytest.raises(AssertionError, match="never ends"):
         steps(ahead, idle)

@@ -28,7 +28,7 @@ def page(day: Day) -> PartPage:
     day.key(Key.Key_F2)
     day.type("slip.nc")
     day.key(Key.Key_Return)
-    day.sees(lambda: day.desk.program_loader.loaded.part_proof is not None)
+    day.sees(lambda: day.desk.program_loader.loaded_program.part_proof is not None)
     day.key(Key.Key_B)
     day.sees(lambda: day.page == page_table.PART)
     found = day.window.findChild(PartPage)
@@ -61,9 +61,9 @@ def test_bar_stock_is_entered_by_touch(day: Day) -> None:
     for key in ("1", "Enter"):
         box = next(box for box, press, *_ in shown.number_pad._places if key in getattr(press, "args", ()))
         QTest.mouseClick(shown.number_pad, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
-    day.sees(lambda: shown.model.stored_part.stock == "bar:1")
-    day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
-    assert day.desk.program_loader.loaded.diagnostics[-1].assumptions == ()
+    day.sees(lambda: shown.model.stored_part.stock_text == "bar:1")
+    day.sees(lambda: not day.desk.program_loader.loaded_program.is_busy)
+    assert day.desk.program_loader.loaded_program.diagnostics[-1].assumptions == ()
 
 
 def test_letters_are_text_while_a_reason_is_asked(day: Day) -> None:

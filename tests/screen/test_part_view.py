@@ -29,7 +29,7 @@ LEFT = Qt.MouseButton.LeftButton
 @pytest.fixture
 def view(qtbot: QtBot) -> Iterator[PathView]:
     """A path view with a player of the part."""
-    player = PartPlayer(clock=Clock())
+    player = PartPlayer(read_time_s=Clock())
     made = PathView(ScreenTheme(DARK_PALETTE, 8.0), part_player=player)
     made.resize(800, 400)
     with qtbot.waitExposed(made, timeout=LIMIT):

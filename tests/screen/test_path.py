@@ -35,7 +35,7 @@ from app.screen.screen_theme import ScreenTheme
 from app.screen.window_layout import FINGERTIP_PX
 from tests.screen.colours import apart
 
-FRAME = Projection(z=0.0, x=0.0, pixels_per_mm=10.0, width=400, height=200)
+FRAME = Projection(z=0.0, x=0.0, pixels_per_mm=10.0, width_px=400, height_px=200)
 
 
 def picture(points: list[tuple[float, float, Stroke]], first: list[int]) -> ProgramPicture:

@@ -350,12 +350,12 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     scope = page.scope_model
     hands.key(Key.Key_F3)
     hands.key(Key.Key_Return)
-    assert scope.trigger.event is TriggerEvent.RISES_ABOVE
+    assert scope.trigger.trigger_event is TriggerEvent.RISES_ABOVE
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Down)
     hands.type(".0003")  # in, of the following error of X, that swings by .01 mm
     hands.key(Key.Key_Return)
-    assert scope.trigger.level == pytest.approx(0.0003 * 25.4)
+    assert scope.trigger.trigger_level == pytest.approx(0.0003 * 25.4)
     assert scope.is_armed
 
     def later() -> bool:
@@ -390,7 +390,7 @@ def test_invalid_trigger_level_is_rejected(hands: Hands) -> None:
     hands.type("1/0")
     hands.key(Key.Key_Return)
     hands.sees(lambda: begins(hands.prompt(), "screen.refused"))
-    assert page.scope_model.trigger.level == 0.0
+    assert page.scope_model.trigger.trigger_level == 0.0
     assert page.scope_model.frozen_curves is None
 
 

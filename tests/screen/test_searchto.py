@@ -268,7 +268,7 @@ def test_reloaded_program_is_searched_again(operator: Operator) -> None:
     found(operator)
     confirmed(operator)
     desk = operator.stage.desk
-    path = desk.program_loader.loaded.path
+    path = desk.program_loader.loaded_program.path
     assert path is not None
     desk.program_loader.start_loading(path)
     desk.program_loader.wait_until_loaded(30.0)
@@ -418,6 +418,6 @@ def test_stock_is_shown_as_it_is_at_selected_line(operator: Operator) -> None:
     player.wait_for_result(60.0)
     assert player.result is not None
     assert player.result.part_instant.block_count == plan.restart_point.checkpoint.blocks
-    picture = operator.stage.desk.program_loader.loaded.picture
+    picture = operator.stage.desk.program_loader.loaded_program.picture
     assert picture is not None
     assert 0 < plan.restart_point.checkpoint.blocks < len(picture.line)

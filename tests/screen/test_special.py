@@ -150,7 +150,7 @@ def test_target_below_parts_made_is_rejected(hands: Hands, journal: Journal) -> 
     hands.sees(lambda: journal.runs.read_part_count("pin.nc") == 3)
     hands.load("pin")
     open_function(hands, 2)
-    hands.sees(lambda: hands.desk.program_runs.part_counter.count == 3)
+    hands.sees(lambda: hands.desk.program_runs.part_counter.part_count == 3)
     hands.type("2")
     hands.key(Key.Key_Return)
     assert hands.prompt() == wording("screen.parts-made-already", made=3)
@@ -347,7 +347,7 @@ def test_restore_leaves_access_levels_on(hands: Hands, journal: Journal) -> None
     yes(hands.window)
     hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.restored"))
     access.reload()
-    assert [row.name for row in access.users.rows] == ["ANNA"]
+    assert [row.name for row in access.user_list.rows] == ["ANNA"]
     hands.sees(lambda: len(journal.require_store().events.read_events(kinds={"change"})) > 0)
     [row] = journal.require_store().events.read_events(kinds={"change"})
     assert (row.who, row.text.startswith("restored; ")) == ("ANNA", True)
@@ -399,7 +399,7 @@ def test_station_with_pressed_estop_cannot_be_hidden(hands: Hands) -> None:
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
     assert begins(hands.desk.prompt_notice, "screen.release-station-e-stop")
-    assert hands.desk.settings_store.current.dock
+    assert hands.desk.settings_store.current_settings.dock
 
 
 def test_hold_and_estop_work_during_an_entry(hands: Hands) -> None:

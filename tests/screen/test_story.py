@@ -83,8 +83,8 @@ def test_file_not_found_is_cleared_by_any_key(hands: Hands) -> None:
     assert hands.page.file_prompt.name_edit.text() == "nosuch"
     hands.type("knob")  # what was wrong is marked and typed over
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
-    assert hands.desk.program_loader.loaded.name == "knob.nc"
+    hands.sees(lambda: hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
+    assert hands.desk.program_loader.loaded_program.name == "knob.nc"
 
 
 def test_esc_leaves_loaded_program_unchanged(hands: Hands) -> None:
@@ -93,7 +93,7 @@ def test_esc_leaves_loaded_program_unchanged(hands: Hands) -> None:
     hands.type("knob")
     hands.key(Key.Key_Escape)
     assert not hands.page.file_prompt.isVisible()
-    assert hands.desk.program_loader.loaded.name == "pin.nc"
+    assert hands.desk.program_loader.loaded_program.name == "pin.nc"
     hands.key(Key.Key_S)  # the keyboard is the page's again
     hands.sees(lambda: hands.machine.now.single_block)
 
@@ -104,8 +104,8 @@ def test_program_is_selected_from_list_by_arrows(hands: Hands) -> None:
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Up)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
-    assert hands.desk.program_loader.loaded.name == "fitting.mpf"
+    hands.sees(lambda: hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
+    assert hands.desk.program_loader.loaded_program.name == "fitting.mpf"
 
 
 @pytest.mark.parametrize("palm", [Key.Key_F11, Key.Key_F12])
@@ -233,14 +233,15 @@ def test_arrows_move_picture_only_with_ctrl(hands: Hands) -> None:
 
 def test_block_delete_proves_the_program_again(hands: Hands) -> None:
     hands.load("grooves")
-    whole = hands.desk.program_loader.loaded.picture
+    whole = hands.desk.program_loader.loaded_program.picture
     hands.key(Key.Key_Slash)
     hands.sees(
         lambda: (
-            hands.machine.now.block_delete and hands.desk.program_loader.loaded.phase is LoadingPhase.READY
+            hands.machine.now.block_delete
+            and hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY
         )
     )
-    shorter = hands.desk.program_loader.loaded.picture
+    shorter = hands.desk.program_loader.loaded_program.picture
     assert whole is not None
     assert shorter is not None
     assert shorter.blocks < whole.blocks

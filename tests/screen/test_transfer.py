@@ -233,7 +233,7 @@ def test_nothing_is_sent_without_loaded_program(hands: Hands, lines: FakeLines) 
 
 def test_loaded_program_is_sent(hands: Hands, lines: FakeLines) -> None:
     assert hands.desk.program_choice.load_by_name("pin.nc")
-    hands.sees(lambda: hands.desk.program_loader.loaded.path is not None)
+    hands.sees(lambda: hands.desk.program_loader.loaded_program.path is not None)
     hands.key(Key.Key_F4)
     hands.sees(lambda: lines.job is not None)
     assert lines.job is not None

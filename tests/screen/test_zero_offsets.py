@@ -146,13 +146,13 @@ def test_change_without_store_shows_reason(hands: Hands) -> None:
 
 def test_program_is_reloaded_when_offset_changes(hands: Hands, store: Store) -> None:
     hands.load("bushing")
-    before = hands.desk.program_loader.loaded
+    before = hands.desk.program_loader.loaded_program
     opened(hands)
     enter(hands, "4")
     hands.sees(
         lambda: (
             store.offsets.zero_offsets.read_rows() != {}
-            and hands.desk.program_loader.loaded.job is not before.job
+            and hands.desk.program_loader.loaded_program.job is not before.job
         )
     )
 

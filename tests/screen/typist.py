@@ -110,13 +110,13 @@ class Typist:
     def _all(self) -> dict[str, object]:
         """All that a key may change, by name."""
         desk = self.day.desk
-        loaded, settings = desk.program_loader.loaded, desk.settings_store.current
+        loaded, settings = desk.program_loader.loaded_program, desk.settings_store.current_settings
         told: dict[str, object] = {f"setting {each}": getattr(settings, each) for each in settings.__slots__}
         told |= {
             "feed_pot": desk.station_controls.feed_pot.wanted,
             "spindle_pot": desk.station_controls.spindle_pot.wanted,
-            "counter": desk.program_runs.part_counter.count,
-            "loaded program": (loaded.path, loaded.block_delete, loaded.source),
+            "counter": desk.program_runs.part_counter.part_count,
+            "loaded program": (loaded.path, loaded.has_block_delete, loaded.source),
             "snapshot": self.day.shot,
         }
         return told | self._store() | _files(find_data_folder())
@@ -263,7 +263,7 @@ def _is_again(loader: object, path: object = None, block_delete: object = False)
     """Whether the same program is loaded in the same way: with offsets that were changed."""
     if not isinstance(loader, ProgramLoader):
         return False
-    return (path, block_delete) == (loader.loaded.path, loader.loaded.block_delete)
+    return (path, block_delete) == (loader.loaded_program.path, loader.loaded_program.has_block_delete)
 
 
 def _named(name: str, *values: object) -> str:

@@ -32,7 +32,7 @@ TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), make_row_number(1, 2): ToolO
 
 
 def errors_of(entry: CodeBookEntry, lines: str, machine: Machine = MODULO) -> list[Diagnostic]:
-    text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.tail}{entry.behind}"
+    text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.lines_after_example}{entry.behind}"
     files = tuple(ProgramSource(name, each) for name, each in entry.files)
     setup = create_setup(machine, tool_offsets=TOOLS, secondary_offsets={})
     report = prove(ProgramSource("EXAMPLE.MPF", text, subprograms=files), setup, machine)

@@ -74,7 +74,7 @@ def test_migration_retains_every_field() -> None:
     scripts = database.load_migrations()
     before = next(at for at, text in enumerate(scripts) if "with_edges" in text)
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
-        database.migrate(connection, scripts[:before])
+        database.upgrade_tables(connection, scripts[:before])
         connection.execute(
             "INSERT INTO tool_offsets (number, x, z, r, wear_x, wear_z, quadrant, remark, master)"
             " VALUES (7, 1.5, -2.5, 0.4, 0.01, -0.02, 3, 'FINISHER', 1)"
@@ -83,7 +83,7 @@ def test_migration_retains_every_field() -> None:
             "INSERT INTO tool_shapes VALUES"
             " (7, 'turning', 'right', 'DNMG', '', 0, 0, 0, 0, 0, 0, 0, 93, 0, '')"
         )
-        database.migrate(connection, scripts)
+        database.upgrade_tables(connection, scripts)
         assert offset_tables.read_tool_offsets(connection)[7] == ToolRow(
             1.5, -2.5, 0.4, 0.01, -0.02, 3, "FINISHER", True
         )

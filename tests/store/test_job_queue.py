@@ -181,7 +181,7 @@ def test_damaged_job_is_left_out_reported_and_cleared(folder: Path) -> None:
 def test_older_store_gets_a_job_queue(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / STORE_FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
-        database.migrate(connection, database.load_migrations()[:11])
+        database.upgrade_tables(connection, database.load_migrations()[:11])
         connection.execute("INSERT INTO part_counts VALUES ('pin.nc', 4, '2026-11-20T10:00:00.000Z')")
     with Store.open(tmp_path) as store:
         assert store.jobs.read_jobs() == ()

@@ -207,7 +207,7 @@ def test_migration_is_complete_or_rolled_back() -> None:
     first, *_ = scripts = (*database.load_migrations(), "CREATE TABLE extra (a); SELECT nonsense;")
     connection = store_connection.configure_connection(sqlite3.connect(":memory:", isolation_level=None))
     with raises_code(StoreError, "migration-failed", f"version {len(scripts)}"):
-        database.migrate(connection, scripts)
+        database.upgrade_tables(connection, scripts)
     assert first
     assert store_connection.read_store_version(connection) == len(scripts) - 1
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}

@@ -208,7 +208,7 @@ def test_older_store_gets_checksums(tmp_path: Path) -> None:
     old = database.load_migrations()[:10]
     with closing(sqlite3.connect(tmp_path / FILE, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
-        database.migrate(connection, old)
+        database.upgrade_tables(connection, old)
         connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (7, 1.5, -2.5, 0.4)")
     with Store.open(tmp_path) as store:
         assert store.offsets.tool_offsets.read_rows()[7].x == 1.5
@@ -224,7 +224,7 @@ def test_damage_before_migration_remains_detected(kept: Path) -> None:
         connection.execute("UPDATE tool_lives SET parts = 8")
     newer = (*database.load_migrations(), "ALTER TABLE tool_lives ADD COLUMN more REAL NOT NULL DEFAULT 0;")
     with closing(sqlite3.connect(kept / FILE, isolation_level=None)) as connection:
-        database.migrate(connection, newer)
+        database.upgrade_tables(connection, newer)
         assert row_checksums.find_all_broken_rows(connection) == {("tool_lives", 3)}
         save_use(connection, 3, 40, 1.0)
         assert row_checksums.find_all_broken_rows(connection) == frozenset()

@@ -23,7 +23,7 @@ def old_store(folder: Path) -> None:
     connection = sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
     connection.execute("PRAGMA journal_mode = WAL")
-    database.migrate(connection, database.load_migrations()[:1])
+    database.upgrade_tables(connection, database.load_migrations()[:1])
     connection.execute("INSERT INTO tool_offsets VALUES (3, 31.75, -12.7, 0.381)")
     connection.execute("INSERT INTO secondary_offsets VALUES (4, -0.0127, 0, 0)")
     changes = (

@@ -101,7 +101,7 @@ def test_older_store_has_no_shapes_and_accepts_new_ones(folder: Path) -> None:
     connection = sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
     connection.execute("PRAGMA journal_mode = WAL")
-    database.migrate(connection, database.load_migrations()[:4])
+    database.upgrade_tables(connection, database.load_migrations()[:4])
     connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, 2.0, 0.4)")
     connection.close()
     with Store.open(folder) as store:

@@ -84,7 +84,7 @@ def press_until_sent(bench: Bench, key: str) -> StopPress:
 def test_a_stop_key_is_sent_while_the_pointer_is_on_the_window(bench: Bench) -> None:
     bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))
     sent = press_until_sent(bench, "Pause")
-    assert sent.kind is StopKind.HOLD
+    assert sent.stop_kind is StopKind.HOLD
     assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)) == sent
 
 
@@ -101,7 +101,7 @@ def test_nothing_is_sent_for_pointer_elsewhere_or_for_other_keys(bench: Bench) -
     with pytest.raises(TimeoutError):
         bench.stop()
     bench.server.point(*INSIDE)
-    assert press_until_sent(bench, "Scroll_Lock").kind is StopKind.ESTOP
+    assert press_until_sent(bench, "Scroll_Lock").stop_kind is StopKind.ESTOP
 
 
 def test_stop_key_held_down_is_sent_once(bench: Bench) -> None:
@@ -110,7 +110,7 @@ def test_stop_key_held_down_is_sent_once(bench: Bench) -> None:
     press_until_sent(bench, "Escape")
     bench.control.settimeout(LIMIT)
     bench.server.down("Pause")
-    assert bench.stop().kind is StopKind.HOLD
+    assert bench.stop().stop_kind is StopKind.HOLD
     bench.control.settimeout(0.5)
     with pytest.raises(TimeoutError):
         bench.stop()

@@ -48,12 +48,12 @@ class ReportPart(NamedTuple):
 class _Stored(NamedTuple):
     """Data from the store that the bug report uses."""
 
-    people: frozenset[str] = frozenset()
-    programs: frozenset[str] = frozenset()
+    user_names: frozenset[str] = frozenset()
+    program_names: frozenset[str] = frozenset()
     machine_file: str | None = None
-    latest: tuple[str, str] | None = None  # name and text of the program that was started last
+    latest_program: tuple[str, str] | None = None  # name and text of the program that was started last
     events: tuple[str, ...] = ()
-    damage: str = ""
+    damage_text: str = ""
 
 
 def generate_bug_report(machine_file: str | None = None, program: Path | None = None) -> str:
@@ -63,20 +63,20 @@ def generate_bug_report(machine_file: str | None = None, program: Path | None = 
     the program that was started last.
     """
     stored = _stored()
-    programs = {*stored.programs, *_names_in(find_data_folder() / "programs")} | (
+    programs = {*stored.program_names, *_names_in(find_data_folder() / "programs")} | (
         {program.name} if program else set()
     )
     replacements = PrivateValueReplacer(
-        people={*stored.people, *_users()},
+        people={*stored.user_names, *_users()},
         programs={*programs, *_names_of_runs()},
         computers={socket.gethostname(), platform.node()},
         public=_shipped_names(),
     )
     parts = [
         ReportPart("TurnDesk", f"turndesk {VERSION}\n{_system()}"),
-        ReportPart("Store", stored.damage or "can be read"),
+        ReportPart("Store", stored.damage_text or "can be read"),
         *_machine_part(machine_file or stored.machine_file, replacements, named=machine_file is not None),
-        *_program_part(program, stored.latest),
+        *_program_part(program, stored.latest_program),
         *_log_parts(stored.events),
     ]
     return "\n".join(f"== {part.title} ==\n{replacements(part.text).rstrip()}\n" for part in parts)
@@ -130,7 +130,7 @@ def _stored() -> _Stored:
                 ),
             )
     except CodedError as error:
-        return _Stored(damage=f"cannot be read: {error.code}")
+        return _Stored(damage_text=f"cannot be read: {error.code}")
 
 
 def _latest(store: Store, name: str) -> tuple[str, str] | None:

@@ -41,7 +41,7 @@ def make_stock_json(part: PartReport, dialect: Dialect) -> Json | None:
     length, volume = get_length_converter(dialect), get_volume_converter(dialect)
     bore = last.bore_profile if last is not None else None
     return {
-        "given": stock.specification or None,
+        "given": stock.specification_text or None,
         "outside": [[length(z), length(r)] for z, r in stock.outside_profile],
         "volume": volume(part.stock_volume_mm3),
         "removed_volume": volume(part.removed_volume_mm3),
@@ -76,8 +76,8 @@ def format_stock(part: PartReport, dialect: Dialect) -> str:
 
 
 def _named(stock: Stock, dialect: Dialect) -> str:
-    if stock.specification:
-        return stock.specification
+    if stock.specification_text:
+        return stock.specification_text
     length, unit = get_length_converter(dialect), "in" if dialect is Dialect.OMNITURN else "mm"
     bore = (
         Message(", bore diameter {bore}", bore=f"{2.0 * length(stock.bore_profile[0][1]):.3f}")

@@ -1,4 +1,4 @@
-"""The command ``turndesk prove DIR``, which proves all programs of folders on all CPU cores."""
+"""The command ``turndesk prove_programs DIR``, which proves all programs of folders on all CPU cores."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def prove_programs(args: argparse.Namespace, jobs: JobsByMachine) -> int:
     files = find_programs(args.files)
     with open_report(args) as report:
         run = _Run(args, jobs, files, _workers(args), report)
-        run.prove()
+        run.prove_programs()
     return run.print_outcome()
 
 
@@ -143,7 +143,7 @@ def _workers(args: argparse.Namespace) -> WorkerSource:
 class _Unit:
     """A program to prove, with its index in the order of names and its location in the proof cache."""
 
-    index: int
+    program_index: int
     source: ProgramSource
     job: ProofJob
     key: str
@@ -171,14 +171,14 @@ class _Run:
         self._told = 0
         self._progress = ProgressBar("proving", len(files.paths))
 
-    def prove(self) -> None:
+    def prove_programs(self) -> None:
         """Prove all programs, and save finished proofs even if the command is interrupted."""
         proving: WorkDistributor[_Unit, Proof] = WorkDistributor(self._workers, self._submit)
         results = proving.iterate_results(self._iterate_units())
         try:
             with self._progress:
                 for unit, made in results:
-                    self._add(unit.index, self._kept(unit, made))
+                    self._add(unit.program_index, self._kept(unit, made))
         except CancelledError as error:
             raise CommandError(
                 Message(
@@ -247,7 +247,9 @@ class _Run:
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
-            return Proof({}, failure_reason=f"{self._files.paths[unit.index]}: {self._describe_error(made)}")
+            return Proof(
+                {}, failure_reason=f"{self._files.paths[unit.program_index]}: {self._describe_error(made)}"
+            )
         if unit.cache is not None:
             unit.cache.save_proof(unit.key, made)
         return made

@@ -104,7 +104,7 @@ class ReportFile:
         except OSError as error:
             raise _unwritable(self._path, error) from error
 
-    def finish(self, temporary_path: Path) -> None:
+    def finish_report(self, temporary_path: Path) -> None:
         """Finish the report and move its temporary file to its final path."""
         try:
             self._pages.finish()
@@ -134,7 +134,7 @@ def open_report(args: argparse.Namespace) -> Iterator[ReportFile | None]:
     try:
         report = ReportFile(path, pages)
         yield report
-        report.finish(aside)
+        report.finish_report(aside)
     finally:
         with contextlib.suppress(OSError):  # data that could not be written cannot be flushed either
             pages.close()

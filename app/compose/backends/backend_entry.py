@@ -174,7 +174,7 @@ class CheckRow(NamedTuple):
     detail: str
 
     @property
-    def verdict(self) -> str:
+    def result_text(self) -> str:
         """Return the result of the check.
 
         The result is ``ok``, ``FAIL`` if the state contradicts the machine file, or ``NOT_CHECKED``.

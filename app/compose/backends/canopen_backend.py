@@ -97,17 +97,17 @@ def create_canopen_config(machine: Machine) -> CanopenConfig:
     modules = tuple(node for node in found if node.profile == 401)
     first = modules[0].name if modules else ""
     return CanopenConfig(
-        bus=can,
+        bus_settings=can,
         axes=tuple(_axis(axis, machine, nodes.get(axis.name)) for axis in machine.axes),
         spindle=_spindle(machine, nodes),
         encoder=_encoder_config(machine, nodes),
-        modules=modules,
+        io_modules=modules,
         outputs={
             name: OutputConfig(_terminal(output.terminal, first), output.safe_state)
             for name, output in machine.outputs.items()
         },
         inputs={
-            name: replace(_terminal(wired.terminal, first), active_low=wired.is_active_low)
+            name: replace(_terminal(wired.terminal, first), is_active_low=wired.is_active_low)
             for name, wired in machine.inputs.items()
         },
         pots={
@@ -156,7 +156,7 @@ def _terminal(text: str, first: str) -> CanTerminal:
     found = parse_terminal(text)
     if found is None:
         raise DriverError(Message("terminal {text} is not a valid bus address", text=f"{text!r}"))
-    return replace(found, node=first) if found.node == FIRST_MODULE_ADDRESS else found
+    return replace(found, node_name=first) if found.node_name == FIRST_MODULE_ADDRESS else found
 
 
 def _is_simulated(machine: Machine) -> bool:
@@ -227,7 +227,7 @@ def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str
             Message("node {answer}", answer=answer.name),
             str(answer.node_id),
             answer.error_text,
-            answer.detail,
+            answer.detail_text,
         )
 
 
@@ -274,9 +274,10 @@ def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
     for axis in config.axes:
         if axis.node is not None:
             family = replace(axis, profile=load_drive_dictionary(axis.node)[1])
-            objects_by_node[axis.name] = (*build_axis_objects(family, config.bus), *axis.node.sdo)
+            objects_by_node[axis.name] = (*build_axis_objects(family, config.bus_settings), *axis.node.sdo)
     if config.spindle is not None:
-        objects_by_node["spindle"] = (*build_stop_objects(config.bus), *config.spindle.node.sdo)
+        objects_by_node["spindle"] = (*build_stop_objects(config.bus_settings), *config.spindle.node.sdo)
     return objects_by_node | {
-        module.name: (*build_monitoring_objects(config.bus), *module.sdo) for module in config.modules
+        module.name: (*build_monitoring_objects(config.bus_settings), *module.sdo)
+        for module in config.io_modules
     }

@@ -128,7 +128,7 @@ class DriverHostProcess:
         if self._closed:  # closed during a restart
             self._end()
             raise DriverError("the control is shutting down", "feeder-gone")
-        if why := read_fault(ready.head, "error", "feeder-gone"):
+        if why := read_fault(ready.header, "error", "feeder-gone"):
             self._end()
             raise DriverError(why)
         return self._link

@@ -98,7 +98,7 @@ def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, st
     session = HalSession(create_hal_config(machine), 0.0, check_only=True)
     session.close()
     for each in session.pin_verdicts:
-        yield each.path, each.pin, each.error_text, each.error_text
+        yield each.path, each.pin_name, each.error_text, each.error_text
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:

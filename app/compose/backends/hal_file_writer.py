@@ -41,16 +41,16 @@ class GeneratedHal:
 
     ``name`` is the file name in [hal], and ``text`` is the HAL file. ``extra_files`` are the additional
     files by name. ``wiring_rows`` are the rows of the wiring table, and ``wiring_table`` is the table as
-    lines of text. ``measurements`` are the measurements that the builder must make.
+    lines of text. ``measurement_lines`` are the measurements that the builder must make.
     """
 
     name: str
-    board: str
+    board_text: str
     text: str
     extra_files: Mapping[str, str]
     wiring_rows: tuple[WiringRow, ...]
     wiring_table: tuple[str, ...]
-    measurements: tuple[str, ...]
+    measurement_lines: tuple[str, ...]
 
 
 def generate_hal(machine: Machine) -> GeneratedHal:
@@ -61,12 +61,12 @@ def generate_hal(machine: Machine) -> GeneratedHal:
     file, hal = build_hal_file(machine), machine.hardware.find_driver_table(HalTable)
     return GeneratedHal(
         name=hal.file if hal is not None else "",
-        board=file.lathe.board_table.kind,
+        board_text=file.lathe.board_table.kind,
         text=render_file(file),
         extra_files=file.extra_files,
         wiring_rows=tuple(file.wiring_rows),
         wiring_table=tuple(format_wiring_table(file.wiring_rows)),
-        measurements=tuple(file.check_notes),
+        measurement_lines=tuple(file.check_notes),
     )
 
 

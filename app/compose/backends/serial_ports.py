@@ -30,4 +30,4 @@ def list_serial_ports() -> list[tuple[str, str]]:
         from drivers.serial_port import list_ports
     except ImportError as error:
         raise DriverError(MISSING_LIBRARY_TEXT) from error
-    return [(found.device, found.description) for found in list_ports()]
+    return [(found.device_name, found.description) for found in list_ports()]

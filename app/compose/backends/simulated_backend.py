@@ -43,7 +43,7 @@ def create_sim_config(machine: Machine) -> SimConfig:
         ),
         collet=SimCollet(open_time_s=machine.collet.open_time, close_time_s=machine.collet.close_time),
         outputs={
-            name: SimOutput(safe_state=output.safe_state, initial_state=name == "collet")
+            name: SimOutput(safe_state=output.safe_state, power_up_state=name == "collet")
             for name, output in machine.outputs.items()
         },
         inputs=tuple(machine.inputs),

@@ -263,7 +263,7 @@ class ControlClient:
                         events.on_rest_change()
             case EventMessage(number, event):
                 self.control_records.handle_event(event)
-                origin = EventOrigin(self.hello_message.identity, number)
+                origin = EventOrigin(self.hello_message.control_identity, number)
                 events.on_event(event, Receipt(origin, partial(self._outbox.put, EventStoredMessage(number))))
             case InterruptedJobNote(job):
                 events.on_interrupted_job(job)

@@ -42,7 +42,7 @@ class StationAction(NamedTuple):
     """
 
     name: str
-    values: tuple[object, ...]
+    arguments: tuple[object, ...]
     acted_at_s: float
 
 
@@ -64,7 +64,7 @@ class StopSocketMessage(NamedTuple):
 class EventStoredMessage(NamedTuple):
     """Confirmation that the event with this number is stored and must not be sent again."""
 
-    number: int
+    event_number: int
 
 
 class CloseRequest(NamedTuple):
@@ -79,7 +79,7 @@ class HelloMessage(NamedTuple):
 
     version: int
     process_id: int  # number of its process
-    identity: str  # differs from that of each other control; numbers of events belong to it
+    control_identity: str  # differs from that of each other control; numbers of events belong to it
     machine: Machine  # machine of the control
     clock_zero_s: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]
@@ -111,7 +111,7 @@ class SnapshotMessage(NamedTuple):
 class EventMessage(NamedTuple):
     """Event for the event log, with its number."""
 
-    number: int
+    event_number: int
     event: LogEvent
 
 

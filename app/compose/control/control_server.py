@@ -175,7 +175,7 @@ class ControlServer:
         if left:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
             rows = tuple(_row(each.event, began) for each in left)
-            origins = tuple(EventOrigin(self._identity, each.number) for each in left)
+            origins = tuple(EventOrigin(self._identity, each.event_number) for each in left)
             save_events(self._folder, UnconfirmedEvents(self.executor.snapshot.program, rows, origins))
 
     # --- Executor thread ------------------------------------------------------------------------------
@@ -290,10 +290,10 @@ class ControlServer:
         """Execute a stop key. The method is called in the thread of the key's socket."""
         self._stopped_at = max(self._stopped_at, self._clock.now())
         panel = self._connected.on_screen_station
-        if stop.kind is StopKind.ESTOP and panel is not None:
+        if stop.stop_kind is StopKind.ESTOP and panel is not None:
             panel.press_estop()
         else:
-            self.executor.post(FeedHold(stop.kind.source_text, stop.press_number))
+            self.executor.post(FeedHold(stop.stop_kind.source_text, stop.press_number))
 
     def _post_commands(self) -> None:
         """Send commands to the executor in order.
@@ -316,7 +316,7 @@ class ControlServer:
         late = self._clock.now() - hand.acted_at_s > KEY_EXPIRY_S
         if self._connected.on_screen_station is None or (late and hand.name in _STARTING_ACTIONS):
             return
-        getattr(self._connected.on_screen_station, hand.name)(*hand.values)
+        getattr(self._connected.on_screen_station, hand.name)(*hand.arguments)
 
     def _release_station(self) -> None:
         """Release the buttons that the screen has pressed. An emergency stop remains pressed."""

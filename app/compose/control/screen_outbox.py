@@ -63,7 +63,7 @@ class ScreenOutbox:
     def confirm_events(self, number: int) -> None:
         """Discard the events up to this number, because the screen has stored them."""
         with self._lock:
-            while self._events and self._events[0].number <= number:
+            while self._events and self._events[0].event_number <= number:
                 self._events.popleft()
 
     @property
@@ -104,10 +104,10 @@ class ScreenOutbox:
     def _send_all(self, connection: Connection) -> bool:
         """Send all waiting messages, and return whether the machine is closed."""
         with self._lock:
-            events = [each for each in self._events if each.number > self._sent]
+            events = [each for each in self._events if each.event_number > self._sent]
         for event in events:
             send_message(connection, event)
-            self._sent = event.number
+            self._sent = event.event_number
         while self._ended:
             send_message(connection, self._ended.popleft())
         noted, self._noted = self._noted, None

@@ -54,7 +54,7 @@ class UnconfirmedEvents(NamedTuple):
     """Events that no screen has confirmed, with the program and the origin of each event."""
 
     program: str = ""
-    rows: tuple[EventRow, ...] = ()
+    event_rows: tuple[EventRow, ...] = ()
     origins: tuple[EventOrigin, ...] = ()
 
 

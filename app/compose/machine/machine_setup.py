@@ -74,11 +74,11 @@ def get_control_limits(machine: Machine) -> ControlLimits:
 class InputStates:
     """Picklable states of inputs by name for conditional calls. An unknown input is open."""
 
-    states: Mapping[str, bool]
+    states_by_name: Mapping[str, bool]
 
     def __call__(self, terminal: str) -> bool:
         """Return whether the input of this terminal is closed."""
-        return self.states.get(terminal, False)
+        return self.states_by_name.get(terminal, False)
 
 
 def create_setup(

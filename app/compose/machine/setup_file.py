@@ -200,7 +200,7 @@ def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
         except OSError as error:
             where = error.filename or folder  # the error of a full disk does not name the file
             raise make_write_error(where, error) from error
-    return _told(names, staged.machine), kept
+    return _told(names, staged.machine_path), kept
 
 
 class _StagedFiles:
@@ -223,7 +223,7 @@ class _StagedFiles:
                 path.unlink(missing_ok=True)
 
     @property
-    def machine(self) -> Path | None:
+    def machine_path(self) -> Path | None:
         """Return the final path of the machine file, or None if the setup has no machine file."""
         return next(
             (at for at in self._places.values() if at.parent.name == "machines" and is_machine_file(at)), None

@@ -242,7 +242,7 @@ class Journal(Persistence):
 
     def _write(self, store: Store, event: LogEvent, receipt: Receipt | None) -> None:
         if receipt is not None and self.has_stored(receipt.origin):  # the store was opened late
-            receipt.confirm()
+            receipt.confirm_storage()
             return
         self._recorder.hear(event, store.cycles)
         row = EventRow(get_utc_now_text(), event.kind, event.text, event.line_number, event.record_name)
@@ -251,7 +251,7 @@ class Journal(Persistence):
             store.runs.record_event(row, part_of)
             return
         stored = store.runs.record_event(row, part_of, receipt.origin)
-        stored.add_done_callback(lambda done: receipt.confirm() if done.exception() is None else None)
+        stored.add_done_callback(lambda done: receipt.confirm_storage() if done.exception() is None else None)
 
     def keep(self, source: ProgramSource) -> None:
         """Save the program text that will be proved and run, as a version of its program."""

@@ -11,8 +11,9 @@ from core.store.store_rows import EventOrigin
 class Receipt(NamedTuple):
     """Origin of an event, and the function that confirms its storage.
 
-    ``confirm`` is called from any thread when the event is on the disk, or when it need not be stored.
+    ``confirm_storage`` is called from any thread when the event is on the disk, or when it need not be
+    stored.
     """
 
     origin: EventOrigin
-    confirm: Callable[[], None]
+    confirm_storage: Callable[[], None]

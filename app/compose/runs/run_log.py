@@ -25,8 +25,8 @@ class _LogFile(NamedTuple):
     """A file in the log folder, with its age in seconds and its size in bytes."""
 
     path: Path
-    age: float
-    size: int
+    age_s: float
+    size_bytes: int
 
 
 class EventLog:
@@ -104,8 +104,8 @@ def _kept(path: Path) -> _LogFile:
 def _list_excess(files: Sequence[_LogFile]) -> list[_LogFile]:
     """Return the files that exceed the limits. ``files`` excludes the file that is being written."""
     gone, size = [], 0
-    for place, each in enumerate(sorted(files, key=lambda one: (one.age, one.path.name)), start=1):
-        size += each.size
-        if place >= MAX_FILES or size > MAX_TOTAL_BYTES or each.age > MAX_AGE_S:
+    for place, each in enumerate(sorted(files, key=lambda one: (one.age_s, one.path.name)), start=1):
+        size += each.size_bytes
+        if place >= MAX_FILES or size > MAX_TOTAL_BYTES or each.age_s > MAX_AGE_S:
             gone.append(each)
     return gone

@@ -57,16 +57,16 @@ class ProgramChoice:
 
     def _load(self, path: Path) -> None:
         if self.can_choose():
-            self.program_loader.start_loading(path, self.program_loader.loaded.block_delete)
+            self.program_loader.start_loading(path, self.program_loader.loaded_program.has_block_delete)
             self.save_path(str(path))
 
     def toggle_block_delete(self) -> None:
         """Toggle Block Delete, and reload the program because Block Delete is part of the proved job."""
-        loaded = self.program_loader.loaded
+        loaded = self.program_loader.loaded_program
         if loaded.path is None:
             self.prompt_answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
         elif self.read_snapshot().state in ACTIVE_STATES:
             self.prompt_answers.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
         else:
             self.prompt_answers.withdraw_question()
-            self.program_loader.start_loading(loaded.path, not loaded.block_delete)
+            self.program_loader.start_loading(loaded.path, not loaded.has_block_delete)

@@ -32,18 +32,18 @@ class FirstMoveResult(NamedTuple):
     """Result of the first-move check.
 
     The result has one verdict for a start at the current position and one verdict for Cycle Repeat.
-    ``legs`` is the path that is drawn. ``zero_position`` is the machine position X and Z in mm at which the
-    tool tip is at part zero.
+    ``approach_legs`` is the path that is drawn. ``zero_position`` is the machine position X and Z in mm at
+    which the tool tip is at part zero.
     """
 
-    verdicts: tuple[Clearance, ...]
-    legs: ApproachLegs = ()
+    clearances: tuple[Clearance, ...]
+    approach_legs: ApproachLegs = ()
     zero_position: tuple[float, float] = (0.0, 0.0)
 
     @property
     def start_clearance(self) -> Clearance:
         """Return the verdict on a start from the current position of the axes."""
-        return self.verdicts[0]
+        return self.clearances[0]
 
 
 class LoadingPhase(StrEnum):
@@ -136,14 +136,14 @@ class LoadedProgram:
 
     phase: LoadingPhase = LoadingPhase.EMPTY
     path: Path | None = None
-    block_delete: bool = False
+    has_block_delete: bool = False
     source: ProgramSource | None = None
     job: Job | None = None
     proof: Proof | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
     picture: ProgramPicture | None = None
     part_proof: PartProof | None = None
-    progress: int = 0  # Number of blocks that are proved or drawn.
+    progress_percent: int = 0  # Number of blocks that are proved or drawn.
     error_text: str = ""  # Reason why the program could not be read.
 
     @property
@@ -174,14 +174,14 @@ class ProgramLoader:
     ``post_command`` sends commands to the executor. The worker thread also calls it.
     """
 
-    steps: LoadingSteps
+    loading_steps: LoadingSteps
     post_command: Callable[[Command], None]
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("loading"))
     load_count: int = 0  # Number of times loading began or was stopped.
     _now: LoadedProgram = field(default_factory=LoadedProgram)
 
     @property
-    def loaded(self) -> LoadedProgram:
+    def loaded_program(self) -> LoadedProgram:
         """Return the loaded program.
 
         If loading fails, its phase is UNREADABLE and its ``error_text`` gives the reason.
@@ -203,7 +203,7 @@ class ProgramLoader:
     def wait_until_loaded(self, timeout_s: float) -> LoadedProgram:
         """Wait until loading is finished, and return the program. Only scripts and tests use this method."""
         self.worker.wait_for_results(timeout_s)
-        return self.loaded
+        return self.loaded_program
 
     def close(self) -> None:
         """Cancel loading and end the worker."""
@@ -211,7 +211,7 @@ class ProgramLoader:
         self.worker.close()
 
     def _load(self, path: Path, block_delete: bool, request: WorkRequest) -> None:
-        steps = self.steps
+        steps = self.loading_steps
         source = steps.read_source(path)
         job = steps.make_job(source, block_delete)
         _ = source.lines  # Split the text here, so that the screen does not have to.
@@ -221,13 +221,15 @@ class ProgramLoader:
         proof, found = proved.proof, proved.diagnostics
         self._publish(
             request,
-            lambda now: replace(now, phase=LoadingPhase.DRAWING, proof=proof, diagnostics=found, progress=0),
+            lambda now: replace(
+                now, phase=LoadingPhase.DRAWING, proof=proof, diagnostics=found, progress_percent=0
+            ),
         )
         if not proved.waits_for_part:
             self.post_command(SupplyProof(proof))
         picture = steps.draw_path(job, partial(self._reached, request))
         phase = LoadingPhase.PROVING_PART if proved.waits_for_part else find_final_phase(proof)
-        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, progress=0))
+        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, progress_percent=0))
         self._prove_part(job, proved, picture, request)
         _freeze_garbage()
 
@@ -237,7 +239,7 @@ class ProgramLoader:
         A program can run before this proof if it need not wait for the proof.
         """
         watch = partial(self._reached, request) if proved.waits_for_part else request
-        part = self.steps.prove_part(picture, watch)
+        part = self.loading_steps.prove_part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
         if part is not None:
             found, whole = part.merge_diagnostics(found), part.add_to_proof(whole, job.source.name)
@@ -245,14 +247,14 @@ class ProgramLoader:
         self._publish(
             request,
             lambda now: replace(
-                now, phase=phase, proof=whole, diagnostics=found, part_proof=part, progress=0
+                now, phase=phase, proof=whole, diagnostics=found, part_proof=part, progress_percent=0
             ),
         )
         if proved.waits_for_part or whole != proved.proof:
             self.post_command(SupplyProof(whole))
 
     def _reached(self, request: WorkRequest, count: float) -> None:
-        self._publish(request, lambda now: replace(now, progress=int(count)))
+        self._publish(request, lambda now: replace(now, progress_percent=int(count)))
 
     def _publish(self, request: WorkRequest, change: Callable[[LoadedProgram], LoadedProgram]) -> None:
         request.publish_result(lambda: self.replace_loaded(change(self._now)))

@@ -51,7 +51,7 @@ class RunningRenewal:
 
         After the announcement, the executor does not start a part with the old offsets.
         """
-        now = self.program_loader.loaded
+        now = self.program_loader.loaded_program
         if now.job is None:
             return False
         self.worker.cancel_request()
@@ -93,7 +93,7 @@ class RunningRenewal:
         return ready.proof.errors[0] if ready.proof.errors else ""
 
     def _renew(self, now: LoadedProgram, old: Job, request: WorkRequest) -> LoadedProgram:
-        steps, watch = self.program_loader.steps, partial(self._go_on, request)
+        steps, watch = self.program_loader.loading_steps, partial(self._go_on, request)
         job = steps.renew_job(old)
         proved = steps.prove_job(job, watch)
         fresh = replace(
@@ -103,7 +103,7 @@ class RunningRenewal:
             diagnostics=proved.diagnostics,
             phase=LoadingPhase.DRAWING,
             part_proof=None,
-            progress=0,
+            progress_percent=0,
         )
         if not proved.waits_for_part:
             request.publish_result(partial(self._publish, fresh))
@@ -195,9 +195,9 @@ class ProgramRenewal:
                     make_secondary_offsets(offset_book.secondary_offsets),
                 )
             )
-            now = self.program_loader.loaded
+            now = self.program_loader.loaded_program
             if now.path is not None:
-                self.program_loader.start_loading(now.path, now.block_delete)
+                self.program_loader.start_loading(now.path, now.has_block_delete)
 
     def _report_error(self, snapshot: Snapshot) -> None:
         """Warn that the next part will not start, while the operator can still undo the change."""
@@ -212,7 +212,7 @@ class ProgramRenewal:
 
         The difference matters only if the program does not specify the unit.
         """
-        now = self.program_loader.loaded
+        now = self.program_loader.loaded_program
         at_rest = (
             snapshot.state is MachineState.IDLE
             and not now.is_busy

@@ -210,7 +210,11 @@ def _words(found: FirstMove, part: PreviousPart) -> str:
         else tr("THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}")
     )
     said = tr(
-        Message(text, tool=format_edge_name(found.tool), what=what[found.hit_body] if found.hit_body else "")
+        Message(
+            text,
+            tool=format_edge_name(found.tool_number),
+            what=what[found.hit_body] if found.hit_body else "",
+        )
     )
     return Message("{text}: {value}", text=said, value=_way_out(found, part))
 
@@ -338,7 +342,7 @@ class FirstMoveWatch:
 
     def _found(self, seen: FirstMoveResult) -> None:
         self.first_move_result = seen
-        self.post_command(ReplaceClearances(seen.verdicts))
+        self.post_command(ReplaceClearances(seen.clearances))
 
     def _handle_failure(self, asked: FirstMoveQuery, reason: str) -> None:
         """Report that the first move could not be checked."""
@@ -354,8 +358,8 @@ def make_drawn_legs(result: FirstMoveResult | None) -> tuple[ApproachLeg, ...]:
     """Return the first move as drawn legs for the path view, with a label at its end."""
     if result is None:
         return ()
-    (zero_x, zero_z), last = result.zero_position, len(result.legs) - 1
+    (zero_x, zero_z), last = result.zero_position, len(result.approach_legs) - 1
     return tuple(
         ApproachLeg(z - zero_z, x - zero_x, quick, tr("START") if number == last else "")
-        for number, (x, z, quick) in enumerate(result.legs)
+        for number, (x, z, quick) in enumerate(result.approach_legs)
     )

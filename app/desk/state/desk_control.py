@@ -23,9 +23,9 @@ class DeskControl:
     ``station_panel`` is None if the machine has its own operator station. ``set_input`` switches an input
     of a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a
     recorder. ``open_stop_channel`` opens a connection that sends stop keys to the control without the
-    screen. ``restart`` replaces a silent control with a new control, or is None if this is not possible.
-    ``read_identity`` returns the identity of a control process, or an empty text for a control in this
-    process.
+    screen. ``restart_control`` replaces a silent control with a new control, or is None if this is not
+    possible. ``read_identity`` returns the identity of a control process, or an empty text for a control in
+    this process.
     """
 
     post: Callable[[Command], None]
@@ -35,6 +35,6 @@ class DeskControl:
     warnings: Sequence[str] = ()
     recordings: ScopeRecordings | None = None
     open_stop_channel: OpenStopChannel = lambda: None
-    restart: Callable[[], object] | None = None
+    restart_control: Callable[[], object] | None = None
     read_identity: Callable[[], str] = str
     silence_watch: SilenceWatch = field(default_factory=SilenceWatch)

@@ -53,7 +53,7 @@ class ProgramRuns:
 
     def update_first_job(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Advance the card of the first job, and store its step. Raises StoreError."""
-        self._first_job.advance(snapshot, loaded, self.part_counter.count)
+        self._first_job.advance(snapshot, loaded, self.part_counter.part_count)
         self._first_job.save_step(self._persistence)
 
     def pop_part_warning(self, snapshot: Snapshot, loaded: LoadedProgram) -> str:

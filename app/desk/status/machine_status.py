@@ -120,7 +120,7 @@ class MachineStatus:
 
     program_name: str
     state_text: str
-    tone: Tone
+    state_tone: Tone
     position: PositionReadout
     tool_text: str
     secondary_text: str
@@ -178,7 +178,7 @@ def make_status(
     return MachineStatus(
         program_name=snapshot.program,
         state_text=state,
-        tone=Tone.OFF if state == NOT_HOMED_TITLE else STATE_TONES[snapshot.state],
+        state_tone=Tone.OFF if state == NOT_HOMED_TITLE else STATE_TONES[snapshot.state],
         position=make_position_readout(snapshot, readout, has_c_axis, metric, third_axis),
         tool_text=_find_tool_text(modal),
         secondary_text="" if "Y" in snapshot.axes else _find_secondary_offset(modal),

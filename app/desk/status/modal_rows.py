@@ -20,7 +20,7 @@ class ModalRow:
 
     key: str
     label: str
-    value: str
+    active_code: str
 
 
 def make_modal_rows(modal_state: Checkpoint, program_language: str = "omniturn") -> tuple[ModalRow, ...]:

@@ -228,7 +228,7 @@ def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
 
 
 def _progress(loaded: LoadedProgram) -> str:
-    count = Message(" {reached} BLOCKS", reached=loaded.progress) if loaded.progress else ""
+    count = Message(" {reached} BLOCKS", reached=loaded.progress_percent) if loaded.progress_percent else ""
     return Message("{phase} {loaded}{count}", phase=loaded.phase.value, loaded=loaded.name, count=count)
 
 
@@ -268,7 +268,7 @@ class PromptLine:
     read_storage_problem: Callable[[], str]
     read_time_s: Callable[[], float]
     message: str = ""
-    question: str = ""
+    question_text: str = ""
     on_confirmed: Callable[[], None] | None = None  # Action of the answer yes.
     key: str = YES_KEY  # Key that means yes.
     is_success: bool = False  # The message reports a success.
@@ -281,9 +281,9 @@ class PromptLine:
     _heard: deque[LogEvent] = field(default_factory=lambda: deque(maxlen=MAX_PENDING_EVENTS))
 
     @property
-    def notice(self) -> str:
+    def shown_message(self) -> str:
         """Return the message, or the open question if there is no message."""
-        return self.message or self.question
+        return self.message or self.question_text
 
     @property
     def notice_kind(self) -> MessageKind:
@@ -314,10 +314,10 @@ class PromptLine:
 
     def ask_question(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
         """Ask a question. Repeating the open question does not count as a reply."""
-        if self.on_confirmed is not None and self.question == question:
+        if self.on_confirmed is not None and self.question_text == question:
             return
         self.withdraw_question()
-        self.question, self.on_confirmed, self.key, self._since = (
+        self.question_text, self.on_confirmed, self.key, self._since = (
             question,
             on_confirmed,
             key,
@@ -344,7 +344,7 @@ class PromptLine:
 
     def withdraw_question(self) -> None:
         """Remove the question, and also remove the message unless it is lasting."""
-        self.question, self.on_confirmed = "", None
+        self.question_text, self.on_confirmed = "", None
         if not self.is_lasting:
             self.message = ""
 
@@ -358,7 +358,7 @@ class PromptLine:
         if self.message and self.read_time_s() - self._said_at >= MESSAGE_TIME_S:
             self.message, self.is_lasting = "", False
         if self.on_confirmed is not None and snapshot.state is not self._in:
-            self.question, self.on_confirmed = "", None
+            self.question_text, self.on_confirmed = "", None
 
     def hear(self, event: LogEvent) -> None:
         """Queue an event of the executor. The executor's thread may call this method."""

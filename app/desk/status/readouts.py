@@ -354,7 +354,7 @@ class FeedReadout:
     programmed_unit: str
     measured_value: str
     measured_unit: str
-    override: float
+    override_fraction: float
     value_prefix: str = ""  # MM before a metric feed, as the original control shows it.
 
 
@@ -370,10 +370,10 @@ class SpindleReadout:
     measured_rpm: str
     surface_speed: str
     surface_label: str
-    override: float
+    override_fraction: float
     is_auto: bool
     is_known: bool = True  # False: the spindle does not respond and may be turning.
-    load: str = ""  # In percent, if the machine measures it.
+    load_text: str = ""  # In percent, if the machine measures it.
 
 
 def make_feed_readout(snapshot: Snapshot, is_metric: bool) -> FeedReadout:
@@ -401,7 +401,7 @@ def make_feed_readout(snapshot: Snapshot, is_metric: bool) -> FeedReadout:
         programmed_unit="" if snapshot.rapid else unit,
         measured_value=measured,
         measured_unit=unit,
-        override=snapshot.feed_override,
+        override_fraction=snapshot.feed_override,
         value_prefix="MM" if is_metric else "",
     )
 
@@ -426,7 +426,7 @@ def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: 
             measured_rpm=UNKNOWN_VALUE,
             surface_speed=UNKNOWN_VALUE,
             surface_label="M/MIN" if is_metric else "SFM",
-            override=snapshot.spindle_override,
+            override_fraction=snapshot.spindle_override,
             is_auto=snapshot.spindle_auto,
             is_known=False,
         )
@@ -445,7 +445,7 @@ def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: 
         measured_rpm=formats.rpm(snapshot.rpm_actual),
         surface_speed=formats.format_surface_speed(surface, is_metric),
         surface_label="M/MIN" if is_metric else "SFM",
-        override=snapshot.spindle_override,
+        override_fraction=snapshot.spindle_override,
         is_auto=snapshot.spindle_auto,
-        load=f"{snapshot.spindle_load:.0f} %" if snapshot.spindle_load is not None else "",
+        load_text=f"{snapshot.spindle_load:.0f} %" if snapshot.spindle_load is not None else "",
     )

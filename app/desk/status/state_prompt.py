@@ -24,7 +24,9 @@ def make_page_prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page
     desk.prompt_answers.remove_expired(snapshot)
     if desk.desk_control.silence_watch.is_silent:
         return (
-            prompt_line.CONTROL_SILENT if desk.desk_control.restart is None else prompt_line.RESTART_CONTROL
+            prompt_line.CONTROL_SILENT
+            if desk.desk_control.restart_control is None
+            else prompt_line.RESTART_CONTROL
         )
     if desk.window_state.is_keyboard_lost and snapshot.state in prompt_line.MOVING_STATES:
         return prompt_line.STOP_KEYS_INACTIVE
@@ -75,7 +77,7 @@ def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
     refused = desk.barred() or desk.find_first_move_refusal(snapshot)
     if refused or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
         return refused
-    return prompt_line.find_start_obstacle(snapshot, desk.program_loader.loaded)
+    return prompt_line.find_start_obstacle(snapshot, desk.program_loader.loaded_program)
 
 
 def find_time_left(snapshot: Snapshot, loaded: LoadedProgram) -> float:

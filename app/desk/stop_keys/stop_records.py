@@ -40,12 +40,12 @@ def make_press_number(key_code: int, time_ms: int) -> int:
 class StopPress(NamedTuple):
     """One press of a stop key, with its kind of stop and its press number."""
 
-    kind: StopKind
+    stop_kind: StopKind
     press_number: int
 
     def to_bytes(self) -> bytes:
         """Return the stop as a binary record."""
-        return _STOP.pack(self.kind, self.press_number)
+        return _STOP.pack(self.stop_kind, self.press_number)
 
     @classmethod
     def from_bytes(cls, record: bytes) -> StopPress:

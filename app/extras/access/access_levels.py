@@ -28,7 +28,7 @@ _DOT = "●"
 class _Draft:
     """Entry in several steps: the PIN of a user who signs in, or the data of a user."""
 
-    step: str  # sign in, name, level, pin or again
+    entry_step: str  # sign in, name, level, pin or again
     name: str = ""
     level: AccessLevel = AccessLevel.SERVICE
     pin: str = ""
@@ -59,12 +59,12 @@ class AccessLevelsFunction(SpecialFunction):
     @property
     def row_count(self) -> int:
         """Return the number of rows that can be selected."""
-        return len(ACCESS_RULES) if self.shows_levels else len(self.access.users.rows)
+        return len(ACCESS_RULES) if self.shows_levels else len(self.access.user_list.rows)
 
     @property
     def selected_user(self) -> UserRow | None:
         """Return the selected user, or None if no user is selected."""
-        rows = self.access.users.rows
+        rows = self.access.user_list.rows
         return rows[min(self.marked, len(rows) - 1)] if rows and not self.shows_levels else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
@@ -73,12 +73,12 @@ class AccessLevelsFunction(SpecialFunction):
             rows = tuple(TableRow((act.value, rule.level.name)) for act, rule in ACCESS_RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
         else:
-            rows = tuple(self._row(each) for each in self.access.users.rows)
+            rows = tuple(self._row(each) for each in self.access.user_list.rows)
             heads, shares, raw = ("WHO", "LEVEL"), (0.65, 0.35), frozenset({0})
         question = self._question()
         text = (
             self.entry.text
-            if self.draft and self.draft.step in {"name", "level"}
+            if self.draft and self.draft.entry_step in {"name", "level"}
             else _DOT * len(self.entry.text)
         )
         return TableContent(
@@ -90,7 +90,7 @@ class AccessLevelsFunction(SpecialFunction):
         return TableRow((row.name, AccessLevel(row.level).name), here, Tone.RUN)
 
     def _notes(self) -> tuple[str, ...]:
-        if not self.access.users.is_access_restricted:
+        if not self.access.user_list.is_access_restricted:
             return (
                 "Access levels are off: anyone can change anything, and no PIN is required.",
                 "F3 adds the first user, with SERVICE level, and turns access levels on.",
@@ -111,7 +111,7 @@ class AccessLevelsFunction(SpecialFunction):
             "level": tr("LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE"),
             "pin": tr(Message("NEW PIN FOR {name}?", name=mark_untranslated(draft.name))),
             "again": tr("CONFIRM PIN:"),
-        }[draft.step]
+        }[draft.entry_step]
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the present keys."""
@@ -119,7 +119,7 @@ class AccessLevelsFunction(SpecialFunction):
             return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
             return tr("TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL")
-        if not self.access.users.is_access_restricted:
+        if not self.access.user_list.is_access_restricted:
             return tr("F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST")
         return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK")
 
@@ -131,7 +131,7 @@ class AccessLevelsFunction(SpecialFunction):
             "F3": FunctionKey("NEW", self.add_user),
             "F5": FunctionKey("USERS" if self.shows_levels else "LEVELS", self._turn),
         }
-        if self.access.users.is_access_restricted:
+        if self.access.user_list.is_access_restricted:
             keys |= {
                 "F2": FunctionKey("SIGN OUT", self.sign_out),
                 "F4": FunctionKey("PIN", self.change_pin),
@@ -149,7 +149,11 @@ class AccessLevelsFunction(SpecialFunction):
         """Return whether a character is part of a name or a PIN."""
         if self.draft is None or len(key) != 1:
             return False
-        return self.entry.accepts_key(key) if self.draft.step == "name" else key.isascii() and key.isdigit()
+        return (
+            self.entry.accepts_key(key)
+            if self.draft.entry_step == "name"
+            else key.isascii() and key.isdigit()
+        )
 
     def handle_key(self, key: str) -> bool:
         """Handle a key of the entry or of the list."""
@@ -161,7 +165,7 @@ class AccessLevelsFunction(SpecialFunction):
         if not (self.accepts_key(key) or key in {"Back", "Delete"}):
             return False
         self.desk.clear_prompt_line()
-        longest = MAX_NAME_LENGTH if self.draft.step == "name" else LONGEST
+        longest = MAX_NAME_LENGTH if self.draft.entry_step == "name" else LONGEST
         if key in {"Back", "Delete"} or len(self.entry.text) < longest:
             self.entry.handle_key(key)
         return True
@@ -186,7 +190,7 @@ class AccessLevelsFunction(SpecialFunction):
 
     def _ask(self, draft: _Draft) -> None:
         self.desk.clear_prompt_line()
-        self.draft, self.entry, self.shows_levels = draft, InputField(words=draft.step == "name"), False
+        self.draft, self.entry, self.shows_levels = draft, InputField(words=draft.entry_step == "name"), False
 
     def _enter(self, draft: _Draft) -> None:
         text = self.entry.text
@@ -198,35 +202,35 @@ class AccessLevelsFunction(SpecialFunction):
             "again": self._again,
         }
         try:
-            steps[draft.step](draft, text)
+            steps[draft.entry_step](draft, text)
         except (StoreError, PinError) as error:
             self.entry.text = ""
             self.desk.show_refusal(str(error))
 
     def _sign_in(self, draft: _Draft, pin: str) -> None:
-        row = self.access.users.find_user(draft.name)
+        row = self.access.user_list.find_user(draft.name)
         self.handle_escape()
         if row is not None and pin:
             self.session.sign_in(row, pin)
 
     def _named(self, draft: _Draft, text: str) -> None:
         draft.name = normalize_user_name(text)
-        if self.access.users.find_user(draft.name) is not None:
+        if self.access.user_list.find_user(draft.name) is not None:
             raise StoreError(
                 Message("{draft} already exists; press F4 to change the PIN", draft=draft.name), "name-in-use"
             )
-        draft.step = "level" if self.access.users.is_access_restricted else "pin"
+        draft.entry_step = "level" if self.access.user_list.is_access_restricted else "pin"
         self._ask(draft)
 
     def _levelled(self, draft: _Draft, text: str) -> None:
         if text not in {str(level.value) for level in AccessLevel}:
             raise StoreError("the level must be 1, 2 or 3", "invalid-level")
-        draft.level, draft.step = AccessLevel(int(text)), "pin"
+        draft.level, draft.entry_step = AccessLevel(int(text)), "pin"
         self._ask(draft)
 
     def _first(self, draft: _Draft, pin: str) -> None:
         check_pin(pin)
-        draft.pin, draft.step = pin, "again"
+        draft.pin, draft.entry_step = pin, "again"
         self._ask(draft)
 
     def _again(self, draft: _Draft, pin: str) -> None:

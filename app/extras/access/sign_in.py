@@ -52,7 +52,7 @@ class PinSignIn:
         self.timeout_min = (
             minutes if isinstance(minutes, int) and minutes in TIMEOUT_CHOICES_MIN else _DEFAULT_TIMEOUT_MIN
         )
-        if isinstance(wrong, int) and wrong > self.wrong_pins.count:
+        if isinstance(wrong, int) and wrong > self.wrong_pins.wrong_pin_count:
             self.wrong_pins = WrongPinCounter(wrong, self.access.read_time_s())
 
     # --- sign-in and sign-out ------------------------------------------------------------------------
@@ -118,13 +118,13 @@ class PinSignIn:
                 Message(
                     "wrong PIN for {row}; consecutive wrong PINs: {count}",
                     row=row.name,
-                    count=self.wrong_pins.count,
+                    count=self.wrong_pins.wrong_pin_count,
                 )
             )
             left = self.wrong_pins.get_remaining_delay(self.access.read_time_s())
             text = tr("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S")
             self.access.say(tr(Message(text, name=mark_untranslated(row.name), seconds=f"{left:.0f}")))
-        self._keep(_WRONG, self.wrong_pins.count or None)
+        self._keep(_WRONG, self.wrong_pins.wrong_pin_count or None)
 
     # --- time ----------------------------------------------------------------------------------------
 
@@ -207,7 +207,7 @@ class AccessReset:
 
     def find_start_refusal(self, snapshot: Snapshot) -> str:
         """Return the reason why the reset cannot start, or an empty string."""
-        if not self.access.users.is_access_restricted:
+        if not self.access.user_list.is_access_restricted:
             return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not MachineState.ESTOP:
             return tr("PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS")

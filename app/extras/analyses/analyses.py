@@ -133,7 +133,9 @@ class AnalysesModel:
             def work(_request: object) -> Found:
                 if frozen is not None:
                     begin, end = frozen.zero_s + window.begin_s, frozen.zero_s + window.end_s
-                    return analyze(kind, frozen.record.select_between(begin, end), arc, drives, spindle)
+                    return analyze_record(
+                        kind, frozen.record.select_between(begin, end), arc, drives, spindle
+                    )
                 if live is None or not math.isfinite(live.newest_time_s):
                     return Found(kind, tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD"))
                 names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
@@ -146,7 +148,7 @@ class AnalysesModel:
                     if kind in {AnalysisKind.AXIS_RESPONSE, AnalysisKind.SPINDLE_RESPONSE}
                     else find_last_run(record)
                 )
-                return analyze(kind, cut, arc, drives, spindle)
+                return analyze_record(kind, cut, arc, drives, spindle)
 
             self.worker.request_work(work, self._take, self.desk.say)
 
@@ -219,7 +221,7 @@ def find_last_run(record: ScopeRecord) -> ScopeRecord:
     return record.select_between(float(record.times_s[first]), float(record.times_s[on[-1]]))
 
 
-def analyze(
+def analyze_record(
     kind: AnalysisKind,
     record: ScopeRecord,
     arc_number: int,
@@ -356,7 +358,7 @@ def _thread_drawing(found: Found) -> AnalysisDrawing:
         if np.isfinite(speed).all()
     )
     names = tr("THREAD DEVIATION") + "  {unit}", Message("{title}  rpm", title=tr("SPINDLE")), tr("turns")
-    return AnalysisDrawing(curves=curves, lower_curves=below, has_equal_axes=False, axis_labels=names)
+    return AnalysisDrawing(upper_curves=curves, lower_curves=below, has_equal_axes=False, axis_labels=names)
 
 
 def _response_drawing(found: Found) -> AnalysisDrawing:

@@ -32,15 +32,15 @@ class AnalysisChart(Chart):
 
         The result is False while the plots are still being created. The caller must then try again.
         """
-        if not self.prepare_plots(bool(drawing.curves) + bool(drawing.lower_curves)):
+        if not self.prepare_plots(bool(drawing.upper_curves) + bool(drawing.lower_curves)):
             return False
         self.drawing = drawing
         self.remove_plots()
-        if not drawing.curves:
+        if not drawing.upper_curves:
             return True
         upper = self.add_plot()
         upper.vb.invertY(drawing.is_inverted)
-        self._fill(upper, drawing.command_points, drawing.curves)
+        self._fill(upper, drawing.command_points, drawing.upper_curves)
         if drawing.lower_curves:
             self._fill(self.add_plot(), np.empty((0, 2)), drawing.lower_curves)
         self.set_left_axis_width(_LEFT)
@@ -64,7 +64,7 @@ class AnalysisChart(Chart):
     def _fit(self) -> None:
         self.ci.layout.activate()
         drawing = self.drawing
-        _range(self.plots[0], [drawing.command_points, *drawing.curves], equal=drawing.has_equal_axes)
+        _range(self.plots[0], [drawing.command_points, *drawing.upper_curves], equal=drawing.has_equal_axes)
         if drawing.lower_curves:
             _range(self.plots[1], list(drawing.lower_curves), equal=False)
 

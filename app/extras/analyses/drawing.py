@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 class AnalysisDrawing:
     """Drawing of an analysis in one or two plots.
 
-    ``command_points`` (n, 2) is the commanded curve. ``curves`` belong to the first plot, and
+    ``command_points`` (n, 2) is the commanded curve. ``upper_curves`` belong to the first plot, and
     ``lower_curves`` belong to the second plot. ``has_equal_axes`` means that both axes are lengths with the
     same scale. ``labeled_points`` are points with labels. ``axis_labels`` are the labels of the vertical
     axis, the vertical axis of the second plot, and the horizontal axis. In a label, {unit} is replaced by
@@ -24,7 +24,7 @@ class AnalysisDrawing:
     """
 
     command_points: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
-    curves: tuple[FloatArray, ...] = ()
+    upper_curves: tuple[FloatArray, ...] = ()
     lower_curves: tuple[FloatArray, ...] = ()
     labeled_points: tuple[tuple[float, float, str], ...] = ()
     has_equal_axes: bool = True
@@ -46,7 +46,7 @@ def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
     """
     by = np.array([factor if drawing.has_equal_axes else 1.0, factor if drawing.is_length else 1.0])
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.labeled_points)
-    curves = tuple(each * by for each in drawing.curves)
+    curves = tuple(each * by for each in drawing.upper_curves)
     below = (
         tuple(each * by for each in drawing.lower_curves) if drawing.is_lower_length else drawing.lower_curves
     )
@@ -56,7 +56,7 @@ def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
     return replace(
         drawing,
         command_points=soft,
-        curves=curves,
+        upper_curves=curves,
         labeled_points=marks,
         lower_curves=below,
         axis_labels=names,

@@ -159,7 +159,7 @@ class DrawingForm(ShapeForm):
         The previous plan remains until the new plan arrives.
         """
         self.calculation_count += 1
-        self.errors, self.is_canceled = {}, False
+        self.error_texts, self.is_canceled = {}, False
         values: dict[str, FieldValue] = {}
         for word in self.entered_texts:
             value = self._value(word)
@@ -168,8 +168,8 @@ class DrawingForm(ShapeForm):
         self._fill(values)
         path = self.drawing_files.get(text(self.filled_shape.values, "FILE"))
         if path is None:
-            self.errors["FILE"] = NO_DRAWINGS_MESSAGE
-        elif not self.errors:
+            self.error_texts["FILE"] = NO_DRAWINGS_MESSAGE
+        elif not self.error_texts:
             asked = PlanRequest(
                 path, {w: v for w, v in values.items() if w != "FILE"}, self.preceding_lines, self.settings
             )
@@ -209,28 +209,28 @@ class DrawingForm(ShapeForm):
         """
         self.pending_request, self.is_canceled = None, True
         self.calculation_count += 1
-        self.lines = []
-        self.errors["FILE"] = CANCELED_MESSAGE
+        self.program_lines = []
+        self.error_texts["FILE"] = CANCELED_MESSAGE
 
     def show_plan(self, plan: DrawingPlan) -> None:
         """Show a finished plan."""
         self.plan, self.pending_request = plan, None
         self.calculation_count += 1
         values = {word: v for word in self.entered_texts if (v := self._value(word)) is not None}
-        self.errors = {}
+        self.error_texts = {}
         self._fill(values)
         self._show()
 
     def _show(self) -> None:
         plan = self.plan
         if plan is None or self.pending_request is not None:
-            self.lines = []
+            self.program_lines = []
             return
-        self.errors = {**plan.errors, **self.errors}
+        self.error_texts = {**plan.errors, **self.error_texts}
         made = plan.program
-        self.lines = list(made.lines) if made is not None and not self.errors else []
+        self.program_lines = list(made.lines) if made is not None and not self.error_texts else []
         self.filled_shape = FilledDrawing(
-            self.shape, self.filled_shape.values, program_lines=tuple(self.lines)
+            self.shape, self.filled_shape.values, program_lines=tuple(self.program_lines)
         )
 
     def show_trial(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
@@ -399,7 +399,7 @@ class AddedDrawingForm(AddedForm):
 
         ``text`` is None if the form has been closed. No trial is then made.
         """
-        if not form.lines or text is None:
+        if not form.program_lines or text is None:
             return
 
         def tried(found: tuple[DrawingComparison | None, tuple[str, ...]]) -> None:
@@ -435,7 +435,7 @@ class AddedDrawingForm(AddedForm):
         if not self.planner.is_reading:
             return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
         words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
-        return tr(Message(words, seconds=self.plan_worker.progress))
+        return tr(Message(words, seconds=self.plan_worker.progress_percent))
 
     def poll(self) -> None:
         """Process the results of planning and of trials."""

@@ -108,7 +108,7 @@ class DrawingPlanner:
         except DrawingError as error:
             return DrawingPlan(request, errors={"FILE": str(error)})
         with limit_work(report_progress):
-            return _PlanBuilder(drawing, request).plan()
+            return _PlanBuilder(drawing, request).make_plan()
 
     def _drawing(self, path: Path, watch: ProgressCallback) -> Drawing:
         try:
@@ -140,14 +140,14 @@ class _PlanBuilder:
         self.nets: list[ElementGroup] = []
         self.view: DrawingPlacement | None = None
 
-    def word(self, name: str, proposed: str = "") -> str:
+    def get_entry_text(self, name: str, proposed: str = "") -> str:
         """Return the entry of a field, or else ``proposed``, which is also added to the proposals."""
         if proposed:
             self.proposals[name] = proposed
         value = self.request.entered_values.get(name, proposed)
         return value if isinstance(value, str) else ""
 
-    def plan(self) -> DrawingPlan:
+    def make_plan(self) -> DrawingPlan:
         try:
             word = "LAYER"
             layer = self._layer()
@@ -178,8 +178,12 @@ class _PlanBuilder:
         made: ProfileProgram | None = None,
         chosen: ContourProfile | None = None,
     ) -> DrawingPlan:
-        placed = tuple(_placed(self.drawing, self.view, self.nets, self.word("LAYER"))) if self.view else ()
-        number = int(self.word("CONTOUR") or self.proposals.get("CONTOUR") or 1)
+        placed = (
+            tuple(_placed(self.drawing, self.view, self.nets, self.get_entry_text("LAYER")))
+            if self.view
+            else ()
+        )
+        number = int(self.get_entry_text("CONTOUR") or self.proposals.get("CONTOUR") or 1)
         good = made if not troubles else None
         plan = DrawingPlan(
             self.request, self.proposals, self.choices, troubles, placed, program=good, profile=chosen
@@ -191,7 +195,7 @@ class _PlanBuilder:
             ALL_LAYERS,
             *(layer for layer in self.drawing.layers if layer and layer != ALL_LAYERS),
         )
-        layer = self.word("LAYER", ALL_LAYERS)
+        layer = self.get_entry_text("LAYER", ALL_LAYERS)
         if layer not in self.choices["LAYER"]:
             raise DrawingError(
                 Message(
@@ -209,7 +213,7 @@ class _PlanBuilder:
         if self.drawing.unit_mm and not own:
             self.choices["DUNIT"] = (*UNIT_SIZES_MM, AXIS_AS_DRAWN)
             own = AXIS_AS_DRAWN
-        said = self.word("DUNIT", own)
+        said = self.get_entry_text("DUNIT", own)
         if not said:
             raise DrawingError(
                 Message("{drawing} does not specify its unit: choose MM or INCH.", drawing=self.drawing.name),
@@ -219,10 +223,10 @@ class _PlanBuilder:
 
     def _view(self, layer: str, unit: float) -> None:
         known = find_axes(self.drawing, layer)
-        axis = select_axis(self.drawing, self.word("AXIS", known[0].name), layer)
+        axis = select_axis(self.drawing, self.get_entry_text("AXIS", known[0].name), layer)
         self.choices["AXIS"] = tuple(dict.fromkeys([*(each.name for each in known), axis.name]))
-        front = FaceEnd(self.word("FRONT", FaceEnd.RIGHT))
-        zero = ZeroPosition(self.word("ZERO", ZeroPosition.FACE))
+        front = FaceEnd(self.get_entry_text("FRONT", FaceEnd.RIGHT))
+        zero = ZeroPosition(self.get_entry_text("ZERO", ZeroPosition.FACE))
         shift = self.request.entered_values.get("SHIFT", 0.0)
         mm = self.request.settings.mm
         self.view = DrawingPlacement(axis, unit, front, zero, 0.0 if isinstance(shift, str) else shift * mm)
@@ -237,7 +241,7 @@ class _PlanBuilder:
                 else "{drawing} has no contour for the selected axis: choose another layer or axis."
             )
             raise DrawingError(Message(template, drawing=self.drawing.name, layer=layer), "no-contour")
-        number = self.word("CONTOUR", "1")
+        number = self.get_entry_text("CONTOUR", "1")
         if number not in self.choices["CONTOUR"]:
             raise DrawingError(
                 Message(
@@ -270,7 +274,7 @@ class _PlanBuilder:
 
     def _chosen(self, net: ElementGroup) -> ContourProfile:
         assert self.view is not None
-        side = ContourSide(self.word("SIDE", ContourSide.OUTSIDE))
+        side = ContourSide(self.get_entry_text("SIDE", ContourSide.OUTSIDE))
         return extract_profile(self.drawing, self.view, net, side)
 
     def _made(self, chosen: ContourProfile) -> tuple[ProfileProgram, dict[str, FieldValue]]:

@@ -295,7 +295,7 @@ def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *
         "contours": [
             {"elements": len(net.elements), "length_mm": round(high - low, 4), "diameter_mm": round(2 * r, 4)}
             for net in found
-            for low, high, r in (net.extent,)
+            for low, high, r in (net.extent_mm,)
         ],
         "left_out": dict(drawing.omitted_counts),
     }
@@ -309,7 +309,7 @@ def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *
     ]
     lines.append(f"  axes: {', '.join(names)}")
     for number, net in enumerate(found, 1):
-        low, high, r = net.extent
+        low, high, r = net.extent_mm
         words = Message(
             "length {high} mm, diameter {radius} mm, made up of {elements_count} lines",
             elements_count=len(net.elements),

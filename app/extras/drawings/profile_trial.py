@@ -60,14 +60,14 @@ def run_profile_trial(
     """
     of_edge = nose_offset is not None and nose_offset.quadrant
     secondary = (
-        {nose_offset.number: SecondaryOffset(nose_offset.x, nose_offset.z, nose_offset.nose_radius)}
+        {nose_offset.offset_number: SecondaryOffset(nose_offset.x, nose_offset.z, nose_offset.nose_radius)}
         if nose_offset and not of_edge
         else {}
     )
     tools = dict.fromkeys(range(1, 33), _HOME)
     if nose_offset is not None and of_edge:
         edge = replace(_HOME, nose_radius=nose_offset.nose_radius, quadrant=nose_offset.quadrant)
-        tools |= {make_row_number(n, nose_offset.number): edge for n in tools}
+        tools |= {make_row_number(n, nose_offset.offset_number): edge for n in tools}
     setup = create_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
     setting = read_known_part(machine, {}, tool_shapes)
     front = profile.front_z_mm + stock.face_stock_mm

@@ -40,7 +40,7 @@ class JobsExtra(OptionalFeature):
                 "JOBS",
                 "next job, number of parts, setup requirements",
                 preceding_page="MEASURED PARTS",
-                shortcut="Shift+F6",
+                shortcut_key="Shift+F6",
             ),
         )
 

@@ -233,7 +233,7 @@ class JobsModel:
         if self.entry_kind:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.selected_job is None:
-            return NO_JOBS_MESSAGE if self.desk.program_loader.loaded.name else NO_PROGRAM_MESSAGE
+            return NO_JOBS_MESSAGE if self.desk.program_loader.loaded_program.name else NO_PROGRAM_MESSAGE
         if self.load_refusal:
             return "CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK"
         return "F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC"
@@ -250,7 +250,7 @@ class JobsModel:
         none = self.selected_job is None
         notes_barred = none or self.desk.read_snapshot().state in ACTIVE_STATES
         return {
-            "F3": FunctionKey("ADD", self.add_job, barred=not self.desk.program_loader.loaded.name),
+            "F3": FunctionKey("ADD", self.add_job, barred=not self.desk.program_loader.loaded_program.name),
             "F4": FunctionKey("QUANTITY", partial(self._ask, "count"), barred=none),
             "F5": FunctionKey("UP", partial(self.move_job, -1), barred=none),
             "F6": FunctionKey("DOWN", partial(self.move_job, 1), barred=none),
@@ -283,7 +283,7 @@ class JobsModel:
 
     def add_job(self) -> None:
         """Start the entry of a job for the loaded program, and ask for the number of parts."""
-        name = self.desk.program_loader.loaded.name
+        name = self.desk.program_loader.loaded_program.name
         if not name:
             self.desk.say(NO_PROGRAM_MESSAGE)
             return

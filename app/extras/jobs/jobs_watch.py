@@ -279,7 +279,7 @@ class JobWatch:
 
         After a restart, a job can be active although its program is not loaded.
         """
-        return job.is_active and self.desk.program_loader.loaded.name == job.program
+        return job.is_active and self.desk.program_loader.loaded_program.name == job.program
 
     @property
     def next_job(self) -> JobRow | None:
@@ -297,8 +297,8 @@ class JobWatch:
         This method is called once per frame.
         """
         counter = self.desk.program_runs.part_counter
-        if (counter.program_name, counter.count) != self._counted:
-            self._counted = counter.program_name, counter.count
+        if (counter.program_name, counter.part_count) != self._counted:
+            self._counted = counter.program_name, counter.part_count
             self.parts_watch.parts_book.request_reload()
         self._begin(loaded)
         job = self.active_job

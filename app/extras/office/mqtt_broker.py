@@ -43,7 +43,7 @@ _log = logging.getLogger(__name__)
 class _Client(mqtt.Client):
     """Paho client that reports the reason if it cannot connect."""
 
-    failed: Callable[[Exception], None]
+    on_failed: Callable[[Exception], None]
 
     def reconnect(self) -> MQTTErrorCode:
         """Reconnect to the broker.
@@ -53,7 +53,7 @@ class _Client(mqtt.Client):
         try:
             return super().reconnect()
         except (OSError, ValueError) as error:  # ValueError: an invalid name
-            self.failed(error)
+            self.on_failed(error)
             raise OSError(str(error)) from error
 
 
@@ -79,7 +79,7 @@ class MqttReceiver:
         client.on_disconnect = self._disconnected
         host, port = parse_broker_address(table.mqtt)
         self._trouble = DeliveryErrorLog(_log, Message("the MQTT broker {host}:{port}", host=host, port=port))
-        client.failed = lambda error: self._trouble.log_cause(find_cause(error))
+        client.on_failed = lambda error: self._trouble.log_cause(find_cause(error))
         client.connect_async(host, port, KEEP_ALIVE_S)
         client.loop_start()
 

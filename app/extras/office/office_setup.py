@@ -143,7 +143,7 @@ def _look(desk: Desk, machine: Machine) -> StatusSource:
     reader = MachineReader(machine, time.monotonic)
 
     def left(snapshot: Snapshot) -> float:
-        return find_time_left(snapshot, desk.program_loader.loaded)
+        return find_time_left(snapshot, desk.program_loader.loaded_program)
 
     def stops() -> Sequence[StopRow]:
         watch = desk.page_registry.find_model(PartsWatch)
@@ -203,7 +203,7 @@ def _page(
     others = OtherMachines((*table.other_page_addresses, *table.agent_addresses), ask)
     kept = partial(load_stored_part, journal.read_setting)
     pictures = create_thumbnail_drawer(machine, try_read_shapes, kept, size_px=PICTURE_SIZE)
-    part = PartPicture(lambda: desk.program_loader.loaded.job, still, pictures)
+    part = PartPicture(lambda: desk.program_loader.loaded_program.job, still, pictures)
     recordings = desk.desk_control.recordings
     alarm = AlarmPicture(recordings.folder if recordings is not None else None, still)
 
@@ -250,7 +250,7 @@ class PartPicture:
         from app.extras.office.office_pictures import encode_png
 
         found = self.draw_thumbnail(job, lambda _done: None)
-        return encode_png(found.pixels, found.width, found.height) if found is not None else b""
+        return encode_png(found.pixels, found.width_px, found.height_px) if found is not None else b""
 
 
 @dataclass(slots=True)

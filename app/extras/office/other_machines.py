@@ -48,7 +48,7 @@ class MachineResponse(NamedTuple):
     ``error_text`` is the reason why the machine is stopped, or the reason why no status is available.
     """
 
-    status: Mapping[str, object] | None
+    status_document: Mapping[str, object] | None
     error_text: str = ""
 
 
@@ -164,7 +164,7 @@ class OtherMachines:
         while not self._closing.is_set():
             self._looked.wait()
             answer = self._ask(address)
-            if answer.status is not None and (machine := answer.status.get("machine")):
+            if answer.status_document is not None and (machine := answer.status_document.get("machine")):
                 self._names[address] = f"{machine} ({_name(address)})"
             self._heard[address] = self._clock(), replace(answer, address=self._names[address])
             if self._clock() - self._last > VIEW_TIMEOUT_S:

@@ -48,7 +48,7 @@ class OtherMachine:
     """
 
     address: str
-    status: Mapping[str, Any] | None = None
+    status_document: Mapping[str, Any] | None = None
     error_text: str = ""
     state: str = "NO ANSWER"  # state if the status is not known
 
@@ -271,7 +271,7 @@ def _stop(stop: Mapping[str, Any]) -> str:
 
 
 def _other(desk: OtherMachine) -> str:
-    found = desk.status if desk.status is not None else {"state": desk.state}
+    found = desk.status_document if desk.status_document is not None else {"state": desk.state}
     name = str(found.get("machine") or desk.address)
     return (
         f"<article><h2>{escape(name)}</h2>{_head(found, desk.error_text)}{_table(_figures(found))}</article>"

@@ -448,7 +448,9 @@ class ChartsSection(QualitySection):
             chart = make_charts(values, row.sample).location
         except QualityError:
             return ""
-        late = [each for each in find_rule_violations(chart) if each.point_index >= len(chart.points) - 10]
+        late = [
+            each for each in find_rule_violations(chart) if each.point_index >= len(chart.point_values) - 10
+        ]
         return tr(late[-1].text) if late else ""
 
     def make_chart(self) -> ChartDrawing:

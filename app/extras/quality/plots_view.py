@@ -105,8 +105,8 @@ class PlotsPane(QWidget):
         self._title(drawn, plot.title)
         for level in plot.levels:
             self._level(drawn, level)
-        if plot.violations:
-            x, y = (np.asarray(each) for each in zip(*plot.violations, strict=True))
+        if plot.violation_points:
+            x, y = (np.asarray(each) for each in zip(*plot.violation_points, strict=True))
             pen = make_line_pen(self.theme.get_color("alarm"))
             pen.setWidthF(2.0)
             ring = pg.ScatterPlotItem(

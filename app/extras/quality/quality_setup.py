@@ -98,7 +98,7 @@ class QualityFunctions(SpecialFunctionList):
     def functions(self, _none: Sequence[SpecialFunction]) -> None:
         """Ignore the value, because the sections are created by the getter."""
 
-    def poll(self) -> None:
+    def process_results(self) -> None:
         """Read the gauge once per frame.
 
         A reading belongs to the feature that is displayed at that time.

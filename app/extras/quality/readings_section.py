@@ -46,7 +46,7 @@ class NewReading:
     part_number: int
     size_mm: float  # in mm
     measured_unit: str
-    source: str
+    source_name: str
     gauge_name: str = ""
 
 
@@ -78,7 +78,7 @@ class ReadingsSection(QualitySection):
     @property
     def part_number(self) -> int:
         """Return the number of the part that is being measured."""
-        return self._part or max(1, self.desk.program_runs.part_counter.count)
+        return self._part or max(1, self.desk.program_runs.part_counter.part_count)
 
     # --- display -------------------------------------------------------------------------------------
 
@@ -163,7 +163,7 @@ class ReadingsSection(QualitySection):
     def _step(self, by: int) -> None:
         self.desk.clear_prompt_line()
         self._part = max(1, self.part_number + by)
-        if self._part == self.desk.program_runs.part_counter.count:
+        if self._part == self.desk.program_runs.part_counter.part_count:
             self._part = 0
 
     def prompt_text(self) -> str:
@@ -224,7 +224,7 @@ class ReadingsSection(QualitySection):
             taken.size_mm,
             taken.measured_unit,
             "",
-            taken.source,
+            taken.source_name,
             taken.gauge_name,
         )
         self.watch.parts_book.write_change(
@@ -375,12 +375,12 @@ class ReadingsSection(QualitySection):
             self.desk.show_refusal(str(error))
             return
         why = self.desk.offset_book.change_fields(
-            change.kind, change.number, change.new_values, change.reason
+            change.offset_kind, change.offset_number, change.new_values, change.reason
         )
         if why:
             self.desk.say(why)
             return
-        self._last = change.kind, change.number, change.reason
+        self._last = change.offset_kind, change.offset_number, change.reason
         self.desk.show_success(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.text)))
 
     def undo_correction(self) -> None:

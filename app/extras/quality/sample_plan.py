@@ -66,12 +66,12 @@ class SamplePlan:
         """
         if not self.waits_for_measurements:
             return ""
-        made = self.desk.program_runs.part_counter.count + (1 if snapshot.counts else 0)
+        made = self.desk.program_runs.part_counter.part_count + (1 if snapshot.counts else 0)
         return find_block_reason(self._planned(made))
 
     def find_reminder(self) -> str:
         """Return the prompt text that names the features to measure, or an empty string."""
-        return make_due_notice(self._planned(self.desk.program_runs.part_counter.count))
+        return make_due_notice(self._planned(self.desk.program_runs.part_counter.part_count))
 
     def _planned(self, made: int) -> dict[str, int]:
         """Return the measurements that are due for a number of parts made.

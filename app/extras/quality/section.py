@@ -54,13 +54,13 @@ class PlotLevel:
 class Plot:
     """Plot with curves or bars.
 
-    ``violations`` are the points that violate a rule of control charts.
+    ``violation_points`` are the points that violate a rule of control charts.
     """
 
     title: str = ""
     curves: tuple[PlotCurve, ...] = ()
     levels: tuple[PlotLevel, ...] = ()
-    violations: tuple[tuple[float, float], ...] = ()
+    violation_points: tuple[tuple[float, float], ...] = ()
     bars: tuple[tuple[str, float], ...] = ()
     x_label: str = ""  # label of the horizontal axis
 
@@ -74,17 +74,17 @@ class Plot:
 class ChartDrawing:
     """Drawing with plots below each other.
 
-    Drawings with equal ``identity`` are considered equal and are not drawn again.
+    Drawings with equal ``drawing_key`` are considered equal and are not drawn again.
     """
 
     plots: tuple[Plot, ...] = ()
-    identity: object = field(default=None)
+    drawing_key: object = field(default=None)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ChartDrawing) and self.identity == other.identity
+        return isinstance(other, ChartDrawing) and self.drawing_key == other.drawing_key
 
     def __hash__(self) -> int:
-        return hash(self.identity)
+        return hash(self.drawing_key)
 
 
 def make_control_plots(
@@ -102,7 +102,9 @@ def make_control_plots(
     location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit_mm)
     if charts.sample_size == 1:
         tolerance = tuple(PlotLevel(limit / unit_mm, "", "tolerance") for limit in limits)
-        location = Plot(location.title, location.curves, (*location.levels, *tolerance), location.violations)
+        location = Plot(
+            location.title, location.curves, (*location.levels, *tolerance), location.violation_points
+        )
     first = 1 if charts.sample_size == 1 else 0  # A moving range belongs to the later of its two parts.
     spread = _plot(names[1], charts.spread, _last_parts(part_numbers, charts.sample_size)[first:], unit_mm)
     return location, spread
@@ -150,7 +152,7 @@ def _last_parts(parts: Sequence[int], size: int) -> FloatArray:
 
 
 def _plot(title: str, chart: ControlChart, x: FloatArray, unit: float) -> Plot:
-    y = chart.points / unit
+    y = chart.point_values / unit
     levels = (
         PlotLevel(chart.center_line / unit, "", "centre"),
         PlotLevel(chart.upper_limit / unit, "", "limit"),

@@ -110,7 +110,7 @@ def _text(found: ShiftResults) -> str:
         *found.notes,
         *(f"{name}: {words}" for name, words in make_summary_rows(found)),
     ]
-    for each in found.programs:
+    for each in found.program_results:
         mean = (
             Message(
                 ", mean cycle time {times} s",
@@ -153,13 +153,13 @@ def _make_json(results: ShiftResults) -> dict[str, object]:
                 "no_part": dict(p.incomplete_cycles),
                 "cycle_times": list(p.cycle_times_s),
             }
-            for p in results.programs
+            for p in results.program_results
         ],
         "planned": share.planned_s if share is not None else 0.0,
         "producing": share.producing_s if share is not None else 0.0,
         "stopped": results.stopped_s,
         "not_recorded": results.unrecorded_s,
-        "stops": [row._asdict() for row in results.stops],
+        "stops": [row._asdict() for row in results.stop_rows],
         "reasons": [row._asdict() for row in results.stop_reasons],
         "alarms": [row._asdict() for row in results.alarms],
         "tool_lives": [row._asdict() for row in results.tool_lives],

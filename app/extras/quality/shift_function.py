@@ -175,7 +175,7 @@ class ShiftReportFunction(SpecialFunction):
 def _rows(results: ShiftResults) -> list[tuple[str, str]]:
     """Return the rows of the main results, followed by one row per program and one row per stop reason."""
     rows = make_summary_rows(results)
-    for each in results.programs:
+    for each in results.program_results:
         mean = f", {sum(each.cycle_times_s) / len(each.cycle_times_s):.1f} s" if each.cycle_times_s else ""
         rows.append((each.program, f"{each.part_count} {tr('PARTS')}{mean}"))
     rows += [

@@ -70,7 +70,7 @@ def make_summary_rows(results: ShiftResults) -> list[tuple[str, str]]:
         )
         rows += [
             (tr("Availability"), words),
-            (tr("Stops"), f"{len(results.stops)}, {format_duration(results.stopped_s)}"),
+            (tr("Stops"), f"{len(results.stop_rows)}, {format_duration(results.stopped_s)}"),
             (tr("Not recorded"), format_duration(results.unrecorded_s)),
         ]
     rows.append((tr("Alarms and E-stops"), str(len(results.alarms))))
@@ -99,7 +99,7 @@ def _sections(found: ShiftResults, *, metric: bool) -> Iterator[tuple[str, str]]
                 tr("MEAN"),
                 tr("LONGEST"),
             ),
-            [_program(each) for each in found.programs],
+            [_program(each) for each in found.program_results],
         ),
     )
     yield (
@@ -129,7 +129,7 @@ def _sections(found: ShiftResults, *, metric: bool) -> Iterator[tuple[str, str]]
                     r.program,
                     str(r.line or ""),
                 )
-                for r in found.stops
+                for r in found.stop_rows
             ],
         ),
     )
@@ -255,7 +255,7 @@ def _time_line(results: ShiftResults) -> str:
         return f'<rect x="{x(first):.1f}" y="{y}" width="{wide:.1f}" height="{high}" fill="{colour}"/>'
 
     parts = [bar(start, results.evaluated_until_s, "#e3e7eb", 6, 34)]
-    for stop in results.stops:
+    for stop in results.stop_rows:
         at = parse_store_time(stop.at)
         parts.append(bar(at, at + stop.seconds, "#f0b23c", 6, 34))
     parts += [bar(span.start_s, span.end_s, "#2e7d32", 6, 34) for span in results.cycle_spans]

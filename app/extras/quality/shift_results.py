@@ -152,9 +152,9 @@ class ShiftResults:
 
     shift: Shift
     evaluated_until_s: float
-    programs: tuple[ProgramResults, ...]
+    program_results: tuple[ProgramResults, ...]
     availability: Availability | None
-    stops: tuple[StopRow, ...]
+    stop_rows: tuple[StopRow, ...]
     stop_reasons: tuple[StopReasonTotal, ...]
     alarms: tuple[EventRow, ...]
     tool_lives: tuple[ToolLifeRow, ...]
@@ -168,7 +168,7 @@ class ShiftResults:
     @property
     def part_count(self) -> int:
         """Return the number of parts of all programs."""
-        return sum(each.part_count for each in self.programs)
+        return sum(each.part_count for each in self.program_results)
 
     @property
     def stopped_s(self) -> float:

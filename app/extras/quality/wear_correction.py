@@ -59,8 +59,8 @@ def make_proposal(data: PartsData, row: FeatureRow, value_mode: ValueMode) -> Co
 class OffsetCorrection:
     """Change of one field of an offset, with the values to store and the text for the operator."""
 
-    kind: OffsetKind
-    number: int
+    offset_kind: OffsetKind
+    offset_number: int
     new_values: dict[str, FieldValue]
     reason: str  # reason for the history
     text: str  # for example ``T3 WEAR X −.0006: SPIGOT .5012 → .5006``
@@ -167,7 +167,7 @@ class CorrectionPreview:
         """Show a proposal and start the simulation of the part before and after the correction."""
         again = (question, proposal, readings) == (self.question, self.proposal, self._readings)
         self.question, self.proposal, self._readings = question, proposal, readings
-        effect, job = self._effect, self.desk.program_loader.loaded.job
+        effect, job = self._effect, self.desk.program_loader.loaded_program.job
         if effect is not None and effect.compare_part is not None and job is not None and not again:
             effect.request_part(effect.compare_part, job, *self._tables(change))
 
@@ -181,10 +181,12 @@ class CorrectionPreview:
         secondary: dict[int, SecondaryRow] = dict(book.secondary_offsets)
         before = OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
         values: Mapping[str, Any] = change.new_values
-        if change.kind is OffsetKind.TOOL:
-            tools[change.number] = tools[change.number]._replace(**values)
+        if change.offset_kind is OffsetKind.TOOL:
+            tools[change.offset_number] = tools[change.offset_number]._replace(**values)
         else:
-            secondary[change.number] = secondary.get(change.number, SecondaryRow())._replace(**values)
+            secondary[change.offset_number] = secondary.get(change.offset_number, SecondaryRow())._replace(
+                **values
+            )
         return before, OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
 
     def make_table(self, value_mode: ValueMode) -> TableContent | None:
@@ -200,7 +202,11 @@ class CorrectionPreview:
     def describe_status(self) -> str:
         """Return the status of the simulation as text."""
         effect = self._effect
-        if effect is None or effect.compare_part is None or self.desk.program_loader.loaded.job is None:
+        if (
+            effect is None
+            or effect.compare_part is None
+            or self.desk.program_loader.loaded_program.job is None
+        ):
             return ""
         if effect.is_busy:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")

@@ -67,8 +67,8 @@ class ShapeForm:
     selected_column: int = 0
     replaces_text: bool = True  # the next character replaces the entry
     filled_shape: FilledShape = field(init=False)
-    errors: dict[str, str] = field(default_factory=dict)
-    lines: list[str] = field(default_factory=list)
+    error_texts: dict[str, str] = field(default_factory=dict)
+    program_lines: list[str] = field(default_factory=list)
     calculation_count: int = 0  # number of calculations
     remarks: tuple[str, ...] = ()  # remarks about the lines
 
@@ -106,17 +106,17 @@ class ShapeForm:
     def calculate(self) -> None:
         """Calculate the values, errors and lines from the entries."""
         self.calculation_count += 1
-        self.errors = {}
+        self.error_texts = {}
         values = {word: value for word in self.entered_texts if (value := self._value(word)) is not None}
         rows = tuple(self._row(number) for number in range(len(self.point_texts)))
         while rows and rows[-1].empty:
             rows = rows[:-1]
         self.filled_shape = fill_shape(self.shape, values, self.settings, rows)
-        if not self.errors:
+        if not self.error_texts:
             for refused in self._refusals():
-                self.errors.setdefault(refused.field_word, refused.text)
-        self.lines = [] if self.errors else self.filled_shape.make_lines(self.settings)
-        self.remarks = () if self.errors else self.shape.make_notes(self.filled_shape, self.settings)
+                self.error_texts.setdefault(refused.field_word, refused.text)
+        self.program_lines = [] if self.error_texts else self.filled_shape.make_lines(self.settings)
+        self.remarks = () if self.error_texts else self.shape.make_notes(self.filled_shape, self.settings)
 
     def _refusals(self) -> list[FieldError]:
         try:
@@ -141,7 +141,7 @@ class ShapeForm:
         try:
             return evaluate_expression(said)
         except EntryError as error:
-            self.errors[word] = str(error)
+            self.error_texts[word] = str(error)
             return None
 
     def _row(self, number: int) -> ContourPoint:
@@ -186,7 +186,7 @@ class ShapeForm:
                 each.label,
                 self.get_display_text(each),
                 each.word in self.entered_texts,
-                self.errors.get(each.word, ""),
+                self.error_texts.get(each.word, ""),
                 bool(self.list_choices(each)),
             )
             for each in self.fields
@@ -229,7 +229,7 @@ class ShapeForm:
     @property
     def current_error(self) -> str:
         """Return the error of the selected field or point, or else the first error of the form."""
-        return self.errors.get(self.selected_word) or next(iter(self.errors.values()), "")
+        return self.error_texts.get(self.selected_word) or next(iter(self.error_texts.values()), "")
 
     @property
     def current_sketch(self) -> Sketch:

@@ -164,8 +164,8 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
     if POINTS in step:
         form.point_texts = _rows(where, step[POINTS])
     form.calculate()
-    if form.errors:
-        raise StepError([f"{where}: {_key(shape, word)}: {text}" for word, text in form.errors.items()])
+    if form.error_texts:
+        raise StepError([f"{where}: {_key(shape, word)}: {text}" for word, text in form.error_texts.items()])
     return form
 
 

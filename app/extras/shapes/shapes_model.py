@@ -342,7 +342,7 @@ class ShapesModel(PanelModel):
             return
         if form.is_calculating:
             return  # the prompt gives the reason
-        if form.errors:
+        if form.error_texts:
             self.notice = ""
             self._to_trouble(form)
         elif (
@@ -364,7 +364,7 @@ class ShapesModel(PanelModel):
             asked()
 
     def _to_trouble(self, form: ShapeForm) -> None:
-        word = next(iter(form.errors))
+        word = next(iter(form.error_texts))
         form.select_word(word)
 
     def _write(self) -> None:
@@ -375,7 +375,7 @@ class ShapesModel(PanelModel):
         )
         said = ""
         if form.shape.name == HEAD_SHAPE.name and form.replaced_piece is not None:
-            grown = len(form.lines) - form.replaced_piece.line_count
+            grown = len(form.program_lines) - form.replaced_piece.line_count
             moved = [
                 shift_piece(each, grown) for each in self.pieces if each.filled_shape.shape is not form.shape
             ]
@@ -424,7 +424,7 @@ class ShapesModel(PanelModel):
             return self.cursor_line
         return (
             form.replaced_piece.first_line if form.replaced_piece is not None else self.cursor_line
-        ) + len(form.lines)
+        ) + len(form.program_lines)
 
     def _preview(self) -> None:
         """Show the program text with the lines of the form, or unchanged while the form is incomplete."""
@@ -433,7 +433,7 @@ class ShapesModel(PanelModel):
             return
         if self._adder is not None:
             self._adder.calculate(form, self._show_calculated, self._tell)
-        if form.errors or not form.lines:
+        if form.error_texts or not form.program_lines:
             self._show("\n".join(self.program_lines) + "\n" if self.program_lines else "")
             return
         text, _ = insert_shape(

@@ -43,16 +43,16 @@ _DRAWN = 12.0  # units: minimum useful height of the drawing
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """Row for a shape, a piece of the program, a field, or the ``cells`` of a point.
+    """Row for a shape, a piece of the program, a field, or the ``point_cells`` of a point.
 
     ``tone`` is the color of the value.
     """
 
     label: str
     value_text: str = ""
-    tone: str = "text"
-    word: str = ""
-    cells: tuple[str, ...] = ()
+    text_tone: str = "text"
+    field_word: str = ""
+    point_cells: tuple[str, ...] = ()
 
 
 class ShapeRowsPanel(RowPanel):
@@ -92,7 +92,7 @@ class ShapeRowsPanel(RowPanel):
             painter.fill_rect(box, "here")
             painter.fill_rect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
         room = box.adjusted(1.0 * u, 0, -0.4 * u, 0)
-        if line.cells:
+        if line.point_cells:
             self._cells(painter, room, line, number, marked=marked)
         else:
             self._words(painter, room, line, marked=marked)
@@ -103,7 +103,7 @@ class ShapeRowsPanel(RowPanel):
         label = QRectF(room.x(), room.y(), _LABEL * room.width(), room.height())
         self._label(painter, label, line, marked=marked)
         figure = QRectF(label.right(), room.y(), room.right() - label.right(), room.height())
-        self._figure(painter, figure, line.value_text, line.tone, marked=marked and self.is_entry_open)
+        self._figure(painter, figure, line.value_text, line.text_tone, marked=marked and self.is_entry_open)
 
     def _label(self, painter: ThemedPainter, box: QRectF, line: _Line, *, marked: bool) -> None:
         """Draw the label in two lines if it would be too small or truncated in one line."""
@@ -134,10 +134,10 @@ class ShapeRowsPanel(RowPanel):
         u = self.theme.unit_px
         first = QRectF(area.x(), area.y(), 2.4 * u, area.height())
         painter.draw_text_line(
-            first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True
+            first, line.label, 1.8, line.text_tone if line.text_tone == "alarm" else "soft", raw=True
         )
-        wide = (area.width() - first.width()) / len(line.cells)
-        for column, figure in enumerate(line.cells):
+        wide = (area.width() - first.width()) / len(line.point_cells)
+        for column, figure in enumerate(line.point_cells):
             box = QRectF(first.right() + column * wide, area.y(), wide, area.height())
             here = marked and column == self.selected_column
             self.add_target(
@@ -145,7 +145,7 @@ class ShapeRowsPanel(RowPanel):
             )
             inner = box.adjusted(0.2 * u, 0, -0.2 * u, 0)
             if figure or here:
-                self._figure(painter, inner, figure, line.tone, marked=here and self.is_entry_open)
+                self._figure(painter, inner, figure, line.text_tone, marked=here and self.is_entry_open)
             elif marked:  # the columns that can be typed
                 painter.draw_text_line(
                     inner, POINT_COLUMNS[column], 1.7, "soft", at=ALIGN_CENTER, raw=True, bold=False
@@ -304,7 +304,7 @@ class ShapesView(EditorPanel):
     def _show_list(self) -> None:
         model = self.model
         table, keys = model.shape_table, model.form_keys
-        shapes = [_Line(f"{key}   {tr(table[key].name)}", "", word=key) for key in keys]
+        shapes = [_Line(f"{key}   {tr(table[key].name)}", "", field_word=key) for key in keys]
         there = [
             _Line(
                 each.filled_shape.shape.name,
@@ -349,8 +349,11 @@ class ShapesView(EditorPanel):
         )
         drawn = form.current_sketch
         labels = tuple((dim.field_word, form.get_dimension_text(dim.field_word)) for dim in drawn.dimensions)
-        self.sketch_panel.displayed = drawn, labels, form.selected_word, frozenset(form.errors)
-        self.lines_panel.error_text, self.lines_panel.displayed_lines = form.current_error, tuple(form.lines)
+        self.sketch_panel.displayed = drawn, labels, form.selected_word, frozenset(form.error_texts)
+        self.lines_panel.error_text, self.lines_panel.displayed_lines = (
+            form.current_error,
+            tuple(form.program_lines),
+        )
         self.lines_panel.remarks = form.remarks
 
     def _choose(self, row: int, column: int) -> None:
@@ -420,4 +423,4 @@ def _point(form: ShapeForm, number: int) -> _Line:
     said = form.point_texts[number] if number < len(form.point_texts) else {}
     word = make_point_label(number + 1)
     cells = tuple(said.get(column, "") for column in POINT_COLUMNS)
-    return _Line(f"{number + 1}", "", "alarm" if word in form.errors else "text", word, cells)
+    return _Line(f"{number + 1}", "", "alarm" if word in form.error_texts else "text", word, cells)

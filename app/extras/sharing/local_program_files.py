@@ -26,7 +26,7 @@ class ProgramFile:
 
     name: str
     path: Path
-    digest: str
+    sha256_digest: str
 
 
 @dataclass(slots=True)

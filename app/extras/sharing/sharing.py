@@ -219,9 +219,9 @@ class ProgramSharing:
 
     def _note_file(self, connection: sqlite3.Connection, file: ProgramFile, family: ProgramVersions) -> None:
         here = family.versions.get(family.local_version_id)
-        if here is not None and here.text == file.digest:
+        if here is not None and here.text == file.sha256_digest:
             return
-        version = family.find_newer_by_text(file.digest)
+        version = family.find_newer_by_text(file.sha256_digest)
         if version is None:
             try:
                 text = read_input_bytes(file.path, MAX_PROGRAM_BYTES)
@@ -246,12 +246,12 @@ class ProgramSharing:
         )
         try:
             for batch in self._batches(store):
-                self.location.publish(batch, state)
+                self.location.publish_versions(batch, state)
                 versions = [each.version for each in batch]
                 store.write(partial(_published, versions)).result()
                 is_state_published = True
             if not is_state_published:
-                self.location.publish([], state)
+                self.location.publish_versions([], state)
         except SharingError as error:
             return str(error)
         return ""

@@ -345,7 +345,7 @@ class SharingModel:
 
     def _find_use_refusal(self, key: str) -> str:
         """Return the reason why a program must not be replaced now, or an empty string."""
-        snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded
+        snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         if snapshot.interrupted is not None and make_program_key(snapshot.interrupted.program) == key:
             words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
             return tr(Message(words, name=snapshot.interrupted.program))

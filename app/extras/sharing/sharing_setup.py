@@ -119,7 +119,7 @@ class SharingResultHandler:
         self._trouble = result.error_text
         from core.extras.sharing.shared_versions import ProgramVersions, make_program_key
 
-        name = self.desk.program_loader.loaded.name
+        name = self.desk.program_loader.loaded_program.name
         family = result.programs.get(make_program_key(name), ProgramVersions())
         fresh = (
             frozenset(each.id for each in family.newest_remote_versions) - self._told

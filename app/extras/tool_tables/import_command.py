@@ -207,7 +207,7 @@ def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
             yield Message("{name} is new ({place})", name=name, place=plan.file_position)
         else:
             yield Message("{name} exists and changes ({place})", name=name, place=plan.file_position)
-        yield from (f"  {_change(each)}" for each in plan.changes)
+        yield from (f"  {_change(each)}" for each in plan.field_changes)
         yield from (Message("  note: {note}", note=note) for note in plan.notes)
     yield from table.notes
 
@@ -237,7 +237,7 @@ def _write_json(
             "place": plan.file_position,
             "status": plan.status.value,
             "saved": plan in saved,
-            "changes": [_change_json(each) for each in plan.changes],
+            "changes": [_change_json(each) for each in plan.field_changes],
             "notes": list(plan.notes),
         }
         for plan in plans

@@ -48,12 +48,12 @@ class ToolPlan:
     tool_number: int
     file_position: str
     status: ImportStatus
-    changes: tuple[FieldChange, ...]
+    field_changes: tuple[FieldChange, ...]
     notes: tuple[str, ...]
 
     def get_new_values(self, kind: OffsetKind) -> dict[str, FieldValue]:
         """Return the new values of one offset table by field."""
-        return {each.field_name: each.new_value for each in self.changes if each.offset_kind is kind}
+        return {each.field_name: each.new_value for each in self.field_changes if each.offset_kind is kind}
 
 
 ChangesByTable = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
@@ -84,7 +84,7 @@ class StoredTools:
 
     def _plan(self, entry: ToolEntry, *, positions: bool) -> ToolPlan:
         offset, notes = self._offset(entry, positions=positions)
-        old_tool, old_shape = self.tools.get(entry.number), self.shapes.get(entry.number)
+        old_tool, old_shape = self.tools.get(entry.tool_number), self.shapes.get(entry.tool_number)
         shape = dict(entry.shape_values)
         changes = (
             *_differences(OffsetKind.TOOL, old_tool, offset),
@@ -95,7 +95,7 @@ class StoredTools:
             status = ImportStatus.CHANGED if known else ImportStatus.NEW
         else:
             status = ImportStatus.UNCHANGED if known else ImportStatus.SKIPPED
-        return ToolPlan(entry.number, entry.position_text, status, changes, (*entry.notes, *notes))
+        return ToolPlan(entry.tool_number, entry.position_text, status, changes, (*entry.notes, *notes))
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
         """Return the offset values that can be stored, and notes about the other values."""
@@ -103,14 +103,14 @@ class StoredTools:
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")
             offset = {name: value for name, value in offset.items() if name not in {"x", "z"}}
-        if offset and entry.number not in self.tools and not {"x", "z"} <= offset.keys():
+        if offset and entry.tool_number not in self.tools and not {"x", "z"} <= offset.keys():
             names = ", ".join(name.replace("_", " ") for name in offset)
             notes.append(
                 Message(
                     "not imported before the tool is touched off: {names}; touch off T{number}, then import "
                     "the file again with --replace",
                     names=names,
-                    number=entry.number,
+                    number=entry.tool_number,
                 )
             )
             offset = {}
@@ -127,7 +127,7 @@ class StoredTools:
             tool = replace_fields(
                 self.tools.get(plan.tool_number, ToolRow()), plan.get_new_values(OffsetKind.TOOL)
             )
-            for wrong in find_mistakes(shape, tool) if shape.kind and plan.changes else ():
+            for wrong in find_mistakes(shape, tool) if shape.kind and plan.field_changes else ():
                 text = Message(
                     "{place} (T{number}): {field}: {text}",
                     place=plan.file_position,

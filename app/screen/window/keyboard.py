@@ -229,7 +229,7 @@ class KeyboardFilter(QObject):
         if self._watched is not None:
             shown = frozenset(window.winId() for window in windows if window.isVisible())
             self._watched.send_focus(FocusRecord(shown, self._behind.is_esc_stop_key()))
-            if any(stop.kind is StopKind.ESTOP for stop in self._watched.read_stops()):
+            if any(stop.stop_kind is StopKind.ESTOP for stop in self._watched.read_stops()):
                 self._behind.show_estop_pressed()
         for window in windows if len(windows) > 1 else ():
             window.installEventFilter(self)  # A menu or a dialog has its own window for key events.

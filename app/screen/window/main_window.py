@@ -201,7 +201,7 @@ class MainWindow(QWidget):
 
     def _apply_settings(self, frame: WindowFrame) -> None:
         """Apply the selected colors, language and window size."""
-        settings = frame.desk.settings_store.current
+        settings = frame.desk.settings_store.current_settings
         if settings.language != get_language():
             use_language(settings.language)
             frame.apply_theme()

@@ -212,7 +212,7 @@ class FeedPanel(ReadoutPanel):
         self.draw_label(
             painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.measured_unit
         )
-        self.draw_override(painter, self.make_row(11.2, 2.8), view.override, 1.5)
+        self.draw_override(painter, self.make_row(11.2, 2.8), view.override_fraction, 1.5)
 
 
 class SpindlePanel(ReadoutPanel):
@@ -248,12 +248,12 @@ class SpindlePanel(ReadoutPanel):
         surface = QRectF(actual.x() + half + 1.6 * u, actual.y(), half - 1.6 * u, actual.height())
         self.draw_label(painter, surface, view.surface_label)
         self.draw_value(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface_speed, 2.5)
-        self.draw_override(painter, self.make_row(11.2, 2.8), view.override, 1.0)
-        if view.load:
+        self.draw_override(painter, self.make_row(11.2, 2.8), view.override_fraction, 1.0)
+        if view.load_text:
             # In the top line, next to the title.
             patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)
             painter.fill_rect(patch, "panel")
-            painter.draw_text_line(patch, f"{tr('LOAD')} {view.load}", 1.6, "soft", at=ALIGN_CENTER)
+            painter.draw_text_line(patch, f"{tr('LOAD')} {view.load_text}", 1.6, "soft", at=ALIGN_CENTER)
 
     def _draw_unknown(self, painter: ThemedPainter) -> None:
         """Draw a warning in place of all values, because the spindle's state is unknown."""
@@ -385,12 +385,12 @@ class ReadoutRow(Panel):
         feed, spindle = view.feed, view.spindle
         return (
             (
-                Message("FEED {override}", override=format_percent(feed.override)),
+                Message("FEED {override}", override=format_percent(feed.override_fraction)),
                 f"{feed.value_prefix} {feed.measured_value} {tr(feed.measured_unit)}".strip(),
                 0.36,
             ),
             (
-                Message("SPINDLE {override}", override=format_percent(spindle.override)),
+                Message("SPINDLE {override}", override=format_percent(spindle.override_fraction)),
                 f"{tr(spindle.direction)} {spindle.commanded_rpm}/{spindle.measured_rpm}",
                 0.44,
             ),

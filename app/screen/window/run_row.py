@@ -34,7 +34,7 @@ class RunRow(Panel):
         """Show a status and times, and redraw the panel if a value has changed."""
         self.comment_text, self.message_text, self.time_texts = status.comment, status.message, time_texts
         self.block_text = f"L{status.line_number}  {status.block_text}" if status.line_number else ""
-        self.stop_text, self._tone = describe_stop(status), status.tone.value
+        self.stop_text, self._tone = describe_stop(status), status.state_tone.value
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the comment, the block, the parts and the times, or the alarm or stop.

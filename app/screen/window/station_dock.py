@@ -44,7 +44,7 @@ class StationDock(TouchPanel):
         self._auto, self.is_start_disabled = snapshot.spindle_auto, bool(find_start_refusal(desk, snapshot))
         palms = frozenset(desk.station_controls.palms.press_times)
         pots = (desk.station_controls.spindle_pot.wanted, desk.station_controls.feed_pot.wanted)
-        latched = desk.settings_store.current.latched and desk.machine.allows_one_hand
+        latched = desk.settings_store.current_settings.latched and desk.machine.allows_one_hand
         self._shown = (
             desk.station_controls.is_estop_pressed,
             pots,
@@ -240,7 +240,7 @@ class StationDock(TouchPanel):
 
         They do if this is selected with F10 7 and all axes are simulated.
         """
-        return self._desk.settings_store.current.latched and self._desk.machine.allows_one_hand
+        return self._desk.settings_store.current_settings.latched and self._desk.machine.allows_one_hand
 
     def _palm_control(self, at: QRectF, side: str) -> TouchControl:
         hands = self._desk.station_controls

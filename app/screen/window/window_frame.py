@@ -176,9 +176,9 @@ class WindowFrame(QWidget):
             "F7": self.toggle_alarm_log,
             "Scope": self.toggle_scope,
             **{
-                page.shortcut: partial(self.open_page, page.name)
+                page.shortcut_key: partial(self.open_page, page.name)
                 for page in page_table.ALL_PAGES
-                if page.shortcut
+                if page.shortcut_key
             },
             CLOSE_KEY: partial(self.desk.apply_setting, "first_job", False),
             **self.current_page.make_key_actions(),
@@ -263,7 +263,7 @@ class WindowFrame(QWidget):
         """Arrange all parts for the current size, and return the rectangle of the page."""
         width, height = self.width(), self.height()
         self.theme.set_unit(find_unit_px(width, height))
-        with_dock = self.station_dock is not None and self.desk.settings_store.current.dock
+        with_dock = self.station_dock is not None and self.desk.settings_store.current_settings.dock
         at = make_layout(width, height, with_dock)
         low = make_low_layout(width, height, with_dock, has_axis_motion=self.current_page.STARTS)
         self._docked = with_dock
@@ -291,7 +291,10 @@ class WindowFrame(QWidget):
     @property
     def _has_dock_changed(self) -> bool:
         """Return whether the operator has shown or hidden the station dock since the last layout."""
-        return self.station_dock is not None and self._docked is not self.desk.settings_store.current.dock
+        return (
+            self.station_dock is not None
+            and self._docked is not self.desk.settings_store.current_settings.dock
+        )
 
     def _stand_readouts(self, at: AutomaticLayout, large: bool) -> None:
         parts: tuple[tuple[QWidget, Rect], ...] = (
@@ -322,7 +325,7 @@ class WindowFrame(QWidget):
         shown, desk = self._shown, self.desk
         if shown is None or self._paints != Panel.paint_count:
             return True
-        return shown[1] is not desk.program_loader.loaded or not shown[0].equals_except_time(
+        return shown[1] is not desk.program_loader.loaded_program or not shown[0].equals_except_time(
             desk.read_snapshot()
         )
 
@@ -400,12 +403,12 @@ class WindowFrame(QWidget):
         self.title_line.page_title = self.current_page.NAME
         self.title_line.access_text = desk.user_access.header_text
         self.title_line.show_texts(
-            name, view.state_text, view.tone, desk.machine.name, desk.clock.format_local_time()
+            name, view.state_text, view.state_tone, desk.machine.name, desk.clock.format_local_time()
         )
         state = make_page_prompt(desk, snapshot, loaded, self.current_page.prompt_text())
         self.prompt_line.show_state(state, prompt_line.reason(view) or prompt_line.find_remedy(loaded, state))
         self.prompt_line.show_question(
-            desk.prompt_answers.question or self.current_page.find_pending_question(), desk.confirm_key
+            desk.prompt_answers.question_text or self.current_page.find_pending_question(), desk.confirm_key
         )
         self.prompt_line.show_message(desk.prompt_answers.message, kind=desk.prompt_answers.notice_kind)
 
@@ -460,7 +463,7 @@ class WindowFrame(QWidget):
         found = make_interrupted_notice(snapshot, loaded, desk.settings_store.display_units)
         if found is not None:
             rows.append(replace(found, keys=self._make_prompt_keys(snapshot, loaded) if here else ()))
-        if here and desk.settings_store.current.first_job:
+        if here and desk.settings_store.current_settings.first_job:
             rows.append(desk.program_runs.first_job_card.notice_row)
         differs = desk.storage_state.read_file_difference()
         if differs:

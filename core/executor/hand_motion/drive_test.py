@@ -247,7 +247,7 @@ class DriveTester:
         context = self._context
         if self._jogger.axis_name:
             return Message("{axis} is still moving", axis=self._jogger.axis_name)
-        if context.signals.is_hold_requested:
+        if context.station_signals.is_hold_requested:
             return "feed hold is pressed"
         if context.spindle.is_guard_open:
             return "the guard is open"

@@ -116,7 +116,7 @@ class Handwheel:
         Raises DriverError.
         """
         context, jogger = self._context, self._jogger
-        clicks = self._clicks.read_clicks(context.signals.handwheel_count, context.now)
+        clicks = self._clicks.read_clicks(context.station_signals.handwheel_count, context.now)
         if not self.axis:
             return False
         if why := self._find_end_reason(state, self.axis):
@@ -170,7 +170,7 @@ class Handwheel:
 
     def _find_end_reason(self, state: MachineState, axis: str) -> str:
         """Return the reason to disable the handwheel in this tick, or an empty string."""
-        context, signals, inputs = self._context, self._context.signals, self._context.inputs
+        context, signals, inputs = self._context, self._context.station_signals, self._context.inputs
         reasons = (
             (
                 state not in {MachineState.IDLE, MachineState.JOG},
@@ -201,7 +201,7 @@ class Handwheel:
         )
         wanted = self._limit_target(index, start + clicks * self._step)
         found = _TargetMove(context.machine.axes[index], self._top(index), self._step, wanted)
-        jogger.follow_target(self.axis, found.pieces, wanted)
+        jogger.follow_target(self.axis, found.make_ramps, wanted)
         if jogger.target_position is not None and found.goal != wanted:
             jogger.target_position = found.goal
             self._refuse_once(
@@ -245,7 +245,7 @@ class _TargetMove:
         self._amax, self._top, self._step, self._wanted = axis.max_acceleration, top, step, wanted
         self.goal = wanted
 
-    def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
+    def make_ramps(self, _start: float, p: float, v: float) -> list[Ramp]:
         """Return the ramps for ``Jogger.follow_target``, at the speed that results in a delay of 0.1 s."""
         distance = self._wanted - p
         longest = max(self._top * _FOLLOW_DELAY_S + v * v / (2.0 * self._amax), self._step)

@@ -118,7 +118,7 @@ class Jogger:
 
     def _barred(self, name: str) -> str:
         context = self._context
-        if context.signals.is_hold_requested:
+        if context.station_signals.is_hold_requested:
             return "feed hold is pressed"
         if self.axis_name and self.axis_name != name:
             return Message("{axis} is still being jogged", axis=self.axis_name)
@@ -357,12 +357,12 @@ def create_jogger(context: MachineContext) -> Jogger:
 class _PendingJog(NamedTuple):
     """A jog that was requested while the previous jog was still stopping.
 
-    ``until`` is the end of its lease.
+    ``lease_end_s`` is the end of its lease.
     """
 
     axis: str
     velocity: float
-    until: float
+    lease_end_s: float
 
 
 class BlockJogger(Jogger):
@@ -458,10 +458,12 @@ class BlockJogger(Jogger):
             return False
         pressed, button = self._pressed, self.button_input
         self.finish_jog()
-        if pressed is None or pressed.until <= self._context.now or self._unready():
+        if pressed is None or pressed.lease_end_s <= self._context.now or self._unready():
             return True
         self.button_input = button
-        return not self.start_or_renew_jog(pressed.axis, pressed.velocity, pressed.until - self._context.now)
+        return not self.start_or_renew_jog(
+            pressed.axis, pressed.velocity, pressed.lease_end_s - self._context.now
+        )
 
     def clear_jog(self) -> None:
         """Clear the active jog and the jog that waits for its end."""

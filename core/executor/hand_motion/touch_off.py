@@ -155,7 +155,7 @@ class TouchOff:
                 bool(button) and not context.is_button_pressed(button),
                 Message("button {button} was released", button=button),
             ),
-            (context.signals.is_hold_requested, "feed hold is pressed"),
+            (context.station_signals.is_hold_requested, "feed hold is pressed"),
             (is_guard_open(context), "the guard is open: close it"),
             (
                 context.spindle.is_requested or not context.spindle.is_stopped,

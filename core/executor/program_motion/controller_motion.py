@@ -170,17 +170,17 @@ def _feed_rate(block: Block, x: float, spindle_speed: SpindleSpeed) -> float:
 
 
 class _SentPart(NamedTuple):
-    ticket: int
-    piece: BlockPart
+    ticket_number: int
+    block_part: BlockPart
 
 
 class _SurfaceSpeed(NamedTuple):
     """A surface speed in mm/s with its direction of rotation and its lowest and highest rpm."""
 
-    speed: float
-    forward: bool
-    lowest: float
-    highest: float | None
+    surface_speed_mm_s: float
+    is_forward: bool
+    min_rpm: float
+    max_rpm: float | None
 
     @classmethod
     def from_block(cls, block: Block) -> _SurfaceSpeed | None:
@@ -243,7 +243,7 @@ class ControllerMotion:
         """Return the block after the one being executed, or None if it is not in the path section."""
         if self._shown is None:
             return None
-        cut = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
+        cut = [*(each.block_part.block for each in self._sent), *(each.block for each in self._pieces)]
         later = next((block for block in cut if block.n > self._shown.n), None)
         return later or (self._waiting[0] if self._waiting else None)
 
@@ -321,7 +321,7 @@ class ControllerMotion:
 
     def start_retract(self, block: Block) -> None:
         """Stop a thread pass that has lost spindle synchronization; X is retracted afterwards."""
-        left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
+        left = [*(each.block_part.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
         self.stop_at_once()
 
@@ -358,11 +358,11 @@ class ControllerMotion:
     def _poll_controller(self) -> BlockState:
         """Return the state of the controller, and remove the blocks that the controller has finished."""
         state = self._sink.state()
-        while self._sent and self._sent[0].ticket <= state.last_done_ticket:
-            done = self._sent.popleft().piece
+        while self._sent and self._sent[0].ticket_number <= state.last_done_ticket:
+            done = self._sent.popleft().block_part
             self._shown, self._seconds = done.block, self._seconds - done.min_duration_s
         if self._sent:
-            self._shown = self._sent[0].piece.block
+            self._shown = self._sent[0].block_part.block
         return state
 
     def _is_moving(self, state: BlockState) -> bool:
@@ -476,12 +476,12 @@ class ControllerMotion:
         if self._thread or not self._sent:
             return True
         slow = max(min(self._overrides.feed_factor, 1.0), _MIN_OVERRIDE)
-        return (self._seconds - self._sent[0].piece.min_duration_s) / slow < self._sink.max_lead_s
+        return (self._seconds - self._sent[0].block_part.min_duration_s) / slow < self._sink.max_lead_s
 
     def _single(self, block: Block) -> bool:
         if not self._context.switches.single_block or self._thread:
             self._last = None
             return True
         if self._last is None:
-            self._last = self._sent[-1].piece.block.n if self._sent else block.n
+            self._last = self._sent[-1].block_part.block.n if self._sent else block.n
         return block.n <= self._last

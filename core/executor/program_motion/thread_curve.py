@@ -43,7 +43,7 @@ class ThreadCurve(NamedTuple):
         """Return the value of s at the end of the curve."""
         return float(self.s_mm[-1])
 
-    def evaluate(self, s: float) -> tuple[float, float, float, float]:
+    def evaluate_at(self, s: float) -> tuple[float, float, float, float]:
         """Return X and Z at ``s``, and their derivatives with respect to s."""
         i = int(np.clip(np.searchsorted(self.s_mm, s, side="right") - 1, 0, len(self.s_mm) - 2))
         step = float(self.s_mm[i + 1] - self.s_mm[i])
@@ -120,8 +120,8 @@ def _round_joints(
     """
     s, points = list(raw.s_mm), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
     for joint in joints:
-        x0, z0, dx1, dz1 = raw.evaluate(joint)
-        _, _, dx0, dz0 = raw.evaluate(joint - 1e-6)
+        x0, z0, dx1, dz1 = raw.evaluate_at(joint)
+        _, _, dx0, dz0 = raw.evaluate_at(joint - 1e-6)
         ax, az = limits.amax[:2]
         half = 0.5 * speed * speed * max(abs(dx1 - dx0) / ax, abs(dz1 - dz0) / az) / _SHARE
         at = s.index(joint)

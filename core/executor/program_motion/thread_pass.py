@@ -101,7 +101,7 @@ class ThreadPass(SpindlePass):
     ) -> None:
         super().__init__(axes, limits, spindle_angle, blocks)
         self._top = limits.vmax[1]
-        self._lead, self._ramp = self._path.lead, _SHARE * self._path.acceleration
+        self._lead, self._ramp = self._path.lead_mm, _SHARE * self._path.acceleration
         self._index = 0.0  # unsigned revolutions at which s = 0 is in step
         self._begins = 0.0, 0.0  # start time of the run-up, and its final speed
         self._leaves = math.inf  # time at which the thread itself ends
@@ -398,7 +398,7 @@ class GearedThreadPass(SpindlePass):
         An axis that accelerates from rest lags an axis that already moves by v²/2a. It must therefore start
         v/2a earlier, which is half of its run-up.
         """
-        return 0.5 * self._path.lead * speed**2 / (_GEARED_SHARE * self._path.acceleration)
+        return 0.5 * self._path.lead_mm * speed**2 / (_GEARED_SHARE * self._path.acceleration)
 
     def _replan_for_speed(self, speed: float, geared: GearState) -> None:
         """Plan the run-up, or the motion after the thread, again for another spindle speed.
@@ -412,10 +412,10 @@ class GearedThreadPass(SpindlePass):
             try:
                 if turns < -max(ramp, self._ramp):
                     self._send_from_rest(speed, ramp)
-                elif turns > self._ramp and path.lead * turns < self._path_per_revolution(
+                elif turns > self._ramp and path.lead_mm * turns < self._path_per_revolution(
                     speed
-                ).find_full_depth_end(path.lead):
-                    self._send_path(turns, path.lead * turns, path.lead, speed, [])
+                ).find_full_depth_end(path.lead_mm):
+                    self._send_path(turns, path.lead_mm * turns, path.lead_mm, speed, [])
             except DriverError as error:
                 if error.code == "late":
                     continue
@@ -427,7 +427,7 @@ class GearedThreadPass(SpindlePass):
 
         Raises DriverError if the driver rejects it.
         """
-        self._send_path(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead / ramp)])
+        self._send_path(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead_mm / ramp)])
         self._ramp = ramp
 
     def _send_path(self, revolutions: float, s: float, v: float, speed: float, run_up: Phases) -> None:

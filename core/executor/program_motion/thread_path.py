@@ -41,7 +41,7 @@ class ThreadPath(NamedTuple):
     the spindle by ``exit_length_mm``. If ``exit_length_mm`` is 0, X moves at ``rapid_speed`` with Z at
     rest. ``acceleration`` is the acceleration along the thread; ``x_acceleration`` and ``z_acceleration``
     are the accelerations of the axes. A chain of threads has a ``curve``, whose s is the number of
-    revolutions times ``lead``. ``x_slope`` and ``end_lead`` are then the changes of X and Z per unit of s
+    revolutions times ``lead_mm``. ``x_slope`` and ``end_lead`` are then the changes of X and Z per unit of s
     at the end of the curve.
     """
 
@@ -54,7 +54,7 @@ class ThreadPath(NamedTuple):
     retract_x_mm: float
     exit_length_mm: float
     rapid_speed: float
-    lead: float
+    lead_mm: float
     acceleration: float
     x_acceleration: float
     z_acceleration: float
@@ -83,7 +83,7 @@ class ThreadPath(NamedTuple):
             retract_x_mm=out.mx,
             exit_length_mm=abs(out.z - out.z0) if out is not first and out.kind is BlockKind.THREAD else 0.0,
             rapid_speed=min(out.feed, limits.vmax[0]) if out.kind is BlockKind.RAPID else limits.vmax[0],
-            lead=first.feed,
+            lead_mm=first.feed,
             acceleration=min(az, ax / abs(slope)) if slope else az,
             x_acceleration=ax,
             z_acceleration=az,
@@ -94,7 +94,7 @@ class ThreadPath(NamedTuple):
         """Return the path of a chain of threads. ``last`` is its pull-out, or the last block of the chain."""
         first = cut[0]
         curve, (ax, az) = build_thread_curve(cut, limits), limits.amax[:2]
-        _, _, slope, along = curve.evaluate(curve.length_mm)
+        _, _, slope, along = curve.evaluate_at(curve.length_mm)
         in_step = last is not cut[-1] and last.kind is BlockKind.THREAD
         return cls(
             x=float(curve.x_mm[0]),
@@ -106,7 +106,7 @@ class ThreadPath(NamedTuple):
             retract_x_mm=last.mx,
             exit_length_mm=abs(last.z - last.z0) / abs(along) if in_step else 0.0,
             rapid_speed=min(last.feed, limits.vmax[0]) if last.kind is BlockKind.RAPID else limits.vmax[0],
-            lead=first.feed - 0.5 * first.growth * count_spindle_revolutions(first),
+            lead_mm=first.feed - 0.5 * first.growth * count_spindle_revolutions(first),
             acceleration=curve.compute_max_acceleration(ax, az),
             x_acceleration=ax,
             z_acceleration=az / abs(along),
@@ -123,7 +123,7 @@ class ThreadPath(NamedTuple):
         """Return s and the speed along s for the position ``z`` and the velocity ``z_velocity`` of Z."""
         if self.curve is not None:
             s = self.curve.find_s(z)
-            return s, z_velocity / self.curve.evaluate(s)[3]
+            return s, z_velocity / self.curve.evaluate_at(s)[3]
         return (z - self.z) * self.z_direction, z_velocity * self.z_direction
 
     def find_full_depth_end(self, speed: float) -> float:
@@ -156,7 +156,7 @@ class ThreadPath(NamedTuple):
         out = [(dt, sign * acc) for dt, acc in x_out]
         if self.curve is not None:
             thread, z = _map_to_curve(self.curve, s, entry_speed, z_phases)
-            x = _motion_before(thread, left).then(x_from, self.x_slope * v_left, out)
+            x = _motion_before(thread, left).append_phases(x_from, self.x_slope * v_left, out)
             return self._join_axes(start_time_s, x, z), start_time_s + left
         x_thread = [(dt, self.x_slope * acc) for dt, acc in _phases_before(z_phases, left)]
         x = _axis_motion(self.x + self.x_slope * s, self.x_slope * entry_speed, [*x_thread, *out])
@@ -194,16 +194,20 @@ class ThreadPath(NamedTuple):
 
     def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> MotionSegments:
         """Return the motion of both axes as common phases of constant acceleration."""
-        joints = np.unique(np.concatenate([x.t, z.t]).round(12))
+        joints = np.unique(np.concatenate([x.times_s, z.times_s]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _SHORT_TIME_S])]
         starts, dt = joints[:-1], np.diff(joints)
         p, v, a = (np.zeros((len(starts), 3)) for _ in range(3))
         for column, track in enumerate((x, z)):
-            i = np.clip(np.searchsorted(track.t, starts + _SHORT_TIME_S, side="right") - 1, 0, len(track.a))
-            u = starts - track.t[i]
-            accel = np.append(track.a, 0.0)[i]
-            p[:, column] = track.p[i] + (track.v[i] + 0.5 * accel * u) * u
-            v[:, column] = track.v[i] + accel * u
+            i = np.clip(
+                np.searchsorted(track.times_s, starts + _SHORT_TIME_S, side="right") - 1,
+                0,
+                len(track.accelerations),
+            )
+            u = starts - track.times_s[i]
+            accel = np.append(track.accelerations, 0.0)[i]
+            p[:, column] = track.positions[i] + (track.velocities[i] + 0.5 * accel * u) * u
+            v[:, column] = track.velocities[i] + accel * u
             a[:, column] = accel
         p[:, 2] = self.c
         return MotionSegments(t + starts, dt, p, v, a)
@@ -220,27 +224,30 @@ class _AxisMotion(NamedTuple):
     accelerations between the joints.
     """
 
-    t: FloatArray
-    p: FloatArray
-    v: FloatArray
-    a: FloatArray
+    times_s: FloatArray
+    positions: FloatArray
+    velocities: FloatArray
+    accelerations: FloatArray
 
-    def then(self, p: float, v: float, phases: Phases) -> _AxisMotion:
+    def append_phases(self, p: float, v: float, phases: Phases) -> _AxisMotion:
         """Return the motion followed by phases that start from this position and speed."""
         more = _axis_motion(p, v, phases)
         return _AxisMotion(
-            np.concatenate([self.t[:-1], self.t[-1] + more.t]),
-            np.concatenate([self.p[:-1], more.p]),
-            np.concatenate([self.v[:-1], more.v]),
-            np.concatenate([self.a, more.a]),
+            np.concatenate([self.times_s[:-1], self.times_s[-1] + more.times_s]),
+            np.concatenate([self.positions[:-1], more.positions]),
+            np.concatenate([self.velocities[:-1], more.velocities]),
+            np.concatenate([self.accelerations, more.accelerations]),
         )
 
 
 def _motion_before(track: _AxisMotion, end: float) -> _AxisMotion:
     """Return the motion up to the time ``end``."""
-    n = max(min(int(np.searchsorted(track.t, end - 1e-12)), len(track.a)), 0)
+    n = max(min(int(np.searchsorted(track.times_s, end - 1e-12)), len(track.accelerations)), 0)
     return _AxisMotion(
-        np.append(track.t[:n], end), np.append(track.p[:n], 0.0), np.append(track.v[:n], 0.0), track.a[:n]
+        np.append(track.times_s[:n], end),
+        np.append(track.positions[:n], 0.0),
+        np.append(track.velocities[:n], 0.0),
+        track.accelerations[:n],
     )
 
 
@@ -250,11 +257,11 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
     for whole, acc in phases:
         for dt in _knot_durations(curve, s, v, whole, acc):
             middle = s + (v + 0.25 * acc * dt) * 0.5 * dt
-            x, z, dx, dz = curve.evaluate(middle)
+            x, z, dx, dz = curve.evaluate_at(middle)
             for rows, at, ratio in ((tracks[0], x, dx), (tracks[1], z, dz)):
                 rows.append((t, at - ratio * (middle - s), ratio * v, ratio * acc))
             s, v, t = s + (v + 0.5 * acc * dt) * dt, v + acc * dt, t + dt
-    x, z, dx, dz = curve.evaluate(s)
+    x, z, dx, dz = curve.evaluate_at(s)
     speed = 0.0 if abs(v) < 1e-6 else v
     made = []
     for rows, at, ratio in ((tracks[0], x, dx), (tracks[1], z, dz)):

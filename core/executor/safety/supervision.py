@@ -61,19 +61,19 @@ class FollowingErrorWatch:
         each = zip(self._axes, sample.demand, sample.actual, sample.homed, strict=True)
         for one, demand, actual, homed in each:
             if sample.moving:
-                one.sent()  # even if its axis data has not arrived yet
-            if not one.passes(sample.t):
+                one.clear_rest_position()  # even if its axis data has not arrived yet
+            if not one.store_sample_time(sample.t):
                 continue
             if sample.enabled:
-                one.powered(demand, actual)
-                one.unasked(actual, at_rest=not sample.moving and demand == actual)
+                one.check_powered_sample(demand, actual)
+                one.check_unrequested_motion(actual, at_rest=not sample.moving and demand == actual)
             else:
-                one.unasked(actual, at_rest=not sample.moving and is_unpowered and homed)
+                one.check_unrequested_motion(actual, at_rest=not sample.moving and is_unpowered and homed)
 
     def reset_supervision(self) -> None:
         """Reset the supervision because the power has changed or an alarm was acknowledged."""
         for one in self._axes:
-            one.forget()
+            one.clear_samples()
 
 
 class _AxisWatch:
@@ -82,9 +82,9 @@ class _AxisWatch:
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
         self._t = 0.0
-        self.forget()
+        self.clear_samples()
 
-    def forget(self) -> None:
+    def clear_samples(self) -> None:
         self._dt = 0.0
         self._demand: float | None = None
         self._speed = self._speed_at = 0.0
@@ -95,12 +95,12 @@ class _AxisWatch:
         self._counted_at = self._t
         self._stood: float | None = None  # position at which the axis came to rest
 
-    def passes(self, t: float) -> bool:
+    def store_sample_time(self, t: float) -> bool:
         """Store the time of a sample; return whether the sample is newer than the previous one."""
         self._dt, self._t = t - self._t, t
         return self._dt > 0.0
 
-    def powered(self, demand: float, actual: float) -> None:
+    def check_powered_sample(self, demand: float, actual: float) -> None:
         """Check a sample of the axis with its drive on. Raises AlarmError if the axis is out of position."""
         axis, error = self._axis, abs(demand - actual)
         if self._demand is None:
@@ -144,16 +144,16 @@ class _AxisWatch:
                 Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
             )
 
-    def sent(self) -> None:
+    def clear_rest_position(self) -> None:
         """Clear the stored rest position because the driver reports motion."""
         self._stood = None
         self._since.pop("rest", None)
 
-    def unasked(self, actual: float, *, at_rest: bool) -> None:
+    def check_unrequested_motion(self, actual: float, *, at_rest: bool) -> None:
         """Raise AlarmError if the axis moves although it should be at rest and no setpoint controls it."""
         axis = self._axis
         if not at_rest:
-            self.sent()
+            self.clear_rest_position()
             return
         if self._lasts("rest", True) < axis.standstill_time_s:
             return
@@ -292,7 +292,7 @@ class OutputWatch:
         trips = self._context.ports.trip_monitor
         trip = trips.get_active_trip() if trips is not None else None
         if trips is not None and trip is not None:
-            trips.acknowledge(trip)  # acknowledged first, because the hold also needs setpoints
+            trips.acknowledge_trip(trip)  # acknowledged first, because the hold also needs setpoints
             self._handle_trip(trip)
         if UnknownPart.OUTPUTS in self._context.unknown_parts or self._context.axis_sample.fault:
             return  # The fault that switched outputs off is reported in this tick.

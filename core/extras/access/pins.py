@@ -113,21 +113,21 @@ def calculate_delay(wrong_attempts: int) -> float:
 class WrongPinCounter:
     """Counter of consecutive wrong PINs of all users.
 
-    ``last_attempt_s`` is the monotonic time of the last wrong PIN in seconds. ``count`` is stored, but the
-    time is not, so the delay starts again after a restart.
+    ``last_attempt_s`` is the monotonic time of the last wrong PIN in seconds. ``wrong_pin_count`` is stored,
+    but the time is not, so the delay starts again after a restart.
     """
 
-    count: int = 0
+    wrong_pin_count: int = 0
     last_attempt_s: float = 0.0
 
     def get_remaining_delay(self, now: float) -> float:
         """Return the time in seconds until a PIN is accepted again, or 0."""
-        return max(0.0, self.last_attempt_s + calculate_delay(self.count) - now)
+        return max(0.0, self.last_attempt_s + calculate_delay(self.wrong_pin_count) - now)
 
     def count_wrong_pin(self, now: float) -> None:
         """Increment the count and record ``now`` as the time of the last wrong PIN."""
-        self.count, self.last_attempt_s = self.count + 1, now
+        self.wrong_pin_count, self.last_attempt_s = self.wrong_pin_count + 1, now
 
     def reset_count(self) -> None:
         """Reset the count after a correct PIN."""
-        self.count = 0
+        self.wrong_pin_count = 0

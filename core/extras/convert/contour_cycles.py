@@ -24,8 +24,8 @@ class RoughingValues:
     Depth, retract and relief are in mm. ``repetition_count`` is the number of repetitions.
     """
 
-    depth: float = 0.0
-    retract: float = 0.5
+    depth_mm: float = 0.0
+    retract_mm: float = 0.5
     relief_x: float = 0.0
     relief_z: float = 0.0
     repetition_count: int = 1
@@ -47,9 +47,9 @@ def store_roughing_words(
         return True
     depth = u if code.value == 71 else w
     if depth is not None:
-        rough.depth = abs(state.convert_length(depth))
+        rough.depth_mm = abs(state.convert_length(depth))
     if r is not None:
-        rough.retract = abs(state.convert_length(r))
+        rough.retract_mm = abs(state.convert_length(r))
     return True
 
 
@@ -71,10 +71,14 @@ def read_pass_depth(
     """
     d = statement.find_word("D")
     if d is not None:
-        return abs(state.convert_increment(d)) if state.control.has_system_a else abs(state.convert_length(d))
-    if not rough.depth:
+        return (
+            abs(state.convert_increment(d))
+            if state.source_control.has_system_a
+            else abs(state.convert_length(d))
+        )
+    if not rough.depth_mm:
         raise make_error(code.line_number, code.column, "cycle-word", word="U" if code.value == 71 else "W")
-    return rough.depth
+    return rough.depth_mm
 
 
 def append_roughing_passes(
@@ -124,7 +128,7 @@ class DepthLevel(NamedTuple):
     depth_sign: float
     travel_sign: float
     pass_depth: float
-    retract: float
+    retract_mm: float
 
 
 def _one_level(
@@ -143,12 +147,12 @@ def _one_level(
             state.append_rapid(code.line_number, *_swap((level, enter), across_x=across_x))
         else:
             # The tool enters a pocket where the pass before has cut.
-            above = level - toward * min(at.pass_depth + at.retract, abs(level - begin[0]))
+            above = level - toward * min(at.pass_depth + at.retract_mm, abs(level - begin[0]))
             state.append_rapid(code.line_number, *_swap((begin[0], enter), across_x=across_x))
             state.append_rapid(code.line_number, *_swap((above, enter), across_x=across_x))
             state.append_cut(code, *_swap((level, enter), across_x=across_x))
         state.append_cut(code, *_swap((level, high), across_x=across_x))
-        out = min(at.retract, abs(level - begin[0]), abs(high - enter))
+        out = min(at.retract_mm, abs(level - begin[0]), abs(high - enter))
         state.append_rapid(
             code.line_number, *_swap((level - toward * out, high - at.travel_sign * out), across_x=across_x)
         )

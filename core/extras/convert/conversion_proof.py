@@ -63,7 +63,7 @@ def prove(
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
         return Proof(tuple(_of_target(each, text, source_line_numbers) for each in errors))
-    return _Comparison(blocks, steps, metric=is_metric).run()
+    return _Comparison(blocks, steps, metric=is_metric).compare_steps()
 
 
 def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
@@ -101,7 +101,7 @@ class _Comparison:
         self._most = 0.0
         self._near = EQUAL_TOLERANCE_MM + (_HALF_STEP_METRIC if metric else _HALF_STEP)
 
-    def run(self) -> Proof:
+    def compare_steps(self) -> Proof:
         try:
             compared = self._compare()
         except _DifferenceError as found:

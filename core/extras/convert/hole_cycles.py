@@ -60,7 +60,9 @@ def _plane(state: SourceState, z0: float) -> float:
     if word is None:
         return z0
     value = state.convert_length(word)
-    is_distance = state.control in {SourceControl.FANUC_A, SourceControl.FANUC_B} or not state.is_absolute
+    is_distance = (
+        state.source_control in {SourceControl.FANUC_A, SourceControl.FANUC_B} or not state.is_absolute
+    )
     return z0 + value if is_distance else value
 
 
@@ -75,7 +77,7 @@ def _pecks(state: SourceState, code: SourceWord, plane: float, bottom: float, *,
         state.append_cut(code, x, bottom)
         return
     step = abs(state.convert_increment(q))
-    clear = _CLEARANCE.get(state.control, _USUAL_CLEARANCE)
+    clear = _CLEARANCE.get(state.source_control, _USUAL_CLEARANCE)
     state.add_warning(code, "peck-clearance", value=clear)
     reached = plane
     while step > _SAME and reached - bottom > step + _SAME:
@@ -91,7 +93,7 @@ def _at_bottom(state: SourceState, code: SourceWord) -> None:
     p = state.hole_words.get("P")
     if p is None or code.value not in {82, 83, 89, 84}:
         return
-    seconds = p.value if p.has_point or not state.control.is_fanuc else p.value / 1000.0
+    seconds = p.value if p.has_point or not state.source_control.is_fanuc else p.value / 1000.0
     if seconds > 0:
         state.append_step(PathStep(StepKind.DWELL, code.line_number, number=max(seconds, 0.1)))
 

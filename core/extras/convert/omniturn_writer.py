@@ -43,7 +43,7 @@ class OmniTurnWriter:
     is_feed_per_rev: bool | None = None
     feed: float | None = None
     spindle: SpindleState = field(default_factory=SpindleState)
-    tool: int = 0
+    tool_number: int = 0
     active_tool: int = 0  # T that is active in the converted program
     nose_code: int = 0  # D that the next move needs
     needs_both_axes: bool = True
@@ -101,7 +101,7 @@ class OmniTurnWriter:
                 self._home(step)
             case StepKind.TOOL:
                 self._unresolved()
-                self.tool, self.x, self.z = round(step.number), None, None
+                self.tool_number, self.x, self.z = round(step.number), None, None
                 self._select(step)
             case StepKind.SPINDLE:
                 self._spindle(step)
@@ -113,15 +113,15 @@ class OmniTurnWriter:
                 self._preset(step)
             case StepKind.NOSE:
                 self.append_line(f"G{round(step.number)}", step)
-                self.nose_code = 0 if step.number == 40 else self.tool or 1
+                self.nose_code = 0 if step.number == 40 else self.tool_number or 1
             case StepKind.END:
                 self._unresolved()
                 self.append_line(f"M{round(step.number):02d}", step)
         return 1
 
     def _select(self, step: PathStep) -> None:
-        self.append_line(f"T{self.tool}", step)
-        self.active_tool, self.needs_both_axes = self.tool, True
+        self.append_line(f"T{self.tool_number}", step)
+        self.active_tool, self.needs_both_axes = self.tool_number, True
 
     def _unresolved(self) -> None:
         if self.pending_step is not None:
@@ -136,7 +136,7 @@ class OmniTurnWriter:
         if self.pending_step is not None:
             self.warnings.append(make_warning(self.pending_step.line, 1, "approach-joined"))
             self.pending_step = None
-        if self.tool and self.active_tool != self.tool:
+        if self.tool_number and self.active_tool != self.tool_number:
             self._select(step)
         after = steps[at + 1 : at + 4]
         if step.kind is StepKind.THREAD:

@@ -111,7 +111,7 @@ def append_peck_cycle(
 def _sizes(state: SourceState, statement: SourceStatement, *, along_z: bool) -> tuple[float, float, float]:
     """Return the depth of a peck, the shift between plunges, and the relief at the bottom, in mm."""
     p, q, r, i, k, d = (statement.find_word(letter) for letter in "PQRIKD")
-    if state.control is SourceControl.HAAS or (p is None and q is None):
+    if state.source_control is SourceControl.HAAS or (p is None and q is None):
         deep, side, off = (k, i, d) if along_z else (i, k, d)
         sizes = [abs(state.convert_length(each)) if each else 0.0 for each in (deep, side, off)]
         return sizes[0], sizes[1], sizes[2]

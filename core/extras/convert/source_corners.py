@@ -19,7 +19,7 @@ class Corner(NamedTuple):
 
     word: SourceWord
     size_mm: float
-    start: tuple[float, float]
+    move_start: tuple[float, float]
 
 
 def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
@@ -30,7 +30,7 @@ def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
     last = state.steps[-1]
     assert last.x is not None
     assert last.z is not None
-    x1, z1 = last.x - corner.start[0], last.z - corner.start[1]
+    x1, z1 = last.x - corner.move_start[0], last.z - corner.move_start[1]
     x2, z2 = x - last.x, z - last.z
     first, second = hypot(x1, z1), hypot(x2, z2)
     turns = z1 * x2 - x1 * z2
@@ -44,7 +44,7 @@ def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
         raise make_error(corner.word.line_number, corner.word.column, "corner", word=corner.word.text)
     a = last.x - x1 / first * back, last.z - z1 / first * back
     b = last.x + x2 / second * back, last.z + z2 / second * back
-    if hypot(a[0] - corner.start[0], a[1] - corner.start[1]) < _SLACK:
+    if hypot(a[0] - corner.move_start[0], a[1] - corner.move_start[1]) < _SLACK:
         state.steps.pop()
     else:
         state.steps[-1] = replace(last, x=a[0], z=a[1])

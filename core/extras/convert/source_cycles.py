@@ -67,12 +67,12 @@ class SourceCycles:
         return code in self._holes()
 
     def _boxes(self) -> Mapping[int, Callable[[SourceState, SourceStatement, SourceWord], None]]:
-        if not self._state.control.is_fanuc:
+        if not self._state.source_control.is_fanuc:
             return {}
-        return _BOXES if self._state.control.has_system_a else _BOXES_OF_B
+        return _BOXES if self._state.source_control.has_system_a else _BOXES_OF_B
 
     def _holes(self) -> frozenset[int]:
-        return HOLE_CYCLE_CODES - {73} if self._state.control.is_fanuc else HOLE_CYCLE_CODES
+        return HOLE_CYCLE_CODES - {73} if self._state.source_control.is_fanuc else HOLE_CYCLE_CODES
 
     def execute_modal_cycle(self, statement: SourceStatement, code: SourceWord) -> None:
         """Execute a line of the active modal cycle. Raises ProgramError."""
@@ -83,14 +83,14 @@ class SourceCycles:
         if number in self._boxes():
             self._boxes()[number](self._state, statement, code)
         else:
-            if self._state.plane_code == 18 and not self._state.control.is_fanuc:
+            if self._state.plane_code == 18 and not self._state.source_control.is_fanuc:
                 raise make_error(code.line_number, code.column, "hole-plane", word=f"G{number}")
             append_hole_cycle(self._state, statement, code)
 
     def execute_one_shot_cycle(self, statement: SourceStatement, code: SourceWord) -> bool:
         """Execute a cycle that is active only on its own line; return whether the code is such a cycle."""
         state, number = self._state, code.value
-        if not state.control.is_fanuc:
+        if not state.source_control.is_fanuc:
             if number != 76:
                 return False
             append_linuxcnc_thread_cycle(state, statement, code)
@@ -133,7 +133,7 @@ class SourceCycles:
             append_contour_repetitions(state, code, contour, self._rough, allowance)
         else:
             depth = read_pass_depth(state, statement, code, self._rough)
-            append_roughing_passes(state, code, contour, depth, self._rough.retract, allowance)
+            append_roughing_passes(state, code, contour, depth, self._rough.retract_mm, allowance)
         self._flow.at = after
 
     def _trace(self, lines: Sequence[SourceStatement]) -> list[PathStep]:

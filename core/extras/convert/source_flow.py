@@ -36,10 +36,10 @@ _KEYWORDS = frozenset({"if", "while", "repeat", "call"})
 
 
 class _Return(NamedTuple):
-    at: int
-    left: int  # number of further calls
-    begin: int
-    locals: dict[str, float]
+    return_index: int
+    remaining_calls: int  # number of further calls
+    begin_index: int
+    local_variables: dict[str, float]
 
 
 class ProgramFlow:
@@ -140,14 +140,14 @@ class ProgramFlow:
             self.ended, self.repeats = True, line.line_number
             return
         call = self._calls.pop()
-        if call.left:
-            self._calls.append(call._replace(left=call.left - 1))
-            self.at = call.begin
+        if call.remaining_calls:
+            self._calls.append(call._replace(remaining_calls=call.remaining_calls - 1))
+            self.at = call.begin_index
             return
-        self.at = call.at
-        for key in [key for key in self.variables if _is_local(key) and call.locals]:
+        self.at = call.return_index
+        for key in [key for key in self.variables if _is_local(key) and call.local_variables]:
             del self.variables[key]
-        self.variables.update(call.locals)
+        self.variables.update(call.local_variables)
         p = statement.find_word("P")
         if p is not None:
             self.at = self._block(round(p.value), p)
@@ -292,10 +292,10 @@ class ProgramFlow:
             self.ended = True
             return
         call = self._calls.pop()
-        self.at = call.at
+        self.at = call.return_index
         for key in [key for key in self.variables if _is_local(key)]:
             del self.variables[key]
-        self.variables.update(call.locals)
+        self.variables.update(call.local_variables)
 
     def _find(self, line: SourceLine, keys: Sequence[str]) -> int:
         for index in range(line.line_number, len(self.lines)):

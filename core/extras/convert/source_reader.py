@@ -114,12 +114,12 @@ class SourceReader:
 
     def _numbers_mode(self, word: SourceWord) -> bool:
         """Execute a code for units, X diameter or increments; return whether the word is such a code."""
-        state, fanuc, code = self.state, self.state.control.is_fanuc, word.value
+        state, fanuc, code = self.state, self.state.source_control.is_fanuc, word.value
         if code in {20, 21} or (code in {70, 71} and not fanuc):
             state.is_metric = code in {21, 71}
         elif code in {7, 8} and not fanuc:
             state.is_x_diameter = code == 7
-        elif code in {90, 91} and not state.control.has_system_a:
+        elif code in {90, 91} and not state.source_control.has_system_a:
             state.is_absolute = code == 90
         else:
             return False
@@ -132,9 +132,9 @@ class SourceReader:
             per_rev = code in {99, 95}
             state.feed = None if per_rev != state.is_feed_per_rev else state.feed
             state.is_feed_per_rev = per_rev
-        elif code == 93 and not state.control.is_fanuc:
+        elif code == 93 and not state.source_control.is_fanuc:
             raise make_error(word.line_number, word.column, "inverse-time")
-        elif code in {98, 99} and not state.control.has_system_a:
+        elif code in {98, 99} and not state.source_control.has_system_a:
             state.returns_to_r = code == 99
         else:
             return False
@@ -154,7 +154,7 @@ class SourceReader:
             state.add_warning(word, "left-out", word=word.text)
 
     def _feed_codes(self) -> frozenset[int]:
-        return frozenset({98, 99}) if self.state.control.has_system_a else frozenset({94, 95})
+        return frozenset({98, 99}) if self.state.source_control.has_system_a else frozenset({94, 95})
 
     def _feed(self, statement: SourceStatement) -> None:
         state = self.state
@@ -170,7 +170,7 @@ class SourceReader:
         if (
             state.is_feed_per_rev
             and not word.has_point
-            and state.control.is_fanuc
+            and state.source_control.is_fanuc
             and state.options.no_point != 1
         ):
             raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
@@ -181,8 +181,8 @@ class SourceReader:
             state.feed = most
 
     def _is_thread_cycle(self, statement: SourceStatement) -> bool:
-        code = 92 if self.state.control.has_system_a else 78
-        if not self.state.control.is_fanuc:
+        code = 92 if self.state.source_control.has_system_a else 78
+        if not self.state.source_control.is_fanuc:
             return False
         return statement.has_g(code) or (self.state.motion_code == code and not statement.find_words("G"))
 
@@ -208,7 +208,9 @@ class SourceReader:
         """Execute G96, G97, S, M03 and M04. Raises ProgramError."""
         state = self.state
         spindle = state.spindle
-        limit = statement.has_g(50) or (statement.has_g(92) and state.control is not SourceControl.LINUXCNC)
+        limit = statement.has_g(50) or (
+            statement.has_g(92) and state.source_control is not SourceControl.LINUXCNC
+        )
         word = statement.find_word("S")
         for code in statement.find_words("G"):
             if code.value in {96, 97} and spindle.is_css != (code.value == 96):
@@ -218,7 +220,7 @@ class SourceReader:
         elif word is not None:
             spindle = replace(spindle, speed=word.value if spindle.is_css else self._rpm(word))
         most = statement.find_word("D")
-        if most is not None and statement.has_g(96) and not state.control.is_fanuc:
+        if most is not None and statement.has_g(96) and not state.source_control.is_fanuc:
             spindle = replace(spindle, max_rpm=self._rpm(most))
         for code in statement.find_words("M"):
             if code.value in {3, 4}:
@@ -289,7 +291,9 @@ class SourceReader:
             state.motion_code = 0
         self._nose_codes(statement)
         axes = [
-            each for each in statement.words if each.letter in ("XZUW" if state.control.is_fanuc else "XZ")
+            each
+            for each in statement.words
+            if each.letter in ("XZUW" if state.source_control.is_fanuc else "XZ")
         ]
         if self._cycles.is_modal(state.motion_code):
             if axes or (motion and self._cycles.is_hole_cycle(state.motion_code)):
@@ -306,14 +310,14 @@ class SourceReader:
     def _is_motion(self, word: SourceWord) -> bool:
         if self._cycles.is_modal(word.value):
             return True
-        if word.value in {0, 1, 2, 3, 33} or (word.value == 32 and self.state.control.is_fanuc):
+        if word.value in {0, 1, 2, 3, 33} or (word.value == 32 and self.state.source_control.is_fanuc):
             return True
         known = (
             word.value in _IDLE
             or word.value in self._feed_codes()
             or word.value in {20, 21, 96, 97, 41, 42, 90, 91, 98, 99}
             or 54 <= word.value < 60
-            or (not self.state.control.is_fanuc and word.value in {7, 8, 70, 71})
+            or (not self.state.source_control.is_fanuc and word.value in {7, 8, 70, 71})
         )
         if not known:
             raise make_error(word.line_number, word.column, "code-unknown", word=word.text)
@@ -350,7 +354,7 @@ class SourceReader:
             self._corner = Corner(word, abs(state.convert_length(word)), start)
 
     def _corner_word(self, statement: SourceStatement) -> SourceWord | None:
-        if not self.state.control.is_fanuc:
+        if not self.state.source_control.is_fanuc:
             return None
         return next(
             (each for each in statement.words if each.letter in {",C", ",R", "C", "R", "I", "K"}), None
@@ -358,11 +362,11 @@ class SourceReader:
 
     def _check_letters(self, statement: SourceStatement) -> None:
         """Reject words that this reader does not use. Raises ProgramError."""
-        allowed = "GMXZFSTNUW" if self.state.control.is_fanuc else "GMXZFSTN"
+        allowed = "GMXZFSTNUW" if self.state.source_control.is_fanuc else "GMXZFSTN"
         if self.state.motion_code in {2, 3}:
             allowed += "RIK"
         elif self.state.motion_code in {32, 33}:
-            allowed += "EQ" if self.state.control.is_fanuc else "K"
+            allowed += "EQ" if self.state.source_control.is_fanuc else "K"
         for word in statement.words:
             if word.letter in allowed:
                 continue
@@ -394,7 +398,7 @@ class SourceReader:
 
     def _one_shot(self, statement: SourceStatement, word: SourceWord) -> bool:
         """Execute a code that uses the axis words of its line; return whether the word is such a code."""
-        code, control = word.value, self.state.control
+        code, control = word.value, self.state.source_control
         if code == 4:
             self._dwell(statement, word)
         elif code in {28, 30}:
@@ -412,14 +416,14 @@ class SourceReader:
         if time is None:
             raise make_error(word.line_number, word.column, "cycle-word", word="P")
         seconds = time.value
-        if self.state.control.is_fanuc and not time.has_point:
+        if self.state.source_control.is_fanuc and not time.has_point:
             seconds = seconds / 1000.0
         if seconds > 0:
             self.state.append_step(PathStep(StepKind.DWELL, statement.line_number, number=max(seconds, 0.1)))
 
     def _home(self, statement: SourceStatement) -> None:
         state = self.state
-        letters = "XZUW" if state.control.is_fanuc else "XZ"
+        letters = "XZUW" if state.source_control.is_fanuc else "XZ"
         self._only(statement, "GMST" + letters)
         x_word, z_word = (
             next((each for each in statement.words if each.letter in pair), None) for pair in ("XU", "ZW")
@@ -458,7 +462,7 @@ class SourceReader:
     def _preset(self, statement: SourceStatement) -> None:
         """Execute G50 or G92, which set a maximum speed, a position preset or both."""
         state = self.state
-        self._only(statement, "GMSTXZ" + ("UW" if state.control.is_fanuc else ""))
+        self._only(statement, "GMSTXZ" + ("UW" if state.source_control.is_fanuc else ""))
         if statement.find_word("X") is None and statement.find_word("Z") is None:
             return
         x, z = statement.find_word("X"), statement.find_word("Z")

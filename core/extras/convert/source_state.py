@@ -33,7 +33,7 @@ class SourceState:
     is_absolute: bool = True
     is_feed_per_rev: bool = False
     feed: float | None = None
-    lead: float = 0.0  # of the last thread, mm/rev
+    last_lead_mm: float = 0.0  # of the last thread, mm/rev
     motion_code: float = 0
     plane_code: float = 18
     spindle: SpindleState = field(default_factory=SpindleState)
@@ -48,7 +48,7 @@ class SourceState:
     returns_to_r: bool = False  # G99 of G-code systems B and C
 
     @property
-    def control(self) -> SourceControl:
+    def source_control(self) -> SourceControl:
         """Return the control for which the source program was written."""
         return self.options.control
 
@@ -66,7 +66,7 @@ class SourceState:
         if not word.value:
             return 0.0
         unit = self.get_unit_mm(word)
-        if word.has_point or not self.control.is_fanuc or self.options.no_point == 1:
+        if word.has_point or not self.source_control.is_fanuc or self.options.no_point == 1:
             return word.value * unit
         if not self.options.no_point:
             raise make_error(word.line_number, word.column, "no-point", word=word.text)
@@ -81,7 +81,7 @@ class SourceState:
 
         The value is in least increments unless the word has a decimal point.
         """
-        if word.has_point or not self.control.is_fanuc:
+        if word.has_point or not self.source_control.is_fanuc:
             return word.value * self.get_unit_mm(word)
         return word.value * self.get_unit_mm(word) * _LEAST[bool(self.is_metric)]
 
@@ -99,7 +99,7 @@ class SourceState:
         self, statement: SourceStatement, letter: str, increment: str, now: float | None
     ) -> float | None:
         word = statement.find_word(letter)
-        by = statement.find_word(increment) if self.control.is_fanuc else None
+        by = statement.find_word(increment) if self.source_control.is_fanuc else None
         if word is None and by is None:
             return now
         across = letter == "X"

@@ -27,15 +27,15 @@ def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) 
 
     Raises ProgramError if there is no lead.
     """
-    letters = "FE" if state.control.is_fanuc else "KP"
+    letters = "FE" if state.source_control.is_fanuc else "KP"
     word = next((each for letter in letters if (each := statement.find_word(letter))), None)
     if word is not None:
-        if not word.has_point and state.control.is_fanuc and state.options.no_point != 1:
+        if not word.has_point and state.source_control.is_fanuc and state.options.no_point != 1:
             raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
-        state.lead = abs(word.value) * state.get_unit_mm(word)
-    if not state.lead:
+        state.last_lead_mm = abs(word.value) * state.get_unit_mm(word)
+    if not state.last_lead_mm:
         raise make_error(code.line_number, code.column, "thread-lead")
-    return state.lead
+    return state.last_lead_mm
 
 
 def append_single_thread_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:

@@ -71,7 +71,7 @@ def split_element(element: Element, points: Iterable[Point]) -> list[Element]:
 class _Nodes:
     """Points at which element ends meet. Points within the gap share one node."""
 
-    gap: float
+    gap_mm: float
     points: list[Point] = field(default_factory=list)
     _cells: dict[tuple[int, int], list[int]] = field(default_factory=dict)
     _known: dict[Point, int] = field(default_factory=dict)  # found since the last new node
@@ -83,7 +83,7 @@ class _Nodes:
         return known
 
     def _found(self, point: Point) -> int:
-        size = self.gap or 1e-6
+        size = self.gap_mm or 1e-6
         i, k = math.floor(point[0] / size), math.floor(point[1] / size)
         near = [n for a in (i - 1, i, i + 1) for b in (k - 1, k, k + 1) for n in self._cells.get((a, b), ())]
         best = min(near, key=lambda n: math.dist(self.points[n], point), default=None)
@@ -111,7 +111,7 @@ class ElementGroup:
     axis_crossings_z: tuple[float, ...] = ()
 
     @property
-    def extent(self) -> tuple[float, float, float]:
+    def extent_mm(self) -> tuple[float, float, float]:
         """Return the smallest Z, the largest Z and the largest r of the group, in mm."""
         boxes = [each.bounding_box for each in self.elements]
         return min(b[2] for b in boxes), max(b[3] for b in boxes), max(b[1] for b in boxes)
@@ -260,7 +260,7 @@ def _foremost(group: ElementGroup, gap: float) -> int:
 
 
 def _at_front(net: ElementGroup, gap: float) -> set[int]:
-    front = net.extent[1] - gap
+    front = net.extent_mm[1] - gap
     return {n for pair in net.element_end_nodes for n in pair if net.node_points[n][1] >= front}
 
 
@@ -295,7 +295,7 @@ def _walk(
     for number, ends in enumerate(group.element_end_nodes):
         for n in ends:
             at_node.setdefault(n, []).append(number)
-    low = group.extent[0]
+    low = group.extent_mm[0]
     shut = set(without)
     path_steps: list[tuple[int, int]] = []  # elements, with the node to which each leads
     best: list[tuple[int, int]] = []
@@ -363,7 +363,7 @@ def _checked(net: ElementGroup, walked: list[Element], gap: float) -> list[Eleme
     _no_crossing(walked)
     for end in (walked[0].start, walked[-1].end):
         if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.axis_crossings_z):
-            distance_mm = net.extent[1] - end[1]
+            distance_mm = net.extent_mm[1] - end[1]
             raise DrawingError(
                 Message(
                     "the contour crosses the axis {distance} mm from the face. Choose another axis.",

@@ -218,8 +218,8 @@ MAX_READING_TIME_S = 30.0  # s of processor time for one program from a drawing
 @dataclass(frozen=True, slots=True)
 class _Limit:
     start_time_s: float
-    seconds: float
-    watch: Callable[[float], None]
+    limit_s: float
+    report_elapsed: Callable[[float], None]
 
 
 _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
@@ -229,7 +229,7 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
     """Limit the processor time of this thread in the ``with`` block to ``limit_s`` seconds.
 
-    ``watch`` is called with the processor time used so far in seconds.
+    ``report_elapsed`` is called with the processor time used so far in seconds.
     """
     token = _limit.set(_Limit(time.thread_time(), limit_s, report_time))
     try:
@@ -241,13 +241,13 @@ def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READIN
 def check_work_limit() -> None:
     """Check the work limit inside a loop over elements.
 
-    Raises DrawingError at the limit, or the exception that ``watch`` raises.
+    Raises DrawingError at the limit, or the exception that ``report_elapsed`` raises.
     """
     limit = _limit.get()
     if limit is None:
         return
     spent = time.thread_time() - limit.start_time_s
-    limit.watch(spent)
-    if spent > limit.seconds:
+    limit.report_elapsed(spent)
+    if spent > limit.limit_s:
         words = "the drawing has too many parallel lines. Save only the contour of the part."
         raise DrawingError(words, "too-slow")

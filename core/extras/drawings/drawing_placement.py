@@ -296,7 +296,7 @@ def extract_profile(
         raise DrawingError(
             Message("{drawing}: {error}", drawing=drawing.name, error=error), error.code
         ) from None
-    low, high, _ = group.extent
+    low, high, _ = group.extent_mm
     zero = {ZeroPosition.FACE: high, ZeroPosition.BACK: low, ZeroPosition.ORIGIN: 0.0}[
         placement.zero
     ] - placement.shift

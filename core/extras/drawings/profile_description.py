@@ -31,7 +31,7 @@ def describe_program(
         n = program.nose_offset
         x, z, r = (format_short_number(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.nose_radius))
         if n.quadrant:
-            edge = f"T{program.tool_number:.0f} D{n.number}"
+            edge = f"T{program.tool_number:.0f} D{n.offset_number}"
             yield Message(
                 "{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}",
                 edge=edge,
@@ -42,7 +42,7 @@ def describe_program(
         else:
             yield Message(
                 "secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}",
-                number=n.number,
+                number=n.offset_number,
                 x=x,
                 z=z,
                 radius=r,
@@ -144,7 +144,7 @@ def _convert_nose_to_json(program: ProfileProgram) -> dict[str, Any]:
     if nose is not None and nose.quadrant:
         edge = {
             "tool": int(program.tool_number),
-            "edge": nose.number,
+            "edge": nose.offset_number,
             "r": nose.nose_radius,
             "quadrant": nose.quadrant,
         }
@@ -152,7 +152,12 @@ def _convert_nose_to_json(program: ProfileProgram) -> dict[str, Any]:
     if nose is None:
         return {"secondary_offset": None}
     return {
-        "secondary_offset": {"number": nose.number, "x": round(nose.x, 6), "z": nose.z, "r": nose.nose_radius}
+        "secondary_offset": {
+            "number": nose.offset_number,
+            "x": round(nose.x, 6),
+            "z": nose.z,
+            "r": nose.nose_radius,
+        }
     }
 
 

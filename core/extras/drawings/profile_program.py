@@ -48,7 +48,7 @@ class NoseOffset(NamedTuple):
     ``number`` is the number of a secondary offset, or of a cutting edge if ``quadrant`` is set.
     """
 
-    number: int
+    offset_number: int
     x: float
     z: float
     nose_radius: float
@@ -108,7 +108,7 @@ def make_profile_program(
     left = [UncutRange(*each) for each in contour.unreachable_ranges]
     for groove in contour.grooves:
         over = _find_blade_clearance(contour.elements, groove, 1.0 if outside else -1.0)
-        left += writer.groove(
+        left += writer.add_groove(
             _groove(groove, entered_values, writer.current_settings, over, outside=outside), groove
         )
     shapes, made = tuple(writer.shapes), tuple(writer.lines[len(lines) :])
@@ -154,7 +154,7 @@ class _Writer:
         self.shapes.append((one, now))
         self.lines += one.make_lines(now)
 
-    def groove(self, typed: FieldValues | str, groove: OmittedGroove) -> Iterator[UncutRange]:
+    def add_groove(self, typed: FieldValues | str, groove: OmittedGroove) -> Iterator[UncutRange]:
         """Add a groove, or yield its range with the reason if the groove cannot be cut."""
         span = groove.back_edge[1], groove.front_edge[1]
         if isinstance(typed, str):
@@ -387,10 +387,10 @@ class _SlopedGroove(NamedTuple):
     The Z of both edges and the r of the bottom are in mm, and the slopes are in degrees.
     """
 
-    front: float
-    back: float
-    bottom: float
-    edge: float
+    front_z: float
+    back_z: float
+    bottom_radius: float
+    edge_radius: float
     face_z: float
     chuck_z: float
 

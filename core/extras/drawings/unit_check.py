@@ -22,7 +22,7 @@ def detect_wrong_unit(
     mm, or 0 if unknown. The result is None if the contour fits, or if it does not fit in a smaller unit
     either.
     """
-    low, high, radius = group.extent
+    low, high, radius = group.extent_mm
     if not all(travel) or _fits(high - low, radius, travel):
         return None
     smaller = sorted(((mm, name) for name, mm in UNIT_SIZES_MM.items() if mm < unit_mm), reverse=True)

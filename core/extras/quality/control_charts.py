@@ -137,13 +137,13 @@ SAMPLE_SIZES = range(2, 11)
 class ControlChart:
     """A control chart with its points in order, its center line and its two limits."""
 
-    points: FloatArray
+    point_values: FloatArray
     center_line: float
     lower_limit: float
     upper_limit: float
 
     @property
-    def sigma(self) -> float:
+    def standard_deviation_mm(self) -> float:
         """Return the standard deviation that corresponds to the limits.
 
         The result is 0 if the points do not vary.
@@ -153,7 +153,7 @@ class ControlChart:
     @property
     def has_stable_limits(self) -> bool:
         """Return whether there are enough points for stable limits."""
-        return len(self.points) >= MIN_STABLE_POINTS
+        return len(self.point_values) >= MIN_STABLE_POINTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,9 +259,9 @@ class RuleViolation(NamedTuple):
 
 def find_rule_violations(chart: ControlChart) -> tuple[RuleViolation, ...]:
     """Return the violations of all rules, sorted by point, or () if the points do not vary."""
-    if chart.sigma <= 0.0 or not len(chart.points):
+    if chart.standard_deviation_mm <= 0.0 or not len(chart.point_values):
         return ()
-    zones = (chart.points - chart.center_line) / chart.sigma
+    zones = (chart.point_values - chart.center_line) / chart.standard_deviation_mm
     found = [
         RuleViolation(point, number, words)
         for number, (words, rule) in CONTROL_RULES.items()

@@ -194,7 +194,7 @@ class SharedDatabase:
             desks = self._desks(connection, strays)
         return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
 
-    def publish(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
+    def publish_versions(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add versions and the state of this machine in one transaction.
 
         The method returns when the data is on the server's disk.

@@ -97,7 +97,7 @@ class SharedFolder:
             desks, bad = self._desks()
             return Found(frozenset(there), tuple(fresh), desks, (*strays, *bad))
 
-    def publish(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
+    def publish_versions(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add version files and the state of this machine.
 
         Each file is synced before it gets its final name.

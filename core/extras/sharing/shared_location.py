@@ -58,7 +58,7 @@ class SharedLocation(Protocol):
         """
         ...
 
-    def publish(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
+    def publish_versions(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add versions and the state of this machine, and return when they are stored permanently.
 
         Versions that already exist remain unchanged. After a failure some versions may have been added

@@ -49,7 +49,7 @@ class TableColumn(NamedTuple):
     is a radius.
     """
 
-    place: int
+    column_index: int
     heading: str
     field_name: str
     unit: str = ""

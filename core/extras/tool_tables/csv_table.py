@@ -66,7 +66,7 @@ def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Ta
         if (column := identify_column(index, heading, assigned.get(index, "")))
     ]
     mapped = set(assigned.values())
-    found = [each for each in found if each.place in assigned or each.field_name not in mapped]
+    found = [each for each in found if each.column_index in assigned or each.field_name not in mapped]
     fields = [each.field_name for each in found]
     for field in sorted({each for each in fields if fields.count(each) > 1}):
         text = Message("two columns are {field}; use --map {field}=COLUMN to select one", field=field)
@@ -79,7 +79,9 @@ def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Ta
         table.add_mistake(place, "no-number-column", text)
     _check_x(table, place, found)
     unused = [
-        h.strip()[:40] for i, h in enumerate(headings) if h.strip() and i not in {c.place for c in found}
+        h.strip()[:40]
+        for i, h in enumerate(headings)
+        if h.strip() and i not in {c.column_index for c in found}
     ]
     if unused:
         table.notes.append(Message("columns that are not imported: {names}", names=", ".join(unused[:40])))
@@ -120,7 +122,11 @@ def _check_x(table: TableReader, place: str, columns: Iterable[TableColumn]) -> 
 def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Iterable[TableColumn]) -> None:
     """Add the tool of one row."""
     mistakes = len(table.mistakes)
-    cells = {each.field_name: (each, row[each.place].strip()) for each in columns if each.place < len(row)}
+    cells = {
+        each.field_name: (each, row[each.column_index].strip())
+        for each in columns
+        if each.column_index < len(row)
+    }
     column, text = cells.pop(NUMBER, (None, ""))
     where = Message("{place}, column {column}", place=place, column=column.heading if column else NUMBER)
     if not text:
@@ -217,7 +223,7 @@ def _heading(name: str, unit: str) -> str:
 
 def _cells(tool: ToolEntry, names: Iterable[str], factor: float) -> Iterator[str]:
     values: Mapping[str, FieldValue] = {**tool.offset_values, **tool.shape_values}
-    yield str(tool.number)
+    yield str(tool.tool_number)
     for name in names:
         value = values.get(name, "")
         if isinstance(value, bool):

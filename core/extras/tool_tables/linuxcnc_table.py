@@ -90,7 +90,7 @@ def format_table(tools: Iterable[ToolEntry], unit: str) -> str:
 
 def _lines(tools: Iterable[ToolEntry], factor: float) -> Iterator[str]:
     for tool in tools:
-        words = [f"T{tool.number}", f"P{tool.number}"]
+        words = [f"T{tool.tool_number}", f"P{tool.tool_number}"]
         for letter, name in (("X", "x"), ("Z", "z")):
             if name in tool.offset_values:
                 words.append(f"{letter}{float(tool.offset_values[name]) / factor:+.6f}")

@@ -72,7 +72,7 @@ class ReadingOptions(NamedTuple):
 class ToolEntry:
     """One tool of a table, with its position in the file and notes about values that are not imported."""
 
-    number: int
+    tool_number: int
     position_text: str
     offset_values: Mapping[str, FieldValue]
     shape_values: Mapping[str, FieldValue]

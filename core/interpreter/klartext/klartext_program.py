@@ -67,7 +67,7 @@ class Program:
         default_factory=dict
     )  # called programs by file name in capitals
     # datum and point tables by file name in capitals
-    tables: dict[str, dict[int, TableRow]] = field(default_factory=dict)
+    tables_by_name: dict[str, dict[int, TableRow]] = field(default_factory=dict)
 
     @property
     def block_count(self) -> int:
@@ -113,7 +113,7 @@ def read_program(source: ProgramSource) -> Program:
     for each in source.subprograms:
         name = normalize_file_name(each.name)
         if is_table(name):
-            program.tables[name] = read_table_rows(each)
+            program.tables_by_name[name] = read_table_rows(each)
         else:
             program.called_programs[name] = read_program(each)
     return program
@@ -402,7 +402,7 @@ class Flow(ControlFlow[_Level]):
 
     def read_table(self, name: str) -> dict[int, TableRow] | None:
         """Return the rows of a table in the folder of the program, or None if the table does not exist."""
-        return self._main.tables.get(normalize_file_name(name))
+        return self._main.tables_by_name.get(normalize_file_name(name))
 
     def call_program(self, name: str, line: int) -> Program | None:
         """Call another program and return it, or return None if the program does not exist.

@@ -166,7 +166,7 @@ class _Reader:
         self.problems: list[Diagnostic] = []
         self._plane = 0  # line of a (~PL..) without its (END) so far
 
-    def read(self) -> ExecutableLines:
+    def read_lines(self) -> ExecutableLines:
         lines = parse_lines(self.source.lines, self._line, reads_every_line="~" in self.source.text)
         if self._plane:
             self._plane_open(self._plane)
@@ -174,9 +174,9 @@ class _Reader:
 
     def _line(self, number: int, text: str) -> ExecutableLine:
         move = parse_plain_move(text)
-        return self.statement(number, text) if move is None or self._plane else move
+        return self.read_statement(number, text) if move is None or self._plane else move
 
-    def statement(self, number: int, text: str) -> Statement | None:
+    def read_statement(self, number: int, text: str) -> Statement | None:
         if not text or text.isspace():
             self.style.record_deviation("blank-line", number)
             self.blank_line_count += 1
@@ -247,7 +247,7 @@ def read_program(source: ProgramSource, is_strict: bool = False) -> Program:
     original control forbids are errors.
     """
     reader = _Reader(source, strict=is_strict)
-    ready = reader.read()
+    ready = reader.read_lines()
     length = len(ready)
     structure, faults = find_structure(reader.statements, length)
     if not length:
@@ -297,7 +297,7 @@ def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
     """Return one line as a statement with its errors; the statement is None for an empty line."""
     reader = _Reader(ProgramSource("", text), strict=False)
-    statement = reader.statement(number, text)
+    statement = reader.read_statement(number, text)
     return statement, reader.problems
 
 

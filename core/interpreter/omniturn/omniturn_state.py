@@ -38,7 +38,7 @@ class CompensationSwitch(NamedTuple):
     in mm.
     """
 
-    code: int
+    g_code: int
     line: int
     secondary_x: float
     secondary_z: float
@@ -46,7 +46,7 @@ class CompensationSwitch(NamedTuple):
     @property
     def name(self) -> str:
         """Return the code as text for messages, such as G41."""
-        return f"G{self.code}"
+        return f"G{self.g_code}"
 
 
 StageItem = Block | CompensationSwitch

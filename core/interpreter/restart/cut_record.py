@@ -139,7 +139,7 @@ class _Rows:
         same = (np.full(len(series), each) for each in (_how(like), like.modal.tool, self._opened))
         self._tables.append(np.array([series.n, series.line, *places, *same], dtype=np.float64))
 
-    def table(self) -> FloatArray:
+    def make_table(self) -> FloatArray:
         """Return all rows as one table."""
         self._finish_pieces()
         return np.concatenate(self._tables, axis=1)
@@ -185,7 +185,7 @@ def record_all_cuts(
 
 
 def _record(rows: _Rows, blocks: int) -> CutRecord:
-    table = rows.table()
+    table = rows.make_table()
     n, line, how, tool, bar = table[[0, 1, 6, 7, 8]].astype(np.int64)
     x0, z0, x, z = table[2:6]
     _forget_start(x0, z0, x, z)

@@ -380,7 +380,7 @@ _LINEAR_AXES = "XYZ"
 class _MovePlan:
     """The moves planned so far, and the machine position at their end by axis."""
 
-    machine: Kinematics
+    kinematics: Kinematics
     axis_positions: dict[str, float]
 
     def move_to(self, target: dict[str, float], feed: float | None) -> Iterator[AxesLeg]:
@@ -398,7 +398,7 @@ class _MovePlan:
 
     @property
     def tool_axis(self) -> Vector:
-        return self.machine.compute_tool_direction(self.axis_positions)
+        return self.kinematics.compute_tool_direction(self.axis_positions)
 
     def available_travel(self, start: Vector) -> float:
         """Return the possible travel from ``start`` along the tool axis away from the part, in mm.
@@ -406,7 +406,7 @@ class _MovePlan:
         The travel is inf if no axis has a limit.
         """
         ways = [inf]
-        for slide, at, share in zip(self.machine.linear_axes, start, self.tool_axis, strict=True):
+        for slide, at, share in zip(self.kinematics.linear_axes, start, self.tool_axis, strict=True):
             if abs(share) > _SAME:
                 ways.append(((slide.travel_max if share > 0.0 else slide.travel_min) - at) / share)
         return min(ways) - LIMIT_CLEARANCE_MM
@@ -485,6 +485,6 @@ def _retract_moves(plan: _MovePlan, choices: OperatorChoices) -> Iterator[AxesLe
     slowly = min(_SLOW_RETRACT_MM, room)
     yield from plan.move_to(plan.offset_position(start, slowly), choices.inside_speed_mm_s)
     yield from plan.move_to(plan.offset_position(start, room), None)
-    top = plan.machine.linear_axes[2].travel_max - LIMIT_CLEARANCE_MM
+    top = plan.kinematics.linear_axes[2].travel_max - LIMIT_CLEARANCE_MM
     if top > plan.axis_positions["Z"]:
         yield from plan.move_to({"Z": top}, None)

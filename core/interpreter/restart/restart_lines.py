@@ -18,14 +18,14 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 class LineRange(NamedTuple):
     """The lines ``first`` to ``last_line`` of a program, counted from 1.
 
-    If a program cannot be restarted from these lines, ``reason`` is the template of the message. Its
+    If a program cannot be restarted from these lines, ``refusal_reason`` is the template of the message. Its
     placeholders are ``line``, the restart line, and ``begin``, the line on which the contour, corner or
     other section begins.
     """
 
     first: int
     last_line: int
-    reason: str = ""
+    refusal_reason: str = ""
     start_line: int = 0
 
     def make_message(self, line: int) -> Message:
@@ -33,7 +33,7 @@ class LineRange(NamedTuple):
 
         The line must be within the range.
         """
-        return Message(self.reason, line=line, begin=self.start_line)
+        return Message(self.refusal_reason, line=line, begin=self.start_line)
 
 
 class RestartSuitability:

@@ -45,16 +45,16 @@ _MAX_ROWS_BACK = 24  # maximum rows back from which the retract of the program i
 
 
 class _Segment(NamedTuple):
-    x0: float
-    z0: float
+    start_x: float
+    start_z: float
     x: float
     z: float
     move_kind: int
-    row: int
+    record_row: int
 
     @property
     def length(self) -> float:
-        return hypot(self.x - self.x0, self.z - self.z0)
+        return hypot(self.x - self.start_x, self.z - self.start_z)
 
 
 def plan_retract(cut_record: CutRecord, position: ToolPosition, last_complete_block: int) -> Retract:
@@ -152,7 +152,7 @@ class _Search:
             if segment.move_kind & FEED or len(legs) >= _LEGS:
                 return None
             legs.append(RetractLeg(segment.x, segment.z))
-            if self._has_left_part(legs[-1]) or self._is_approach_rapid(segment.row):
+            if self._has_left_part(legs[-1]) or self._is_approach_rapid(segment.record_row):
                 return self._made(legs)
         return None
 
@@ -228,8 +228,8 @@ class _Search:
     def _out_with(
         self, segment: _Segment, steps: Iterator[_Segment], *, grew: bool, shrank: bool
     ) -> Retract | None:
-        share = (max(self.z, segment.z0) - segment.z0) / (segment.z - segment.z0)
-        to_x = segment.x0 + share * (segment.x - segment.x0)
+        share = (max(self.z, segment.start_z) - segment.start_z) / (segment.z - segment.start_z)
+        to_x = segment.start_x + share * (segment.x - segment.start_x)
         out = abs(to_x) - abs(self.x)
         if (to_x < -SAME_POINT_MM) != (self.x < -SAME_POINT_MM) and max(
             abs(to_x), abs(self.x)
@@ -326,10 +326,10 @@ class _Search:
             ahead = self._step_back(segment, points[-1]) if len(points) <= _MAX_ROWS_BACK else None
             if ahead is not None:
                 return self._made([*remove_detours([*points, ahead[0]])[1:], *ahead[1]])
-            points.append(RetractLeg(segment.x0, segment.z0))
+            points.append(RetractLeg(segment.start_x, segment.start_z))
             if self.cut_record.is_outside_material(
-                segment.x0, segment.z0, self.position.tool_number
-            ) or self._is_approach_rapid(segment.row - 1):
+                segment.start_x, segment.start_z, self.position.tool_number
+            ) or self._is_approach_rapid(segment.record_row - 1):
                 legs = remove_detours(points)[1:]
                 return self._made(legs) if len(legs) <= _LEGS else self._direction_only()
         return self._direction_only()
@@ -346,10 +346,13 @@ class _Search:
                 or int(cut.bar_section[each]) != bar
                 or int(cut.block_number[each]) > self.last_complete_block
             )
-            unknown = isnan(segment.x0) or isnan(segment.z0)
+            unknown = isnan(segment.start_x) or isnan(segment.start_z)
             if other or unknown or segment.move_kind & (THREAD | STILL | FACE | SIDE):
                 return
-            if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > PATH_TOLERANCE_MM:
+            if (
+                before is not None
+                and hypot(segment.x - before.start_x, segment.z - before.start_z) > PATH_TOLERANCE_MM
+            ):
                 return
             yield segment
             before = segment
@@ -361,19 +364,21 @@ class _Search:
 
         The program's retract starts at the end of this move. Returns None if these moves are not safe.
         """
-        length = hypot(segment.x0 - at.x, segment.z0 - at.z)
+        length = hypot(segment.start_x - at.x, segment.start_z - at.z)
         if (
             not segment.move_kind & FEED
-            or at.z >= segment.z0 - _PARALLEL_TOLERANCE_MM
+            or at.z >= segment.start_z - _PARALLEL_TOLERANCE_MM
             or length <= _PARALLEL_TOLERANCE_MM
         ):
             return None
         share = min(_BACKOFF_MM, length / 2) / length
-        leg = RetractLeg(at.x + share * (segment.x0 - at.x), at.z + share * (segment.z0 - at.z))
+        leg = RetractLeg(at.x + share * (segment.start_x - at.x), at.z + share * (segment.start_z - at.z))
         place = ToolPosition(
-            int(self.cut_record.block_number[segment.row]), self.position.tool_number, leg.x, leg.z
+            int(self.cut_record.block_number[segment.record_row]), self.position.tool_number, leg.x, leg.z
         )
-        found = _Search(self.cut_record, place, segment.row, self.last_complete_block)._crosswise_retract()
+        found = _Search(
+            self.cut_record, place, segment.record_row, self.last_complete_block
+        )._crosswise_retract()
         return None if found is None or not found.legs else (leg, found.legs)
 
     def _is_approach_rapid(self, row: int) -> bool:
@@ -391,7 +396,7 @@ class _Search:
         """Return a retract without legs, whose direction comes from the next rapid or from the entry path."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
-        ways = [(segment.x - segment.x0, segment.z - segment.z0) for segment in rapids]
+        ways = [(segment.x - segment.start_x, segment.z - segment.start_z) for segment in rapids]
         ways.append((float(cut.x0[row]) - self.x, float(cut.z0[row]) - self.z))
         away = next(((_sign(dx), _sign(dz)) for dx, dz in ways if _sign(dx) or _sign(dz)), (0, 0))
         return Retract(ToolSituation.UNKNOWN, direction=away if away[1] >= 0 else (0, 0))
@@ -419,7 +424,7 @@ class _Search:
             and segment.move_kind & PER_REV
             and abs(segment.x) <= _CENTERLINE_TOLERANCE_MM
             and segment.move_kind & REVERSE != turns
-            and int(cut.tool_number[segment.row]) == self.position.tool_number
+            and int(cut.tool_number[segment.record_row]) == self.position.tool_number
             for segment in near
         )
 
@@ -465,7 +470,7 @@ class _Search:
             if not each.move_kind & FEED and each.length > _PARALLEL_TOLERANCE_MM
         )
         segment = next(off, self._segment(row))
-        return SIDE if abs(segment.x - segment.x0) > abs(segment.z - segment.z0) else FACE
+        return SIDE if abs(segment.x - segment.start_x) > abs(segment.z - segment.start_z) else FACE
 
     def _made(self, legs: list[RetractLeg]) -> Retract:
         kept: list[RetractLeg] = []

@@ -54,7 +54,7 @@ class ActivePlane(Protocol):
         ...
 
     @property
-    def depth(self) -> float:
+    def depth_mm(self) -> float:
         """Return the tool position perpendicular to the plane in the program frame, in mm."""
         ...
 

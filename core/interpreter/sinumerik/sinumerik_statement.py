@@ -164,7 +164,7 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
                 "Remove this text from the program.",
             )
         if habit := find_iso_word(statement.line.text.upper()):
-            raise statement.make_error(word, "other-control", habit.explanation, habit.hint)
+            raise statement.make_error(word, "other-control", habit.explanation, habit.remedy)
         raise statement.make_error(
             word,
             UNKNOWN_G_FUNCTION,
@@ -216,7 +216,7 @@ def _check_separate_block(statement: Statement) -> None:
             or len(statement.g_words) > 1
         )
         if habit := find_iso_word(statement.line.text.upper()):
-            raise statement.make_error(dwell, "other-control", habit.explanation, habit.hint)
+            raise statement.make_error(dwell, "other-control", habit.explanation, habit.remedy)
         if others or len(statement.words) != 1:
             text = "G4 must be in a separate block with F (seconds) or S (revolutions)."
             raise statement.make_error(dwell, "own-block", text, "Split the block into two or more blocks.")

@@ -48,7 +48,7 @@ def read_cycle_definition(cursor: LineCursor, column: int) -> Node:
     The support of the cycle is checked only when the cycle is called. Raises ProgramError for a syntax
     error.
     """
-    match = cursor.match(_NUMBER)
+    match = cursor.match_pattern(_NUMBER)
     if match is None:
         raise cursor.make_expected_error("CYCL DEF needs a cycle number")
     number, part = int(match.group(1)), match.group(2)
@@ -85,7 +85,7 @@ def read_global_definition(cursor: LineCursor, column: int) -> GlobalDefinition:
 
     The block consists of a group number, which has no effect, and the parameters.
     """
-    match = cursor.match(_NUMBER)
+    match = cursor.match_pattern(_NUMBER)
     if match is None:
         raise cursor.make_expected_error("GLOBAL DEF needs a number")
     return GlobalDefinition(_values(cursor, Message("GLOBAL DEF {word}", word=match.group(1))), column)
@@ -93,7 +93,7 @@ def read_global_definition(cursor: LineCursor, column: int) -> GlobalDefinition:
 
 def read_preset_selection(cursor: LineCursor, column: int) -> CycleDefinition:
     """Read ``PRESET SELECT #3``, which is cycle 247. Raises ProgramError for other options."""
-    if cursor.match(_SELECTED) is None:
+    if cursor.match_pattern(_SELECTED) is None:
         raise make_unsupported_error(cursor.line_number, column, "PRESET SELECT with a name")
     at, row = cursor.column, cursor.read_value("#")
     if not cursor.is_at_end:
@@ -102,7 +102,7 @@ def read_preset_selection(cursor: LineCursor, column: int) -> CycleDefinition:
             cursor.column,
             Message("PRESET SELECT with {rest}", rest=cursor.read_remaining_text()),
         )
-    return CycleDefinition(_PRESET, (CycleParameter(_PRESET_NUMBER, row.formula, at),), column)
+    return CycleDefinition(_PRESET, (CycleParameter(_PRESET_NUMBER, row.as_formula, at),), column)
 
 
 def _values(cursor: LineCursor, owner: str) -> tuple[CycleParameter, ...]:
@@ -124,7 +124,7 @@ def _values(cursor: LineCursor, owner: str) -> tuple[CycleParameter, ...]:
                 "Expected a Q parameter of the cycle", "Write parameters such as Q200=+2."
             )
         _, number = q_parameters.read_parameter(cursor)
-        cursor.match(re.compile(r"="))
+        cursor.match_pattern(re.compile(r"="))
         if cursor.read_keyword(PREDEFINED_WORD):
             found.append(CycleParameter(number, Parameter(PREDEFINED_WORD, number, column), column))
         else:
@@ -139,7 +139,7 @@ def _datum(cursor: LineCursor, part: int) -> DatumShift:
     if part == 0:
         return DatumShift(cycle_number=0, text=cursor.read_remaining_text())
     column = cursor.column
-    if cursor.match(_FROM_TABLE):
+    if cursor.match_pattern(_FROM_TABLE):
         made = DatumShift(cycle_number=part, table_row=cursor.read_value("#"), column=column)
         cursor.check_at_end("Unexpected word in cycle 7")
         return made
@@ -170,7 +170,7 @@ def read_mirrored_axes(cursor: LineCursor) -> str:
     An empty result cancels mirroring.
     """
     axes = ""
-    while match := cursor.match(_LETTERS):
+    while match := cursor.match_pattern(_LETTERS):
         axes += match.group()
     cursor.check_at_end("Mirroring accepts only the axes X, Y and Z")
     return axes
@@ -178,7 +178,7 @@ def read_mirrored_axes(cursor: LineCursor) -> str:
 
 def read_rotation(cursor: LineCursor, column: int) -> CoordinateTransform:
     """Read ``ROT+35`` or ``IROT+5``. Raises ProgramError for a syntax error."""
-    match = cursor.match(_ROT)
+    match = cursor.match_pattern(_ROT)
     if match is None:
         raise cursor.make_expected_error("A rotation needs ROT and an angle")
     made = CoordinateTransform(
@@ -190,7 +190,7 @@ def read_rotation(cursor: LineCursor, column: int) -> CoordinateTransform:
 
 def read_scale(cursor: LineCursor, column: int) -> CoordinateTransform:
     """Read ``SCL0.95``. Raises ProgramError for a syntax error."""
-    if cursor.match(_SCL) is None:
+    if cursor.match_pattern(_SCL) is None:
         raise cursor.make_expected_error("Scaling needs SCL and its factor")
     made = CoordinateTransform("SCALE", cursor.read_value("SCL"), column=column)
     cursor.check_at_end("Unexpected word in scaling")
@@ -215,7 +215,7 @@ def _line(cursor: LineCursor, number: int, part: int, column: int) -> CycleLine:
         return CycleLine(number, part, text=cursor.read_remaining_text(), column=column)
     while not cursor.is_at_end:
         at = cursor.column
-        if match := cursor.match(_AXIS):
+        if match := cursor.match_pattern(_AXIS):
             words.append(
                 AxisWord(
                     "R" if match.group(1)[0] == "R" else match.group(1)[-1],
@@ -224,13 +224,13 @@ def _line(cursor: LineCursor, number: int, part: int, column: int) -> CycleLine:
                     at,
                 )
             )
-        elif match := cursor.match(ROTATION_PATTERN):
+        elif match := cursor.match_pattern(ROTATION_PATTERN):
             turn = match.group(1)
         elif read := _feed(cursor):
             speed = read
         elif _PLAIN.match(cursor.uppercase_text, cursor.index):
             words.append(AxisWord("", cursor.read_value("It"), column=at))
-        elif match := cursor.match(_TEXT):
+        elif match := cursor.match_pattern(_TEXT):
             text.append(match.group())
         else:
             raise cursor.make_expected_error(Message("Unexpected word in cycle {number}", number=number))
@@ -268,9 +268,9 @@ def read_contour_definition(cursor: LineCursor, column: int) -> ContourDefinitio
     """
     parts: list[ContourPart] = []
     while not cursor.is_at_end:
-        match = cursor.match(_CONTOUR)
+        match = cursor.match_pattern(_CONTOUR)
         if match is None:
-            if cursor.read_keyword("VOID") or cursor.match(_DEPTH):
+            if cursor.read_keyword("VOID") or cursor.match_pattern(_DEPTH):
                 raise make_unsupported_error(
                     cursor.line_number, cursor.column, "CONTOUR DEF with a separate depth for one contour"
                 )
@@ -316,7 +316,7 @@ def read_pattern_definition(cursor: LineCursor, column: int) -> PatternDefinitio
     """Read the block after ``PATTERN DEF``. Raises ProgramError if a word is missing, unknown or repeated."""
     parts = []
     while not cursor.is_at_end:
-        at, match = cursor.column, cursor.match(_KIND)
+        at, match = cursor.column, cursor.match_pattern(_KIND)
         if match is None:
             raise cursor.make_expected_error(
                 "PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1"
@@ -331,7 +331,7 @@ def read_pattern_definition(cursor: LineCursor, column: int) -> PatternDefinitio
 
 def _words(cursor: LineCursor, form: str) -> tuple[AxisWord, ...]:
     found = read_words_by_name(cursor, _WORD)
-    if not cursor.match(_CLOSED):
+    if not cursor.match_pattern(_CLOSED):
         raise cursor.make_expected_error(
             Message("Unexpected word in {form}", form=form), "Close the parenthesis after the last word."
         )

@@ -132,7 +132,7 @@ def _node(cursor: LineCursor) -> Node | None:
     if cursor.is_at_end:
         return None
     column = cursor.column
-    if form := cursor.match(_PATHS):
+    if form := cursor.match_pattern(_PATHS):
         return path_block.read_path_function(cursor, " ".join(form.group().split()), column)
     if cursor.text[cursor.index] == "*":
         return HeadingLine(cursor.read_remaining_text()[1:].strip().removeprefix("-").strip())
@@ -140,7 +140,7 @@ def _node(cursor: LineCursor) -> Node | None:
 
 
 def _by_keyword(cursor: LineCursor) -> Node | None:
-    column, match = cursor.column, cursor.match(_STARTS)
+    column, match = cursor.column, cursor.match_pattern(_STARTS)
     if match is None:
         return None
     words = " ".join(match.group().split())
@@ -191,7 +191,7 @@ def _by_letter(cursor: LineCursor) -> Node:
         return path_block.read_m_function_block(cursor)
     if _ONE_AXIS.match(cursor.uppercase_text, cursor.index):
         return path_block.read_paraxial_move(cursor, column)
-    if match := cursor.match(_FN):
+    if match := cursor.match_pattern(_FN):
         return q_parameters.read_fn_block(cursor, int(match.group(1)[:4]), column)
     if _Q.match(cursor.uppercase_text, cursor.index):
         return q_parameters.read_assignment(cursor)

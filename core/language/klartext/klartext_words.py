@@ -17,7 +17,7 @@ class Value(NamedTuple):
     parameter_kind: str = "Q"
 
     @property
-    def formula(self) -> Formula:
+    def as_formula(self) -> Formula:
         """Return the value as a formula."""
         if self.parameter_number is None:
             return Number(self.number)

@@ -73,7 +73,7 @@ class LineCursor(LineReader):
         match = _WORD.match(self.text, self.index)
         return match.group() if match else ""
 
-    def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+    def match_pattern(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of the pattern at the cursor, or None without a match.
 
         The cursor then moves past the match and the following blanks.
@@ -86,7 +86,7 @@ class LineCursor(LineReader):
     def read_keyword(self, *choices: str) -> str | None:
         """Read the first of these keywords that is at the cursor, or return None without a match."""
         for words in choices:
-            if self.match(_keyword(words)):
+            if self.match_pattern(_keyword(words)):
                 return words
         return None
 
@@ -101,7 +101,7 @@ class LineCursor(LineReader):
 
         Raises ProgramError with ``description`` in the message if the value is missing.
         """
-        column, match = self.column, self.match(_VALUE)
+        column, match = self.column, self.match_pattern(_VALUE)
         if match is None:
             raise self.make_expected_error(
                 Message("{what} has no value", what=description),
@@ -118,7 +118,7 @@ class LineCursor(LineReader):
 
         Raises ProgramError with ``description`` in the message if the number is missing.
         """
-        column, match = self.column, self.match(_PLAIN)
+        column, match = self.column, self.match_pattern(_PLAIN)
         if match is None:
             raise self.make_expected_error(
                 Message("{what} has no number", what=description), "Enter a number."
@@ -130,7 +130,7 @@ class LineCursor(LineReader):
 
         Raises ProgramError if the number is missing or too large.
         """
-        column, match = self.column, self.match(_WHOLE)
+        column, match = self.column, self.match_pattern(_WHOLE)
         if match is None:
             raise self.make_expected_error(Message("{what} needs a whole number", what=description))
         digits = match.group()
@@ -148,7 +148,7 @@ class LineCursor(LineReader):
         """
         self._check_no_text_parameter()
         start = self.index
-        match = self.match(_QUOTED)
+        match = self.match_pattern(_QUOTED)
         if match is None:
             return self.read_whole_number(description, maximum)
         name = self.text[start + 1 : start + len(match.group(1)) + 1]
@@ -177,7 +177,7 @@ class LineCursor(LineReader):
     def read_quoted_text(self) -> str | None:
         """Read a text in quotation marks, or return None if the cursor is not at a quotation mark."""
         start = self.index
-        match = self.match(_QUOTED)
+        match = self.match_pattern(_QUOTED)
         return None if match is None else self.text[start + 1 : start + len(match.group(1)) + 1]
 
     def make_expected_error(self, message: str, hint: str = "") -> ProgramError:
@@ -248,14 +248,14 @@ def read_feed(cursor: LineCursor) -> FeedWord | None:
     Returns None without F. Raises ProgramError for an invalid or unsupported feed.
     """
     column = cursor.column
-    fixed = cursor.match(_FEED)
+    fixed = cursor.match_pattern(_FEED)
     if fixed is not None:
         return FeedWord(fixed.group(1).lower(), None, column)
     if _FEED_TIME.match(cursor.uppercase_text, cursor.index):
         raise make_unsupported_error(cursor.line_number, column, "Feed specified by travel time (FT, FMAXT)")
-    if match := cursor.match(_FEED_VALUE):
+    if match := cursor.match_pattern(_FEED_VALUE):
         return FeedWord("value", cursor.read_value(match.group()), column, match.group(1))
-    if cursor.match(_FEED_WORD):
+    if cursor.match_pattern(_FEED_WORD):
         raise cursor.make_expected_error(
             "F has no value", "Write a number, a Q parameter, MAX or AUTO after F."
         )
@@ -265,7 +265,7 @@ def read_feed(cursor: LineCursor) -> FeedWord | None:
 def read_retract(cursor: LineCursor) -> RetractWord | None:
     """Read ``MB50``, ``MB 50`` or ``MB MAX``, or return None without MB."""
     column = cursor.column
-    if cursor.match(_RETRACT) is None:
+    if cursor.match_pattern(_RETRACT) is None:
         return None
     if cursor.read_keyword("MAX"):
         return RetractWord(None, column)
@@ -284,7 +284,7 @@ def read_axis_words(
     pattern = _axis_word(letters, allows_incremental)
     found: list[AxisWord] = []
     while True:
-        column, match = cursor.column, cursor.match(pattern)
+        column, match = cursor.column, cursor.match_pattern(pattern)
         if match is None:
             return tuple(found)
         sign, axis = match.groups()
@@ -300,7 +300,7 @@ def read_words_by_name(cursor: LineCursor, pattern: re.Pattern[str]) -> dict[str
     """
     found: dict[str, AxisWord] = {}
     while True:
-        column, match = cursor.column, cursor.match(pattern)
+        column, match = cursor.column, cursor.match_pattern(pattern)
         if match is None:
             return found
         name = match[1]

@@ -83,19 +83,19 @@ def read_path_function(cursor: LineCursor, form: str, column: int) -> PathFuncti
         found = read_axis_words(cursor, AXIS_LETTERS)
         if found:
             axes = _joined(cursor, axes, found)
-        elif radius := cursor.match(_COMPENSATION):
+        elif radius := cursor.match_pattern(_COMPENSATION):
             kind = radius.group(1) or radius.group(2) or ""
             _check_paraxial(cursor, at, kind, axes)
             if compensation:
                 raise make_repeated_error(cursor, at, f"R{kind}")
             compensation = kind
-        elif direction := cursor.match(ROTATION_PATTERN):
+        elif direction := cursor.match_pattern(ROTATION_PATTERN):
             check_not_repeated(cursor, at, turn, "DR")
             turn = direction.group(1)
         elif word := _word(cursor, form):
             check_not_repeated(cursor, word.column, word.axis in words, word.axis)
             words[word.axis] = word
-        elif cursor.match(_NOT_PROGRAMMED):
+        elif cursor.match_pattern(_NOT_PROGRAMMED):
             continue
         elif read := read_feed(cursor):
             check_not_repeated(cursor, read.column, speed, "F")
@@ -138,7 +138,7 @@ def _word(cursor: LineCursor, form: str) -> AxisWord | None:
     at, match = cursor.index, _KNOWN_WORDS.match(cursor.uppercase_text, cursor.index)
     if match is None or match.group(1).removeprefix("I") not in _FORMS[form].allowed_words:
         return None
-    cursor.match(_KNOWN_WORDS)
+    cursor.match_pattern(_KNOWN_WORDS)
     name = match.group(1).removeprefix("I")
     return AxisWord(name, cursor.read_value(match.group(1)), match.group(1)[0] == "I", at + 1)
 
@@ -171,7 +171,7 @@ _SIZE = re.compile(r"R(?=\s*[+\-0-9.,Q])")
 
 def read_corner(cursor: LineCursor, form: str, column: int) -> CornerBlock:
     """Read the size and optional feed after ``RND`` or ``CHF``."""
-    cursor.match(_SIZE)
+    cursor.match_pattern(_SIZE)
     size = cursor.read_value(form)
     speed = read_feed(cursor)
     cursor.check_at_end(Message("{form} accepts only a radius or length, and a feed rate", form=form))
@@ -205,7 +205,7 @@ _WITH_WORDS = {
 def read_m_function(cursor: LineCursor) -> MFunction | None:
     """Read one M function, or return None if the cursor is not at an M function."""
     column = cursor.column
-    if cursor.match(_M) is None:
+    if cursor.match_pattern(_M) is None:
         return None
     number = cursor.read_whole_number("M", 999)
     if number == 128:
@@ -218,7 +218,7 @@ def read_m_function(cursor: LineCursor) -> MFunction | None:
             raise cursor.make_expected_error("M140 needs MB", "Write MB and a length, or MB MAX.")
         return MFunction(number, column, retract, read_feed(cursor))
     if number in _WITH_WORDS:
-        cursor.match(_WITH_WORDS[number])
+        cursor.match_pattern(_WITH_WORDS[number])
     return MFunction(number, column)
 
 
@@ -268,7 +268,7 @@ def _demand_few(cursor: LineCursor, codes: list[MFunction]) -> None:
 
 
 def _strange(cursor: LineCursor, form: str) -> ProgramError:
-    if cursor.match(_SINGLE_AXIS):
+    if cursor.match_pattern(_SINGLE_AXIS):
         return cursor.make_expected_error(
             "No value is programmed for the axis", "Write a number such as +10."
         )

@@ -110,10 +110,10 @@ def _positioning(cursor: LineCursor, form: str) -> RotaryPositioning:
 def _with_word(cursor: LineCursor, form: str, positioning: RotaryPositioning) -> RotaryPositioning:
     """Return the positioning with the next word at the cursor added."""
     column = cursor.column
-    if form != "RESET" and (side := cursor.match(_SIDE)):
+    if form != "RESET" and (side := cursor.match_pattern(_SIDE)):
         check_not_repeated(cursor, column, positioning.solution, "SYM or SEQ")
         return dataclasses.replace(positioning, solution="".join(side.groups()))
-    if form != "RESET" and (rotation := cursor.match(_ROTATION)):
+    if form != "RESET" and (rotation := cursor.match_pattern(_ROTATION)):
         check_not_repeated(cursor, column, positioning.rotation_mode, "COORD ROT or TABLE ROT")
         return dataclasses.replace(positioning, rotation_mode=Message("{word} ROT", word=rotation.group(1)))
     if cursor.read_keyword("DIST", "ABST", "SETUP"):  # ABST is the German word.

@@ -131,7 +131,7 @@ def read_assignment(cursor: LineCursor) -> Assignment:
 
 def read_fn_block(cursor: LineCursor, number: int, column: int) -> Node:
     """Read the block after ``FN n:``. Raises ProgramError for functions that TurnDesk does not support."""
-    cursor.match(_COLON)
+    cursor.match_pattern(_COLON)
     if number in _IGNORED_FUNCTIONS:
         cursor.read_remaining_text()
         return IgnoredBlock(
@@ -157,7 +157,7 @@ def read_fn_block(cursor: LineCursor, number: int, column: int) -> Node:
 
 def read_parameter(cursor: LineCursor) -> tuple[str, int]:
     """Read the kind and number of a parameter. Raises ProgramError if the number is too high."""
-    column, match = cursor.column, cursor.match(_TARGET)
+    column, match = cursor.column, cursor.match_pattern(_TARGET)
     if match is None:
         raise cursor.make_expected_error("Expected a Q parameter")
     kind, number = match.group(1), int(match.group(2)[:6])
@@ -174,7 +174,7 @@ def read_parameter(cursor: LineCursor) -> tuple[str, int]:
 
 def _target(cursor: LineCursor) -> tuple[str, int]:
     kind, number = read_parameter(cursor)
-    if cursor.match(_EQUALS) is None:
+    if cursor.match_pattern(_EQUALS) is None:
         raise cursor.make_expected_error(
             Message("Expected '=' after {kind}{number}", kind=kind, number=number)
         )
@@ -200,21 +200,21 @@ def _arithmetic(cursor: LineCursor, number: int, column: int) -> Assignment:
 def _operand(cursor: LineCursor, q: int) -> Formula:
     """Read a number or a parameter with its sign, because FN functions do not accept formulas."""
     value = cursor.read_value(f"Q{q}")
-    return value.formula
+    return value.as_formula
 
 
 def _demand(cursor: LineCursor, word: str, number: int) -> None:
     if word.isalpha():
         found = cursor.read_keyword(word)
     else:
-        found = word if cursor.match(re.compile(re.escape(word))) else None
+        found = word if cursor.match_pattern(re.compile(re.escape(word))) else None
     if found is None:
         raise cursor.make_expected_error(Message("FN {number} needs {word}", number=number, word=word))
 
 
 def _jump(cursor: LineCursor, number: int, column: int) -> ConditionalJump:
     word, name = _JUMPS[number]
-    if not cursor.match(re.compile(r"IF")):
+    if not cursor.match_pattern(re.compile(r"IF")):
         raise cursor.make_expected_error(Message("FN {number} needs IF", number=number))
     if _TEXT_PARAMETER.match(cursor.uppercase_text, cursor.index):
         raise STRING_FUNCTIONS.make_error(cursor.line_number, cursor.column)
@@ -227,7 +227,7 @@ def _jump(cursor: LineCursor, number: int, column: int) -> ConditionalJump:
             condition = Operation("not", (condition,), column)
     else:
         _demand(cursor, word, number)
-        condition = Operation(name, (value.formula, _operand(cursor, 0)), column)
+        condition = Operation(name, (value.as_formula, _operand(cursor, 0)), column)
     return _read_jump(cursor, condition)
 
 
@@ -251,7 +251,7 @@ def _wait(cursor: LineCursor, column: int) -> IgnoredBlock:
 
 
 def _error(cursor: LineCursor, column: int) -> ErrorMessage:
-    if not cursor.read_keyword("ERROR") or not cursor.match(_EQUALS):
+    if not cursor.read_keyword("ERROR") or not cursor.match_pattern(_EQUALS):
         raise cursor.make_expected_error("FN 14 needs ERROR =")
     return ErrorMessage(cursor.read_whole_number("ERROR", 9999), column)
 
@@ -269,7 +269,7 @@ def _system_write(cursor: LineCursor, column: int) -> SystemWrite:
     if not cursor.read_keyword("SYSWRITE"):
         raise cursor.make_expected_error("FN 17 needs SYSWRITE")
     group, number, index = _system_value_address(cursor, 17)
-    if cursor.match(_EQUALS) is None:
+    if cursor.match_pattern(_EQUALS) is None:
         raise cursor.make_expected_error("FN 17 needs = and a value to write")
     made = SystemWrite(group, number, index, _operand(cursor, 0), column)
     cursor.check_at_end("Unexpected word in FN 17")
@@ -280,7 +280,7 @@ def _system_value_address(cursor: LineCursor, function: int) -> tuple[Formula, F
     """Read the group, number and index of a system value."""
     found: dict[str, Formula] = {}
     for word in ("ID", "NR", "IDX"):
-        if cursor.match(re.compile(rf"{word}(?=\s*[+\-0-9Q])")):
+        if cursor.match_pattern(re.compile(rf"{word}(?=\s*[+\-0-9Q])")):
             found[word] = _operand(cursor, 0)
     if "ID" not in found or "NR" not in found:
         raise cursor.make_expected_error(Message("FN {function} needs ID and NR", function=function))

@@ -91,7 +91,7 @@ def _round_blank(cursor: LineCursor) -> CylinderBlank:
 
     The words are the tool axis, the radius or diameter, the length, and the height above the datum.
     """
-    axis = cursor.match(_AXIS)
+    axis = cursor.match_pattern(_AXIS)
     words = {name: word.value for name, word in read_words_by_name(cursor, _ROUND_WORD).items()}
     cursor.check_at_end("Unexpected word in BLK FORM CYLINDER", "Use only R (or D), L, DIST and RI (or DI).")
     if axis is None or not {"R", "D"} & words.keys() or "L" not in words:
@@ -111,7 +111,7 @@ def read_blank_form(cursor: LineCursor) -> BlankCorner | CylinderBlank | Ignored
     if form := cursor.read_keyword("ROTATION", "FILE"):
         cursor.read_remaining_text()
         return IgnoredBlock(Message("BLK FORM {rest}", rest=form), column)
-    part = cursor.match(_PART)
+    part = cursor.match_pattern(_PART)
     if part is None:
         raise make_unsupported_error(
             cursor.line_number,
@@ -120,7 +120,7 @@ def read_blank_form(cursor: LineCursor) -> BlankCorner | CylinderBlank | Ignored
         )
     axis = ""
     if part.group(1) == "1":
-        found = cursor.match(_AXIS)
+        found = cursor.match_pattern(_AXIS)
         if found is None or found.group(1) not in "XYZ":
             raise cursor.make_expected_error(
                 "BLK FORM 0.1 needs the tool axis", "Write Z after BLK FORM 0.1."
@@ -146,24 +146,24 @@ def read_tool_call(cursor: LineCursor) -> ToolCall:
     column = cursor.column
     tool: int | str | Value | None = None
     _check_no_index(cursor)
-    if cursor.match(_TOOL):
+    if cursor.match_pattern(_TOOL):
         tool = cursor.read_name("TOOL CALL", MAX_TOOL_NUMBER)
-    elif cursor.match(_TOOL_BY_Q):
+    elif cursor.match_pattern(_TOOL_BY_Q):
         tool = cursor.read_value("TOOL CALL")
-    found = cursor.match(_AXIS)
+    found = cursor.match_pattern(_AXIS)
     axis = "" if found is None else found.group(1)
     words: dict[str, Value] = {}
     per = ""
     while not cursor.is_at_end:
         at = cursor.column
-        if cursor.match(_CUTTING_SPEED):
+        if cursor.match_pattern(_CUTTING_SPEED):
             words["VC"] = cursor.read_value("VC")
-            if not cursor.match(_CLOSED):
+            if not cursor.match_pattern(_CLOSED):
                 raise cursor.make_expected_error(
                     "The closing parenthesis after VC is missing", "Write, for example, S(VC = 120)."
                 )
             continue
-        match = cursor.match(_TOOL_WORD)
+        match = cursor.match_pattern(_TOOL_WORD)
         if match is None or (match.group(2) and match.group(1) != "F"):
             raise cursor.make_expected_error(
                 "Unexpected word in TOOL CALL", "Use only a tool, its axis, S, F, DL, DR and DR2."
@@ -270,7 +270,7 @@ def call(cursor: LineCursor) -> LabelCall:
     repeat = None
     if cursor.read_keyword("REP"):
         repeat = _repeats(cursor)
-        cursor.match(_REPEAT_PATTERN)
+        cursor.match_pattern(_REPEAT_PATTERN)
     cursor.check_at_end("Unexpected word in CALL LBL")
     return LabelCall(name, repeat, column)
 
@@ -316,7 +316,7 @@ _PROBE = re.compile(r"[0-9]+(?:\.[0-9]+)?")
 def make_touch_probe_error(cursor: LineCursor, column: int) -> ProgramError:
     """Return the error for ``TCH PROBE``, because TurnDesk does not support touch probes."""
     cursor.read_keyword("TCH PROBE")
-    match = cursor.match(_PROBE)
+    match = cursor.match_pattern(_PROBE)
     what = Message("TCH PROBE {word}", word=match.group()) if match else "TCH PROBE"
     text = Message("{what} needs a touch probe, but this machine does not have one.", what=what)
     hint = "Touch off by hand on the Jog page, and delete this block from the program."
@@ -336,7 +336,7 @@ def _dwell(cursor: LineCursor, column: int) -> CycleLine:
 
     Raises ProgramError for a dwell in revolutions.
     """
-    if cursor.match(_SECONDS) is None:
+    if cursor.match_pattern(_SECONDS) is None:
         raise make_unsupported_error(cursor.line_number, column, "FUNCTION DWELL in revolutions")
     made = CycleLine(9, 1, (AxisWord("", cursor.read_value("TIME")),), column=column)
     cursor.check_at_end("Unexpected word in FUNCTION DWELL")

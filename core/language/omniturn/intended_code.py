@@ -19,18 +19,18 @@ from core.message import Message
 class IntendedCode(NamedTuple):
     """A mistake in a line, with the index of its first character, diagnostic code, message and remedy."""
 
-    at: int
+    start_index: int
     diagnostic_code: str
     message: str
-    hint: str
+    remedy: str
 
 
 class _Pattern(NamedTuple):
     """The pattern of a code for another control, whose message and remedy may depend on the match."""
 
-    form: str
+    regex: str
     message: str
-    hint: Callable[[re.Match[str]], str]
+    make_remedy: Callable[[re.Match[str]], str]
 
 
 def _always(hint: str) -> Callable[[re.Match[str]], str]:

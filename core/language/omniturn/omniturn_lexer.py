@@ -46,7 +46,7 @@ class _Code(NamedTuple):
     """
 
     text: str
-    written: str
+    original_text: str
     columns: range | list[int]
 
 
@@ -77,7 +77,7 @@ def lex_line(number: int, text: str) -> LexedLine:
     intent = find_intended_code(code.text)
     if intent is not None:
         error = make_error_diagnostic(
-            number, columns[intent.at], intent.diagnostic_code, intent.message, intent.hint
+            number, columns[intent.start_index], intent.diagnostic_code, intent.message, intent.remedy
         )
         return LexedLine(number, (), comment, comment_column, block_delete, written, (error,))
     words = _Scanner(number, code, errors).scan_words(1 if block_delete else 0)
@@ -209,7 +209,9 @@ class _Scanner:
                 index = self._skip(index, after_number=bool(found) and text[index - 1].isdigit())
                 continue
             if self._thread and match[1] in {"CA", "CI"}:
-                found.append(Word("C", None, self._column(index), self._code.written[index : index + 1]))
+                found.append(
+                    Word("C", None, self._column(index), self._code.original_text[index : index + 1])
+                )
                 index += 1
                 continue
             index = self._read(match, found)
@@ -228,7 +230,7 @@ class _Scanner:
         if digits is not None and self._is_letter_o(end):
             return self._letter_o(match.start(), end)
         value = None if digits is None else float(digits) if len(digits) < 32 else float("inf")
-        written = self._code.written[match.start() : end]
+        written = self._code.original_text[match.start() : end]
         word = Word(letter, value, self._column(match.start()), written)
         fault = word_faults.find_word_error(self._number, word, digits)
         if fault is not None:
@@ -273,12 +275,12 @@ class _Scanner:
         """
         match = _ZERO_LETTER.match(self._code.text, index)
         end = match.end() if match else index + 1
-        word = self._code.written[start:end]
+        word = self._code.original_text[start:end]
         self._errors.append(word_faults.make_letter_o_error(self._number, self._column(index), word))
         return end
 
     def _skip(self, at: int, *, after_number: bool) -> int:
-        sign = self._code.written[at]
+        sign = self._code.original_text[at]
         after_number = after_number or (at > 0 and self._code.text[at - 1] == ".")
         self._errors.append(
             word_faults.make_character_error(

@@ -83,7 +83,9 @@ class BlockReader(FormulaReader):
         """Return the remaining text without leading blanks."""
         return self.uppercase_text[self.index :].lstrip()
 
-    def match(self, pattern: re.Pattern[str], *, uses_original_text: bool = False) -> re.Match[str] | None:
+    def match_pattern(
+        self, pattern: re.Pattern[str], *, uses_original_text: bool = False
+    ) -> re.Match[str] | None:
         """Return the match of the pattern at this position, and move past it.
 
         Returns None without a match.
@@ -98,7 +100,7 @@ class BlockReader(FormulaReader):
 
         Raises FormulaError with ``message`` and ``hint`` without a match.
         """
-        match = self.match(pattern)
+        match = self.match_pattern(pattern)
         if match is None:
             raise FormulaError(self.index, message, hint)
         return match

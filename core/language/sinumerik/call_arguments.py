@@ -56,7 +56,7 @@ def read_arguments(reader: BlockReader) -> tuple[CallArgument, ...]:
     while True:
         reader.skip_blanks()
         found.append(_argument(reader))
-        match = reader.match(LIST_SEPARATOR)
+        match = reader.match_pattern(LIST_SEPARATOR)
         if match is None:
             hint = "Write ( , , )."
             if not reader.uppercase_text[reader.index :]:
@@ -70,9 +70,9 @@ def _argument(reader: BlockReader) -> CallArgument:
     column = reader.index + 1
     if reader.uppercase_text[reader.index : reader.index + 1] in {",", ")"}:
         return CallArgument(None, None, column)
-    if quoted := reader.match(_QUOTED, uses_original_text=True):
+    if quoted := reader.match_pattern(_QUOTED, uses_original_text=True):
         return CallArgument(None, quoted[1].strip(), column)
-    if axis := reader.match(_AXIS):
+    if axis := reader.match_pattern(_AXIS):
         return CallArgument(None, axis[1], column)
     return CallArgument(reader.read_formula(), None, column)
 

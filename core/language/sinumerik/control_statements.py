@@ -163,7 +163,7 @@ class _Reader(BlockReader):
             ControlKeyword.ALARM: self._alarm,
         }.get(self._steering)
         if self._steering in _TOLERATED_BRACKET:
-            self.match(_ANY_BRACKET)
+            self.match_pattern(_ANY_BRACKET)
         return ControlStatement(self._steering, self._column) if read is None else read()
 
     def _match_required(self, pattern: re.Pattern[str], problem: str, hint: str) -> re.Match[str]:
@@ -171,7 +171,7 @@ class _Reader(BlockReader):
 
         Raises FormulaError without a match.
         """
-        match = self.match(pattern)
+        match = self.match_pattern(pattern)
         if match is None:
             raise FormulaError(self.index, problem, hint)
         return match
@@ -194,13 +194,13 @@ class _Reader(BlockReader):
     def _if(self) -> ControlStatement:
         """Read an IF, which is a conditional jump, or starts IF … ENDIF if no jump follows the condition."""
         condition = self.read_formula()
-        match = self.match(_GOTO)
+        match = self.match_pattern(_GOTO)
         if match is None:
             return ControlStatement(ControlKeyword.IF, self._column, condition)
         steering = ControlKeyword(match.group(1))
         target = "" if steering is ControlKeyword.GOTO_START else self._target()
         jump = ControlStatement(steering, self._column, condition, target)
-        if self.match(_NEXT_IF):
+        if self.match_pattern(_NEXT_IF):
             self._column = self.index - 1
             jump = jump._replace(else_jump=self._if())
         return jump
@@ -212,7 +212,7 @@ class _Reader(BlockReader):
             _CASE_KEYWORD, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B."
         )
         while self.remaining_text:
-            formula = None if self.match(_DEFAULT) else self.read_formula()
+            formula = None if self.match_pattern(_DEFAULT) else self.read_formula()
             jump = self.match_required(
                 _GOTO, "A CASE branch needs a jump", "Write, for example, 1 GOTOF LABEL."
             )
@@ -237,11 +237,11 @@ class _Reader(BlockReader):
     def _repeat(self) -> ControlStatement:
         """Read a REPEAT, which starts REPEAT … UNTIL or, with labels, repeats a program section."""
         labels = list[str]()
-        while len(labels) < 2 and (match := self.match(_REPEATED)):
+        while len(labels) < 2 and (match := self.match_pattern(_REPEATED)):
             labels.append(match.group(1))
         if not labels:
             return ControlStatement(self._steering, self._column)
-        passes = self.read_formula() if self.match(_PASSES) else None
+        passes = self.read_formula() if self.match_pattern(_PASSES) else None
         until = labels[-1] if labels[1:] else ""
         return ControlStatement(
             self._steering, self._column, target=labels[0], end_label=until, repeat_count=passes
@@ -286,13 +286,13 @@ class _Reader(BlockReader):
 
     def _sign(self) -> str:
         """Read a comma or an equals sign, or return an empty string for any other character."""
-        match = self.match(_SIGN)
+        match = self.match_pattern(_SIGN)
         return "" if match is None else match[1]
 
     def _procedure(self) -> ControlStatement:
         jump = self._extern()
         saves = False
-        while match := self.match(_ATTRIBUTE):
+        while match := self.match_pattern(_ATTRIBUTE):
             saves = saves or match[1] == "SAVE"
         return jump._replace(has_save=saves)
 

@@ -13,9 +13,9 @@ from core.message import Message
 class IsoWord(NamedTuple):
     """A word of another control, with the index of its start, its explanation and the remedy."""
 
-    at: int
+    start_index: int
     explanation: str
-    hint: str
+    remedy: str
 
 
 _Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], tuple[str, str]]]

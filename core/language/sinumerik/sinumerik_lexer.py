@@ -194,7 +194,9 @@ class _Scanner:
         if habit := find_iso_word(self._text):
             number, block = self._number, self._block
             self.errors[:] = [
-                make_alarm(number, habit.at + 1, "other-control", block, habit.explanation, habit.hint)
+                make_alarm(
+                    number, habit.start_index + 1, "other-control", block, habit.explanation, habit.remedy
+                )
             ]
 
     def report_error(self, column: int, text: str, hint: str) -> None:
@@ -375,7 +377,7 @@ class _Scanner:
             reader = BlockReader(self._text, self._written, self._text.index("[", at))
             place = reader.read_index()
             check_parameter_numbers(place, at)
-            if reader.match(_SET) is None:
+            if reader.match_pattern(_SET) is None:
                 return self._skip(
                     at,
                     Message("{name}[ ] needs = and a value", name=name),

@@ -78,7 +78,7 @@ class PartFindings:
             if not self.clamping.quill_diameter:  # stock supported at both ends whirls at a much higher speed
                 self._whirls = calculate_critical_rpm(self.stock, self.clamping.stick_out)
             self._chuck = TurnedPart(self.clamping.make_chuck_around(self.stock), _CHUCK_STEP)
-        tailstock = self.clamping.tailstock if self.clamping is not None else None
+        tailstock = self.clamping.tailstock_solid if self.clamping is not None else None
         self._tailstock = TurnedPart(tailstock, _CHUCK_STEP) if tailstock is not None else None
 
     @property

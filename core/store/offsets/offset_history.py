@@ -29,7 +29,7 @@ def undo(connection: sqlite3.Connection, reason: ChangeReason, kind: OffsetKind)
 
     Another call undoes the step before it. Raises StoreError if no step remains.
     """
-    return _undo(connection, reason, OFFSET_TABLES[kind].log, kind)
+    return _undo(connection, reason, OFFSET_TABLES[kind].history_table, kind)
 
 
 def undo_last_step_in_store(connection: sqlite3.Connection, reason: ChangeReason) -> tuple[OffsetChange, ...]:
@@ -96,12 +96,12 @@ def find_undoable_changes(
 
     ``number`` selects the latest step that changed this row; None selects the latest step of the table.
     """
-    return _step_to_undo(connection, OFFSET_TABLES[kind].log, kind, number)
+    return _step_to_undo(connection, OFFSET_TABLES[kind].history_table, kind, number)
 
 
 def history(connection: sqlite3.Connection, kind: OffsetKind, limit: int) -> tuple[OffsetChange, ...]:
     """Return the latest changes of a table, newest first."""
-    log = OFFSET_TABLES[kind].log
+    log = OFFSET_TABLES[kind].history_table
     return select_changes(
         connection, log, f"WHERE {log.kind_expression} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit)
     )
@@ -119,7 +119,7 @@ def read_history_in_store(connection: sqlite3.Connection, limit: int) -> tuple[O
 
 def read_rows_at(connection: sqlite3.Connection, kind: OffsetKind, moment: str) -> dict[int, OffsetRow]:
     """Return the offsets of a table as they were at ``moment`` (UTC), by number."""
-    log = OFFSET_TABLES[kind].log
+    log = OFFSET_TABLES[kind].history_table
     changes = select_changes(
         connection, log, f"WHERE {log.kind_expression} = ? AND at <= ? ORDER BY id", (kind.value, moment)
     )

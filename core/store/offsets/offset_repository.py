@@ -151,7 +151,7 @@ class OffsetTables:
 
     def get_table(self, kind: OffsetKind) -> OffsetTable[OffsetRow]:
         """Return the table of this kind, for callers that do not need the type of its rows."""
-        return OffsetTable(self._store, kind, offset_tables.OFFSET_TABLES[kind].row)
+        return OffsetTable(self._store, kind, offset_tables.OFFSET_TABLES[kind].row_type)
 
     def read_history(self, limit: int = 100) -> tuple[OffsetChange, ...]:
         """Return the latest changes of all tables, newest first."""

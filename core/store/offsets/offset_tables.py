@@ -76,9 +76,9 @@ class _Table:
 
     name: str
     letter: str
-    numbers: Container[int]
-    row: type[OffsetRow]
-    log: HistoryTable
+    valid_numbers: Container[int]
+    row_type: type[OffsetRow]
+    history_table: HistoryTable
 
 
 def _columns(kind: OffsetKind) -> tuple[str, ...]:
@@ -122,9 +122,9 @@ OFFSET_TABLES = {
 def read_current_rows(connection: sqlite3.Connection, kind: OffsetKind) -> dict[int, OffsetRow]:
     """Return the rows of a table that have been set, by number. Damaged rows are omitted."""
     table = OFFSET_TABLES[kind]
-    columns = ", ".join((table.log.key_column, *_columns(kind)))
+    columns = ", ".join((table.history_table.key_column, *_columns(kind)))
     rows = row_checksums.query_raw_rows(
-        connection, f"SELECT {columns} FROM {table.name} ORDER BY {table.log.key_column}"
+        connection, f"SELECT {columns} FROM {table.name} ORDER BY {table.history_table.key_column}"
     )
     broken = row_checksums.find_broken_rows(connection, table.name)
     return {
@@ -249,7 +249,7 @@ def make_no_offset_message(number: int) -> str:
 def check_row_number(kind: OffsetKind, number: int) -> None:
     """Raise StoreError if no offset of this kind has the number."""
     table = OFFSET_TABLES[kind]
-    if number in table.numbers:
+    if number in table.valid_numbers:
         return
     if kind is OffsetKind.ZERO:
         raise StoreError(
@@ -296,7 +296,7 @@ def apply_field_changes(
                 Message("{details} is out of range; enter {accepted}", details=entry_text, accepted=accepted),
                 "out-of-range",
             )
-    before = old_row or table.row()
+    before = old_row or table.row_type()
     return _row(kind, [new_values.get(name, getattr(before, name)) for name in fields])
 
 
@@ -316,7 +316,7 @@ def _row(kind: OffsetKind, values: Sequence[FieldValue | None]) -> OffsetRow:
     NULL columns, which come from older versions, get zero or empty values.
     """
     whole = [_plain(field, value) for field, value in zip(FIELDS_BY_KIND[kind].values(), values, strict=True)]
-    return OFFSET_TABLES[kind].row._make(whole)
+    return OFFSET_TABLES[kind].row_type._make(whole)
 
 
 def _plain(field: RowField, value: FieldValue | None) -> FieldValue:
@@ -374,7 +374,7 @@ def apply_changes(
 
     ``step`` is the number of a step that also changes another table; None begins a new step.
     """
-    table, log = OFFSET_TABLES[kind], OFFSET_TABLES[kind].log
+    table, log = OFFSET_TABLES[kind], OFFSET_TABLES[kind].history_table
     step = _next_step(connection) if step is None else step
     at, columns = get_utc_now_text(), _columns(kind)
     # All old rows are deleted first, so that the table never has two master tools.

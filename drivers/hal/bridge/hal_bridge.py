@@ -90,7 +90,7 @@ class HalBridge:
         self._dry = 0
         self._homing: set[str] = set()
         # The chain is closed in advance for later commands of the control.
-        self._chain_pins.close(self._now())
+        self._chain_pins.close_chain(self._now())
         self._acts: Mapping[str, Callable[[PacketHead, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
             "splice": self._splice,
@@ -106,7 +106,7 @@ class HalBridge:
             "homing": self._handle_home,
             "index": self._handle_index,
             "c": self._handle_hold_c,
-            "orient": lambda head, _numbers: self.spindle_pins.orient(head, self._now()),
+            "orient": lambda head, _numbers: self.spindle_pins.orient_spindle(head, self._now()),
             "end": self._end,
         }
 
@@ -381,7 +381,7 @@ class HalBridge:
         self._on, self._off_at = True, INFINITY
         self._following_monitor.reset()
         self._grant_at = self.row_streams.last_row_due_s
-        self._chain_pins.close(self._now())
+        self._chain_pins.close_chain(self._now())
 
     def _update_power(self, now: float) -> None:
         """End the reset pulse of the chain, and switch on the power.
@@ -413,7 +413,7 @@ class HalBridge:
     def _clear(self) -> None:
         self._power_off()
         self.fault = self.fault_code = ""
-        self._chain_pins.close(self._now())
+        self._chain_pins.close_chain(self._now())
 
     def _handle_hold_c(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Set C's setpoint to the position of the spindle.

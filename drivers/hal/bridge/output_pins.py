@@ -42,7 +42,7 @@ class ChainPins:
         self._pins = pins
         self._reset_until = self._watch_from = -INFINITY
 
-    def close(self, now: float) -> None:
+    def close_chain(self, now: float) -> None:
         """Restart the watchdog and start the reset pulse if they are needed to close the chain."""
         if not self._pins["alive"]:
             self._watch_from = now + _WATCHDOG_RESTART_S

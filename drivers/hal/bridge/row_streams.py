@@ -59,8 +59,8 @@ RowFunction = Callable[[float], SetpointRow]
 class _PendingRow(NamedTuple):
     """A written row with its number, its due time and its values."""
 
-    row: int
-    t: float
+    row_number: int
+    due_time_s: float
     values: SetpointRow
 
 
@@ -90,7 +90,7 @@ class RowStreams:
         return self.last_row_number - self.played_row_number
 
     def write_row(self, due_time_s: float, values: tuple[float, ...]) -> bool:
-        """Write one row that is due at ``t``, and return False if the stream is full."""
+        """Write one row that is due at ``due_time_s``, and return False if the stream is full."""
         stream = self._streams[self._active if self._change is None else 1 - self._active]
         if not stream.writable:
             return False
@@ -102,37 +102,42 @@ class RowStreams:
 
     def record_played_row(self, row_number: int) -> float:
         """Record that the servo thread plays this row, and return its due time in seconds."""
-        while self._due and self._due[0].row <= row_number:
+        while self._due and self._due[0].row_number <= row_number:
             self._past.append(self._due.popleft())
-            self.played_row_number, self.played_row_due_s = self._past[-1].row, self._past[-1].t
+            self.played_row_number, self.played_row_due_s = (
+                self._past[-1].row_number,
+                self._past[-1].due_time_s,
+            )
         return self.played_row_due_s
 
     def find_first_recallable_row(self, time_s: float) -> int | None:
-        """Return the first row due at ``t`` or later that can be recalled, or None if it is too late."""
+        """Return the first row due at ``due_time_s`` or later that can be recalled, or None if it is too
+        late.
+        """
         soonest = self.played_row_number + _MARGIN
         for each in self._due:
-            if each.t >= time_s - 1e-9:
-                return each.row if each.row >= soonest else None
+            if each.due_time_s >= time_s - 1e-9:
+                return each.row_number if each.row_number >= soonest else None
         return self.last_row_number + 1
 
     def matches_locked_rows(self, time_s: float, make_row: RowFunction) -> bool:
         """Return whether the rows that can no longer be recalled equal those of ``make_row``.
 
-        Only the rows from ``t`` on are compared.
+        Only the rows from ``due_time_s`` on are compared.
         """
         until = self.played_row_number + _MARGIN
-        rows = [each for each in (*self._past, *self._due) if each.row <= until]
+        rows = [each for each in (*self._past, *self._due) if each.row_number <= until]
         return (
             bool(rows)
-            and rows[0].t <= time_s
-            and all(_same(e.values, make_row(e.t)) for e in rows if e.t >= time_s - 1e-9)
+            and rows[0].due_time_s <= time_s
+            and all(_same(e.values, make_row(e.due_time_s)) for e in rows if e.due_time_s >= time_s - 1e-9)
         )
 
     def find_earliest_recall_time(self) -> float:
         """Return the due time in seconds from which rows can be recalled."""
         for each in self._due:
-            if each.row >= self.played_row_number + _MARGIN + 1:
-                return each.t
+            if each.row_number >= self.played_row_number + _MARGIN + 1:
+                return each.due_time_s
         return self.last_row_due_s
 
     @property
@@ -141,7 +146,7 @@ class RowStreams:
         return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
     def recall_rows(self, time_s: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
-        """Replace all rows from ``t`` on, and return False without a change if it is too late.
+        """Replace all rows from ``due_time_s`` on, and return False without a change if it is too late.
 
         Until ``unchanged_until`` seconds, the replacement is the same path.
         """
@@ -159,17 +164,23 @@ class RowStreams:
         return True
 
     def _begin(self, first: int, make: RowFunction, same_until: float) -> None:
-        kept = self._old if self._change is not None else {each.row: each.values for each in self._due}
-        between = {each.row: each.values for each in self._due if first <= each.row < (self._change or first)}
-        self._old = {row: values for row, values in {**kept, **between}.items() if row >= first}
-        self._due = deque([e if e.row < first else e._replace(values=make(e.t)) for e in self._due])
-        others = (
-            each.row
+        kept = self._old if self._change is not None else {each.row_number: each.values for each in self._due}
+        between = {
+            each.row_number: each.values
             for each in self._due
-            if each.row >= first
+            if first <= each.row_number < (self._change or first)
+        }
+        self._old = {row: values for row, values in {**kept, **between}.items() if row >= first}
+        self._due = deque(
+            [e if e.row_number < first else e._replace(values=make(e.due_time_s)) for e in self._due]
+        )
+        others = (
+            each.row_number
+            for each in self._due
+            if each.row_number >= first
             and (
-                each.row not in self._old
-                or (each.t >= same_until and not _same(each.values, self._old[each.row]))
+                each.row_number not in self._old
+                or (each.due_time_s >= same_until and not _same(each.values, self._old[each.row_number]))
             )
         )
         self._parts = next(others, self.last_row_number + 1)
@@ -180,8 +191,8 @@ class RowStreams:
         """Request that the other stream is played from row ``first`` on."""
         idle = self._streams[1 - self._active]
         for each in self._due:
-            if each.row >= first:
-                idle.write((float(each.row), *each.values))
+            if each.row_number >= first:
+                idle.write((float(each.row_number), *each.values))
         self._change = first
         self._pins["play-b"] = 1 - self._active
         self._pins["switch-at"] = float(first - 1)

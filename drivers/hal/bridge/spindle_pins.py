@@ -60,8 +60,8 @@ class SpindlePins:
         if "position_mode" in self._config.spindle:
             self._pins["spindle.position_mode"] = 0
 
-    def orient(self, head: PacketHead, now: float) -> None:
-        """Orient the spindle; ``orient`` falls first, because its rising edge latches the angle."""
+    def orient_spindle(self, head: PacketHead, now: float) -> None:
+        """Orient the spindle; ``orient_spindle`` falls first, because its rising edge latches the angle."""
         self._release_angle()
         if head.get("on") is not True or not self._pins["chain-ok"]:
             return

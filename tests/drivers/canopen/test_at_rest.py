@@ -102,7 +102,7 @@ def test_input_change_is_read_with_the_next_sync(sleeping: Sleeping) -> None:
 def test_node_that_replies_to_every_second_sync_is_read_as_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     made = CanBench(can_machine(("sync_ms = 10 ", "sync_ms = 5 ")))
     try:
-        assert made.machine.config.bus.slow_reply_divisor == 2
+        assert made.machine.config.bus_settings.slow_reply_divisor == 2
         made.run(0.5)
         sleeping = Sleeping(made, monkeypatch)
         for pressed in (True, False) * 4:  # at any time between two SYNCs
@@ -120,7 +120,7 @@ def test_sync_rate_is_normal_again_one_cycle_after_waking(sleeping: Sleeping) ->
     woken = sleeping.bench.clock.now()
     sleeping.go_on(1.0, asleep=False)
     assert sleeping.syncs[0] - woken < 3 * STEP
-    assert len(sleeping.syncs) == pytest.approx(1.0 / sleeping.bench.machine.config.bus.sync, abs=2)
+    assert len(sleeping.syncs) == pytest.approx(1.0 / sleeping.bench.machine.config.bus_settings.sync, abs=2)
 
 
 def test_moving_or_faulted_bus_needs_every_cycle(sleeping: Sleeping) -> None:

@@ -203,4 +203,4 @@ def test_bus_survey_includes_the_encoder() -> None:
     }
     peers.close()
     assert (found["turns"].node_id, found["turns"].error_text) == (20, "")
-    assert "CiA 406" in found["turns"].detail
+    assert "CiA 406" in found["turns"].detail_text

@@ -22,7 +22,7 @@ from tests.drivers.canopen.foreign import NODE, ForeignModule
 TICK = 0.01
 _channels = itertools.count()
 COOLANT, COLLET = Terminal("io", 0x6200, 1, 0), Terminal("io", 0x6200, 1, 1)
-GUARD, ESTOP = Terminal("io", 0x6000, 1, 3), Terminal("io", 0x6000, 1, 0, active_low=True)
+GUARD, ESTOP = Terminal("io", 0x6000, 1, 3), Terminal("io", 0x6000, 1, 0, is_active_low=True)
 
 
 class Bench:
@@ -35,9 +35,9 @@ class Bench:
         self.bus = CanBus(bus, self.clock, self.module.pump)
         self.io = CanopenIO(
             CanopenConfig(
-                bus=bus,
+                bus_settings=bus,
                 axes=(),
-                modules=(CanNode("io", NODE, 401),),
+                io_modules=(CanNode("io", NODE, 401),),
                 inputs={"guard": GUARD, "estop": ESTOP} if inputs else {},
                 outputs={"coolant": OutputConfig(COOLANT), "collet": OutputConfig(COLLET, None)}
                 if outputs

@@ -19,7 +19,7 @@ from tests.drivers.machines import ramp
 def test_each_sync_gives_a_sample_row_with_the_drive_positions(bench: CanBench) -> None:
     source = bench.machine.ports.samples
     assert source is not None
-    assert source.sample_rate_hz == pytest.approx(1.0 / bench.machine.config.bus.sync)
+    assert source.sample_rate_hz == pytest.approx(1.0 / bench.machine.config.bus_settings.sync)
     axes = bench.machine.axes
     axes.enable(True)
     source.take()
@@ -32,7 +32,7 @@ def test_each_sync_gives_a_sample_row_with_the_drive_positions(bench: CanBench) 
         seen.append(axes.sample())
     rows = source.take()
     assert rows.shape[1] == width
-    assert np.diff(rows[10:, 0]) == pytest.approx(bench.machine.config.bus.sync, abs=1e-6)
+    assert np.diff(rows[10:, 0]) == pytest.approx(bench.machine.config.bus_settings.sync, abs=1e-6)
     by_time = {sample.t: sample for sample in seen}
     known = [row for row in rows if row[0] in by_time]
     assert len(known) > 50

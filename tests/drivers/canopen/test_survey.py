@@ -53,11 +53,11 @@ def test_bus_survey_lists_every_node_with_its_identity() -> None:
     }
     assert not any(answer.error_text for answer in found.values())
     # EPOS2 has no option of its quick stop, and no time for its window
-    assert "PP homing IP CSP" in found["X"].detail
+    assert "PP homing IP CSP" in found["X"].detail_text
     for value in ("EPOS2", "pvt"):
-        assert value in found["X"].detail
-    assert re.findall("[0-9A-F]{4}h", found["X"].detail) == ["605Ah", "6066h"]
-    assert found["io"].detail == "CiA 401"
+        assert value in found["X"].detail_text
+    assert re.findall("[0-9A-F]{4}h", found["X"].detail_text) == ["605Ah", "6066h"]
+    assert found["io"].detail_text == "CiA 401"
 
 
 def test_survey_reports_missing_mode_objects_before_writing() -> None:
@@ -67,7 +67,7 @@ def test_survey_reports_missing_mode_objects_before_writing() -> None:
         ("sync_ms = 10 ", "sync_ms = 4 "),
     )
     found = surveyed(*csp)
-    assert "runs csp" in found["X"].detail
+    assert "runs csp" in found["X"].detail_text
     interpolated = (('mode = "pvt"', 'mode = "ip"'), *csp[1:])
     trouble = surveyed(*interpolated)["X"].error_text
     assert trouble.startswith("X: ")

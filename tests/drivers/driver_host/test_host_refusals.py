@@ -134,7 +134,7 @@ def test_reply_received_in_pieces_is_reassembled(monkeypatch: pytest.MonkeyPatch
     ours, theirs = socket.socketpair()
     theirs.sendall(encode_message(Message({"value": 7.0}, NO_NUMBERS)))
     link = SocketLink(ours)
-    assert link.send_request(Message({"do": "hello"}, NO_NUMBERS)).head == {"value": 7.0}
+    assert link.send_request(Message({"do": "hello"}, NO_NUMBERS)).header == {"value": 7.0}
     link.close()
     theirs.close()
 

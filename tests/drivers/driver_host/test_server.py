@@ -229,8 +229,8 @@ def test_invalid_request_is_rejected_and_changes_nothing(
     bench: Bench, head: dict[str, object], reason: str
 ) -> None:
     answer = bench.host.handle_message(Message(head, NO_NUMBERS))
-    assert answer.head["error"]
-    assert answer.head["reason"] == reason
+    assert answer.header["error"]
+    assert answer.header["reason"] == reason
     assert not bench.sim.ports.axes.sample().enabled
     assert not bench.sim.ports.station.read_state().estop
 
@@ -251,7 +251,7 @@ def test_driver_host_of_another_version_is_rejected(bench: Bench) -> None:
     class Older(InProcessLink):
         def send_request(self, message: Message) -> Message:
             answer = super().send_request(message)
-            return Message({k: v for k, v in answer.head.items() if k != "version"}, answer.numbers)
+            return Message({k: v for k, v in answer.header.items() if k != "version"}, answer.numbers)
 
     with raises_code(DriverError, "driver", "None", "5"):
         create_host_ports(HostConnection(Older(bench.host), bench.clock))
@@ -263,9 +263,9 @@ def test_messages_are_decoded_from_pieces_and_from_one_block() -> None:
     data = encode_message(one) + encode_message(two)
     inbox = MessageDecoder()
     found = [message for byte in data for message in inbox.decode(bytes([byte]))]
-    assert [message.head for message in found] == [one.head, two.head]
+    assert [message.header for message in found] == [one.header, two.header]
     assert found[0].numbers.tolist() == [1.5, -2.0]
-    assert [message.head for message in MessageDecoder().decode(data)] == [one.head, two.head]
+    assert [message.header for message in MessageDecoder().decode(data)] == [one.header, two.header]
 
 
 @pytest.mark.parametrize(

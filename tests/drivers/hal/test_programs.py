@@ -60,7 +60,7 @@ def test_pin_that_differs_from_the_machine_file_is_named_by_check(
     old: str, new: str, row: str, why: str, tmp_path: Path
 ) -> None:
     answers = check_machine(load_machine(lathe(tmp_path, ((old, new),))))
-    wrong = [each for each in answers.rows if each.verdict == "FAIL"]
+    wrong = [each for each in answers.rows if each.result_text == "FAIL"]
     assert [each.name for each in wrong] == [row]
     assert why in wrong[0].detail
     assert answers.faults

@@ -35,7 +35,7 @@ class PinRoom(Room):
 
     def sign_in(self, name: str, pin: str = "") -> None:
         """Enter a PIN."""
-        row = self.access.users.find_user(name)
+        row = self.access.user_list.find_user(name)
         assert row is not None
         self.session.sign_in(row, pin or PINS[name])
         self.settle()

@@ -123,7 +123,7 @@ def test_hash_of_another_length_matches_no_pin(damage: bytes) -> None:
 
 def test_old_hash_is_upgraded_when_its_pin_is_entered(room: PinRoom, monkeypatch: pytest.MonkeyPatch) -> None:
     room.enter_people()
-    old = room.access.users.rows
+    old = room.access.user_list.rows
     monkeypatch.setattr(pins, "DEFAULT_COST", pins.ScryptCost(5, 8, 1))
     room.sign_in("BEN", "9999")
     assert room.store.people.read_users().rows == old
@@ -131,7 +131,7 @@ def test_old_hash_is_upgraded_when_its_pin_is_entered(room: PinRoom, monkeypatch
     room.sign_in("BEN")
     now = room.store.people.read_users().find_user("BEN")
     assert now is not None
-    assert (room.access.user_name, room.access.users.find_user("BEN")) == ("BEN", now)
+    assert (room.access.user_name, room.access.user_list.find_user("BEN")) == ("BEN", now)
     assert now.hash[:3] == bytes((5, 8, 1))
     assert matches_hash(PINS["BEN"], PinHash(now.salt, now.hash))
     assert {row for row in old if row.name != "BEN"} < set(room.store.people.read_users().rows)
@@ -190,12 +190,12 @@ def test_levels_return_with_a_store_that_was_missing_at_startup(room: PinRoom, t
     room.desk.user_access = again  # type: ignore[misc]
     again.access_level = AccessLevel.OPERATOR
     PinSignIn(again)
-    assert (again.users.is_access_restricted, again.users.rows) == (True, ())
+    assert (again.user_list.is_access_restricted, again.user_list.rows) == (True, ())
     room.journal._store, room.journal._folder = store, folder
     room.at += 1.0
     room.run(1)
     assert shows(again.find_refusal(ProtectedChange.PEOPLE), "screen.level-needed", level="SERVICE")
-    assert [row.name for row in again.users.rows] == ["ANNA", "BEN", "CARLA"]
+    assert [row.name for row in again.user_list.rows] == ["ANNA", "BEN", "CARLA"]
     again.close()
 
 
@@ -239,7 +239,7 @@ def test_first_user_has_service_level_and_enables_access_levels(room: PinRoom) -
     assert levels.make_table(room.desk.read_snapshot()).question == wording("desk.same-pin-again")
     typed(levels, "4711")
     room.settle()
-    assert [(row.name, row.level) for row in room.access.users.rows] == [("ANNA", 3)]
+    assert [(row.name, row.level) for row in room.access.user_list.rows] == [("ANNA", 3)]
     levels.make_function_keys()["F3"].action()
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="USERS AND PINS", level="SERVICE")
     typed(levels, "", "4711")  # Return on her name, and her PIN
@@ -247,7 +247,7 @@ def test_first_user_has_service_level_and_enables_access_levels(room: PinRoom) -
     levels.make_function_keys()["F3"].action()
     typed(levels, "Ben", "2", "2580", "2580")
     room.settle()
-    assert [(row.name, row.level) for row in room.access.users.rows] == [("ANNA", 3), ("BEN", 2)]
+    assert [(row.name, row.level) for row in room.access.user_list.rows] == [("ANNA", 3), ("BEN", 2)]
     assert room.log("access")[-1] == (wording("log.entered", name="BEN", level="SETUP"), "ANNA")
 
 
@@ -256,7 +256,7 @@ def test_different_pins_are_not_stored(room: PinRoom) -> None:
     levels.make_function_keys()["F3"].action()
     typed(levels, "anna", "4711", "4712")
     room.settle()
-    assert not room.access.users.is_access_restricted
+    assert not room.access.user_list.is_access_restricted
     assert wording("desk.two-different-pins").upper() in room.desk.prompt_notice.upper()
 
 
@@ -290,12 +290,12 @@ def test_ten_minutes_of_estop_reset_all_pins(room: PinRoom) -> None:
     pressed(room)
     room.at += RESET_DELAY_S - 1.0
     room.run(1)
-    assert room.access.users.is_access_restricted
+    assert room.access.user_list.is_access_restricted
     assert room.access.header_text == wording("desk.pins-reset-in", time="0:01")
     room.at += 1.0
     room.run(1)
     room.settle()
-    assert not room.access.users.is_access_restricted
+    assert not room.access.user_list.is_access_restricted
     assert room.access.header_text == ""
     told = [text for text, _who in room.log("access")]
     assert begins(told[0], "desk.reset-begun")
@@ -314,7 +314,7 @@ def test_pin_reset_requires_estop_and_ends_with_it(room: PinRoom) -> None:
     room.at += RESET_DELAY_S
     room.run(1)
     room.settle()
-    assert room.access.users.is_access_restricted
+    assert room.access.user_list.is_access_restricted
     assert room.log("access")[-1][0] == wording("desk.reset-given-up")
 
 
@@ -325,7 +325,7 @@ def test_pin_entry_cancels_the_reset(room: PinRoom) -> None:
     room.at += RESET_DELAY_S
     room.run(1)
     room.settle()
-    assert room.access.users.is_access_restricted
+    assert room.access.user_list.is_access_restricted
 
 
 def test_change_begun_at_a_level_is_not_completed_after_sign_out(room: PinRoom) -> None:
@@ -347,4 +347,4 @@ def test_change_begun_at_a_level_is_not_completed_after_sign_out(room: PinRoom) 
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert not programs.import_export.worker.is_busy
     room.settle()
-    assert room.access.users.find_user("EVE") is None
+    assert room.access.user_list.find_user("EVE") is None

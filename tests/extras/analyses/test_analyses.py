@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.extras.analyses.analyses import AnalysesModel, analyze, find_last_run
+from app.extras.analyses.analyses import AnalysesModel, analyze_record, find_last_run
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drawing import scale_drawing
 from tests.scope.played_record import record_of, seconds
@@ -26,7 +26,7 @@ def turned_arc() -> object:
 
 
 def test_ball_bar_analysis_finds_the_arc_of_a_record() -> None:
-    found = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
+    found = analyze_record(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball_bar is not None
     assert found.selected_arc == (0, 1, 4)
     assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
@@ -34,7 +34,7 @@ def test_ball_bar_analysis_finds_the_arc_of_a_record() -> None:
 
 
 def test_path_error_is_assigned_to_its_program_line() -> None:
-    found = analyze(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
+    found = analyze_record(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert [each.line for each in found.worst_deviations] == [4]
     assert abs(found.worst_deviations[0].distance_mm) == pytest.approx(
         0.01, abs=1e-4
@@ -43,7 +43,7 @@ def test_path_error_is_assigned_to_its_program_line() -> None:
 
 def test_path_error_table_shows_the_axis_positions() -> None:
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
-    page.result = analyze(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
+    page.result = analyze_record(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
     sheet = page.make_table()
     (line, _off, z, x), heads = sheet.rows[0].cells, sheet.column_heads
     assert (line, heads[2:]) == ("4", ("Z", "X"))
@@ -74,7 +74,7 @@ def milled_arc() -> object:
 
 
 def test_mill_arc_is_found_in_the_xy_plane() -> None:
-    found = analyze(AnalysisKind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
+    found = analyze_record(AnalysisKind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball_bar is not None
     assert (found.axis_names, found.selected_arc) == (("X", "Y"), (0, 1, 4))
     assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
@@ -84,7 +84,7 @@ def test_mill_arc_is_found_in_the_xy_plane() -> None:
 def test_mill_path_error_is_spatial() -> None:
     """Where Y goes radially its play of .01 and the .004 of Z are at right angles: √(.01² + .004²)."""
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
-    page.result = found = analyze(AnalysisKind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
+    page.result = found = analyze_record(AnalysisKind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
     assert [each.line for each in found.worst_deviations] == [4]
     assert found.worst_deviations[0].distance_mm == pytest.approx(np.hypot(0.01, 0.004), abs=1e-4)
     sheet = page.make_table()
@@ -99,7 +99,7 @@ def test_mill_path_error_is_spatial() -> None:
 
 def test_drawing_labels_its_axes_with_the_displayed_unit() -> None:
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
-    page.result = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
+    page.result = analyze_record(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     drawing = page.make_drawing()
     assert scale_drawing(drawing, 1.0).axis_labels == ("X  mm", "", "Z  mm")
     assert scale_drawing(drawing, 1.0).is_inverted
@@ -109,16 +109,16 @@ def test_drawing_labels_its_axes_with_the_displayed_unit() -> None:
 
 def test_missing_data_is_reported() -> None:
     record = record_of(seconds(0.0, 3.0))
-    assert analyze(AnalysisKind.BALL_BAR, record, 0, {}).missing_reason == text("scope.no-arc")
+    assert analyze_record(AnalysisKind.BALL_BAR, record, 0, {}).missing_reason == text("scope.no-arc")
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
-    assert "does not turn" in analyze(AnalysisKind.THREAD, still, 0, {}).missing_reason
+    assert "does not turn" in analyze_record(AnalysisKind.THREAD, still, 0, {}).missing_reason
     assert (
         "a path needs two linear axes"
-        in analyze(AnalysisKind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).missing_reason
+        in analyze_record(AnalysisKind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).missing_reason
     )
     nothing = np.full(3001, np.nan)
     deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)
-    assert "no spindle encoder count" in analyze(AnalysisKind.THREAD, deaf, 0, {}).missing_reason
+    assert "no spindle encoder count" in analyze_record(AnalysisKind.THREAD, deaf, 0, {}).missing_reason
 
 
 def test_live_samples_are_reduced_to_the_last_run() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import analyze
+from app.extras.analyses.analyses import analyze_record
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.axis_response import find_last_move, make_response_table
 from core.records.record import AnalysisError
@@ -72,7 +72,7 @@ def test_record_without_a_move_raises_an_error() -> None:
     record = record_of(times, X_demand=still, Z_demand=still)
     with raises_code(AnalysisError, "no-step"):
         find_last_move(record, DRIVES)
-    assert "Jog page" in analyze(AnalysisKind.AXIS_RESPONSE, record, 0, DRIVES).missing_reason
+    assert "Jog page" in analyze_record(AnalysisKind.AXIS_RESPONSE, record, 0, DRIVES).missing_reason
 
 
 def test_unfinished_move_is_not_a_step_response() -> None:

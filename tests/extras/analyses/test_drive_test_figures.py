@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import analyze
+from app.extras.analyses.analyses import analyze_record
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drive_test_results import (
     TEST_PATH_KEY,
@@ -121,7 +121,7 @@ def test_sine_gain_phase_and_bandwidth_match_the_formula() -> None:
 
 
 def test_analyses_page_recognizes_a_drive_test_record() -> None:
-    found = analyze(AnalysisKind.AXIS_RESPONSE, played(RAMP), 0, DRIVES)
+    found = analyze_record(AnalysisKind.AXIS_RESPONSE, played(RAMP), 0, DRIVES)
     assert found.drive_test is not None
     assert found.drive_test.test_path == RAMP
     assert describe_test_path(RAMP, True) == "Z−  RAMP  5.0000 mm, 20.000 mm/s"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import AnalysesModel, analyze
+from app.extras.analyses.analyses import AnalysesModel, analyze_record
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drawing import scale_drawing
 from app.extras.analyses.spindle_response import SpindleResponse, find_last_run_up
@@ -89,15 +89,18 @@ def test_missing_spindle_speed_is_reported() -> None:
     nothing: FloatArray = np.full(12001, np.nan)
     with raises_code(AnalysisError, "no-measured-speed"):
         found(record_of(seconds(0.0, 12.0), spindle_speed=nothing))
-    assert "no spindle" in analyze(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 500.0)), 0, {}).missing_reason
+    assert (
+        "no spindle"
+        in analyze_record(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 500.0)), 0, {}).missing_reason
+    )
 
 
 def test_spindle_response_has_a_table_and_a_drawing() -> None:
     page = AnalysesModel(SimpleNamespace(metric=False), spindle=MODEL, kind=AnalysisKind.SPINDLE_RESPONSE)  # type: ignore[arg-type]
-    page.result = analyze(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 1000.0)), 0, {}, MODEL)
+    page.result = analyze_record(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 1000.0)), 0, {}, MODEL)
     rows = {row.cells[0]: row.cells[1] for row in page.make_table().rows}
     assert rows["SPEED"] == "0 → 1000 rpm"
     assert rows[text("scope.settled-after", share="5 %")] == "0.600 s"
     drawing = scale_drawing(page.make_drawing(), 1.0 / 25.4)
-    assert drawing.curves[0][:, 1].max() == pytest.approx(1000.0, abs=0.2)  # rpm in inch too
+    assert drawing.upper_curves[0][:, 1].max() == pytest.approx(1000.0, abs=0.2)  # rpm in inch too
     page.close()

@@ -86,7 +86,7 @@ def radii(
 ) -> np.ndarray:  # fmt: skip
     """Radii of the proved part at these Z, mm; the proof has nothing to say against the program."""
     n = made.nose_offset
-    offsets = {n.number: SecondaryOffset(n.x, n.z, n.nose_radius)} if n else {}
+    offsets = {n.offset_number: SecondaryOffset(n.x, n.z, n.nose_radius)} if n else {}
     report, part = proved(text_of(made), TOOLS if tools is None else tools, offsets, stock)
     assert not report.errors, [d.text for d in report.diagnostics]
     assert part.last_piece is not None

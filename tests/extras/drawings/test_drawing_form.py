@@ -84,7 +84,7 @@ def test_unit_and_layer_are_translated_to_spanish_but_layer_names_are_not(desk: 
 def test_drawing_becomes_shapes_that_can_be_reopened(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
-    assert not form.errors
+    assert not form.error_texts
     assert form.remarks[0] == "secondary offset 1 must have X -.8 (diameter), Z -.4, R .4 mm"
     assert any("remains in the corner at Z -9.975" in each for each in form.remarks)
     desk.shapes.write_form()
@@ -127,29 +127,29 @@ def test_contour_and_side_are_picked_with_keys(desk: Desk, tmp_path: Path) -> No
     assert form.filled_shape.get_text("FRONT") == "LEFT"
     form.select_word("ROUGH")
     desk.strike("0")
-    assert not any("G75" in line for line in form.lines)
+    assert not any("G75" in line for line in form.program_lines)
 
 
 def test_second_program_head_is_not_written_after_a_program(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open("G90G94F7620G71G72(HEAD METRIC UNIT DIAMETER WORDS)\nM30\n")
-    assert form.lines[0].startswith("T1(FACE")
+    assert form.program_lines[0].startswith("T1(FACE")
 
 
 def test_error_is_shown_at_its_field(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP), unit=0)
     (tmp_path / "b.dxf").write_text("no drawing")
     form = desk.open()
-    assert form.errors["DUNIT"] == text("shapes.no-unit", file="a.dxf")
+    assert form.error_texts["DUNIT"] == text("shapes.no-unit", file="a.dxf")
     form.select_word("DUNIT")
     desk.strike("M")
-    assert not form.errors
+    assert not form.error_texts
     form.select_word("SIDE")
     desk.strike("Right")
-    assert "no bore" in form.errors["CONTOUR"]
+    assert "no bore" in form.error_texts["CONTOUR"]
     form.select_word("FILE")
     desk.strike("Right")
-    assert "damaged" in form.errors["FILE"]
+    assert "damaged" in form.error_texts["FILE"]
     desk.shapes.write_form()
     assert desk.shapes.form is form  # nothing is written
 
@@ -160,7 +160,7 @@ def test_drawing_that_gives_an_invalid_program_is_not_written(desk: Desk, tmp_pa
     form.select_word("FROM")
     desk.strike("5")
     assert re.search(pattern("shapes.outside-stock", stock="5"), form.current_error)
-    assert not form.lines
+    assert not form.program_lines
 
 
 def test_form_without_a_drawing_says_where_to_put_one(desk: Desk) -> None:
@@ -197,7 +197,7 @@ def reading(desk: Desk, tmp_path: Path) -> Reading:
 
 
 def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Reading) -> None:
-    while desk.drawing.plan_worker.progress < 7:
+    while desk.drawing.plan_worker.progress_percent < 7:
         pass
     assert desk.shapes.prompt_text() == text("shapes.being-read", seconds=7)
     desk.shapes.write_form()
@@ -205,7 +205,7 @@ def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Read
     reading.free.set()
     desk.settle()
     assert desk.shapes.form is not None
-    assert desk.shapes.form.lines
+    assert desk.shapes.form.program_lines
 
 
 @pytest.mark.parametrize("how", ["F6", "Esc"])
@@ -225,8 +225,8 @@ def test_reading_can_be_canceled_and_restarted(desk: Desk, reading: Reading, how
     reading.free.set()
     shapes.function_keys()[6].action()
     desk.settle()
-    assert not shapes.form.errors
-    assert shapes.form.lines
+    assert not shapes.form.error_texts
+    assert shapes.form.program_lines
     assert shapes.function_keys().get(6) is None
 
 

@@ -54,7 +54,7 @@ def values() -> st.SearchStrategy[MachineReport]:
     active = st.builds(
         ActiveCondition, st.sampled_from(["FAULT", "WARNING"]), st.sampled_from(["101", "102", "hold"]), TEXTS
     )
-    several = st.lists(active, max_size=3, unique_by=lambda each: each.code).map(tuple)
+    several = st.lists(active, max_size=3, unique_by=lambda each: each.native_code).map(tuple)
     return st.builds(
         lambda a, b, c: MachineReport({**a, **b}, c),
         st.dictionaries(st.sampled_from(samples), number),
@@ -86,7 +86,9 @@ def test_late_agent_gets_the_same_state_as_the_others(
     for key, active in early.active.items():
         now = last.conditions.get(key)
         wanted = (
-            None if now is None else {each.code: (each.level, replace_separators(each.text)) for each in now}
+            None
+            if now is None
+            else {each.native_code: (each.condition_level, replace_separators(each.text)) for each in now}
         )
         assert active == wanted
 

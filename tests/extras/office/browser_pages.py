@@ -43,7 +43,7 @@ def served() -> Iterator[tuple[str, str, tuple[int, int]]]:
         machine, dict, partial(load_stored_part, lambda _key: None), size_px=PICTURE_SIZE
     )
     drawn = draw(job, lambda _done: None)
-    part = encode_png(drawn.pixels, drawn.width, drawn.height) if drawn is not None else b""
+    part = encode_png(drawn.pixels, drawn.width_px, drawn.height_px) if drawn is not None else b""
     page = StatusPage("GT-75", "", lambda: STATUS, lambda: OTHERS, lambda: part, lambda: b"")
     listening = open_listening_socket("127.0.0.1", 0)
     server = StatusPageServer(page, listening, lambda: None)

@@ -141,9 +141,9 @@ def test_agent_is_queried_for_one_machine() -> None:
 
     with agent(answer) as address:
         heard, unknown = read_agent_status(f"{address}/MILL4"), read_agent_status(f"{address}/MILL5/")
-    assert heard.status is not None
-    assert heard.status["made"] == 57
-    assert unknown.status is None
+    assert heard.status_document is not None
+    assert heard.status_document["made"] == 57
+    assert unknown.status_document is None
     assert unknown.address == f"{address.removeprefix('http://')}/MILL5"
     assert unknown.error_text == text("shopfloor.answers", answer="404 Not Found")
 

@@ -417,8 +417,8 @@ def test_page_shows_another_machine() -> None:
     with served(page(TOKEN)) as address:
         heard = read_turndesk_status(f"{address}?token={TOKEN}")
     assert heard.error_text == ""
-    assert heard.status is not None
-    assert heard.status["program"] == "<b>pin</b>.nc"
+    assert heard.status_document is not None
+    assert heard.status_document["program"] == "<b>pin</b>.nc"
     shown = get(page(others=(heard,)))[2]
     assert shown.count("&lt;b&gt;pin") == 2
     assert TOKEN not in shown
@@ -433,7 +433,7 @@ def test_machine_that_is_off_is_shown_as_not_responding() -> None:
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
         heard = read_turndesk_status(f"http://127.0.0.1:{nobody.getsockname()[1]}")
-    assert heard.status is None
+    assert heard.status_document is None
     assert "refused" in heard.error_text
     assert text("shopfloor.no-answer-shown") in get(page(others=(heard,)))[2]
 
@@ -451,8 +451,8 @@ def test_status_from_another_machine_is_validated() -> None:
 def test_invalid_number_from_another_machine_is_omitted(odd: float) -> None:
     with served(page(status={**STATUS, "time_left": odd, "last_cycle": odd})) as address:
         heard = read_turndesk_status(address)
-    assert heard.status is not None
-    assert heard.status.keys() & {"time_left", "last_cycle"} == set()
+    assert heard.status_document is not None
+    assert heard.status_document.keys() & {"time_left", "last_cycle"} == set()
     assert "RUNNING" in get(page(others=(heard,)))[2]
 
 
@@ -466,7 +466,7 @@ def test_other_machines_are_polled_only_while_the_page_is_viewed() -> None:
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: heard)
     assert (asking.read_states()[0].state, asking.read_states()[0].error_text) == ("…", "")
     asking.start()
-    while asking.read_states()[0].status != heard.status:
+    while asking.read_states()[0].status_document != heard.status_document:
         pass
     asking.close()
 
@@ -479,7 +479,7 @@ def test_older_turndesk_shows_its_data_and_a_dead_one_is_marked() -> None:
         heard = [
             read_turndesk_status(each) for each in (old, f"http://127.0.0.1:{dead.getsockname()[1]}", new)
         ]
-    assert [each.status is not None for each in heard] == [True, False, True]
+    assert [each.status_document is not None for each in heard] == [True, False, True]
     shown = get(page(others=tuple(heard)))[2]
     cards = shown[shown.index('class="others"') :].split("<article>")[1:]
     assert [(text("shopfloor.no-answer-shown") in card, ">PARTS<" in card.upper()) for card in cards] == [
@@ -501,7 +501,7 @@ def test_hung_machine_does_not_delay_the_others() -> None:
     asking.read_states()
     asking.start()
     try:
-        while asking.read_states()[1].status is not healthy.status:
+        while asking.read_states()[1].status_document is not healthy.status_document:
             pass
         assert asking.read_states()[0].state == "…"
     finally:
@@ -515,9 +515,9 @@ def test_outdated_status_is_not_shown_as_current() -> None:
     asking.read_states()
     asking._heard["http://lathe2:8317"] = 0.0, OtherMachine("lathe2", {"state": "RUNNING"})
     now[0] = 10.0
-    assert asking.read_states()[0].status == {"state": "RUNNING"}
+    assert asking.read_states()[0].status_document == {"state": "RUNNING"}
     now[0] = 10.5
-    assert (asking.read_states()[0].status, asking.read_states()[0].error_text) == (
+    assert (asking.read_states()[0].status_document, asking.read_states()[0].error_text) == (
         None,
         text("shopfloor.silent-for", age=10),
     )
@@ -550,10 +550,10 @@ def test_machine_that_dies_retains_its_name(monkeypatch: pytest.MonkeyPatch) -> 
     asking = OtherMachines(("http://lathe2:8317",), ask)
     asking.read_states()
     asking.start()
-    while asking.read_states()[0].status is None:
+    while asking.read_states()[0].status_document is None:
         pass
     dies.set()
-    while asking.read_states()[0].status is not None:
+    while asking.read_states()[0].status_document is not None:
         pass
     asking.close()
     shown = get(page(others=tuple(asking.read_states())))[2]
@@ -567,7 +567,7 @@ def test_machines_are_not_reported_dead_after_a_polling_pause() -> None:
     asking.read_states()
     asking._heard["http://lathe2:8317"] = 0.0, OtherMachine("lathe2", {"state": "RUNNING"})
     now[0] = 30_000.0
-    assert (asking.read_states()[0].status, asking.read_states()[0].state) == (None, "…")
+    assert (asking.read_states()[0].status_document, asking.read_states()[0].state) == (None, "…")
 
 
 def test_port_in_use_is_reported() -> None:

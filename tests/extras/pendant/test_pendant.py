@@ -87,7 +87,7 @@ class Bench:
 
     @property
     def held(self) -> set[str]:
-        return {name for name, on in self.pendant.get_state().inputs.items() if on}
+        return {name for name, on in self.pendant.get_state().input_states.items() if on}
 
     @property
     def counts(self) -> int:

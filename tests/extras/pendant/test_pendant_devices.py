@@ -193,7 +193,7 @@ def test_event_names_match_the_kernel_header() -> None:
             parse_wheel_name(name) if name.startswith(("REL_", "ABS_")) else None
         )
         if found is not None:
-            assert found.code == number(name), name
+            assert found.event_code == number(name), name
             asked += 1
     assert asked > 200
 

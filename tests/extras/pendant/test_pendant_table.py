@@ -115,7 +115,7 @@ def test_missing_pendant_fails_its_row_in_machine_check(monkeypatch: pytest.Monk
     assert (rows["pendant"].at, rows["pendant"].state) == ("0b33:0030", "no answer")
     assert "not plugged in" in rows["pendant"].detail
     assert any("pendant" in each for each in answers.faults)
-    assert {rows[name].verdict for name in ("X", "Z", "spindle", "input wheel_x")} == {"not checked"}
+    assert {rows[name].result_text for name in ("X", "Z", "spindle", "input wheel_x")} == {"not checked"}
 
 
 def test_connected_pendant_is_read_alongside_the_machine() -> None:

@@ -21,7 +21,7 @@ from tests.coded import raises_code
 def test_xbar_r_limits_of_samples_of_two_match_hand_calculation() -> None:
     """Means 11 12 13, ranges 2 2 2: 12 ± 1.880 · 2, and 3.267 · 2 for the range."""
     pair = make_xbar_r_charts([(10, 12), (11, 13), (14, 12)])
-    assert pair.location.points.tolist() == [11, 12, 13]
+    assert pair.location.point_values.tolist() == [11, 12, 13]
     assert (pair.location.lower_limit, pair.location.center_line, pair.location.upper_limit) == pytest.approx(
         (8.24, 12, 15.76)
     )
@@ -46,7 +46,7 @@ def test_individuals_chart_matches_hand_calculation() -> None:
     pair = make_individuals_charts([10, 12, 11, 13])
     assert pair.location.upper_limit == pytest.approx(11.5 + 3 / 1.128 * 5 / 3)
     assert pair.location.lower_limit == pytest.approx(11.5 - 3 / 1.128 * 5 / 3)
-    assert pair.spread.points.tolist() == [2, 1, 2]
+    assert pair.spread.point_values.tolist() == [2, 1, 2]
     assert pair.spread.upper_limit == pytest.approx(5.445)
 
 
@@ -65,8 +65,8 @@ def test_d2_is_the_mean_range_of_a_normal_sample() -> None:
 
 
 def test_incomplete_sample_is_not_charted() -> None:
-    assert len(make_charts([1, 2, 3, 4, 5], 2).location.points) == 2
-    assert len(make_charts([1, 2, 3, 4, 5], 1).location.points) == 5
+    assert len(make_charts([1, 2, 3, 4, 5], 2).location.point_values) == 2
+    assert len(make_charts([1, 2, 3, 4, 5], 1).location.point_values) == 5
 
 
 def test_limits_are_stable_from_twenty_points() -> None:

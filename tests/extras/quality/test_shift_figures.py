@@ -103,11 +103,11 @@ def figures(store: Store, shift: Shift = EIGHT) -> ShiftResults:
 
 def test_shift_counts_the_parts_finished_in_it(store: Store) -> None:
     found = figures(store)
-    assert [(p.program, p.part_count, dict(p.incomplete_cycles)) for p in found.programs] == [
+    assert [(p.program, p.part_count, dict(p.incomplete_cycles)) for p in found.program_results] == [
         ("pin.nc", 3, {}),
         ("cap.nc", 0, {"GIVEN UP": 1, "CUT OFF": 1}),
     ]
-    assert found.programs[0].cycle_times_s == (1200.0, 3600.0, 1500.0)
+    assert found.program_results[0].cycle_times_s == (1200.0, 3600.0, 1500.0)
     assert found.part_count == 3
 
 
@@ -143,7 +143,7 @@ def test_offset_changes_are_listed_with_user_and_time(store: Store) -> None:
 
 def test_empty_shift_is_reported_as_empty(store: Store) -> None:
     found = figures(store, Shift(EIGHT.start_s - 30 * 86_400, EIGHT.end_s - 30 * 86_400))
-    assert (found.part_count, found.programs, found.notes) == (
+    assert (found.part_count, found.program_results, found.notes) == (
         0,
         (),
         ("No part was started in this period.",),
@@ -156,7 +156,7 @@ def test_clock_set_back_is_reported_and_durations_are_retained(store: Store) -> 
     store.write(lambda c: part_cycles.save_cycle(c, cycle("p9", "07:00:00", "06:40:00", 600.0, 10))).result()
     found = figures(store)
     assert any("was set back" in note for note in found.notes)
-    assert 600.0 in found.programs[0].cycle_times_s
+    assert 600.0 in found.program_results[0].cycle_times_s
     assert found.availability is not None
     assert found.availability.producing_s == 7_800.0  # it overlaps what ran: nothing is counted twice
 

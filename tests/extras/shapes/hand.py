@@ -70,7 +70,7 @@ class Programmer:
     def troubles(self) -> dict[str, str]:
         """What the form refuses, by field."""
         assert self.shapes.form is not None
-        return self.shapes.form.errors
+        return self.shapes.form.error_texts
 
 
 def setup_of(offsets: dict[int, SecondaryOffset] | None = None, *, strict: bool = False) -> Setup:

@@ -334,11 +334,11 @@ def test_store_closed_by_a_restore_during_synchronization_is_reported(
     write(one, "G00 X1\n")
     together(one)
     (folder_of(one) / "PART.NC").unlink()
-    store, put = one._store(), one.location.publish
+    store, put = one._store(), one.location.publish_versions
 
     def closed_meanwhile(versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         put(versions, state)
         store.close()
 
-    monkeypatch.setattr(one.location, "publish", closed_meanwhile)
+    monkeypatch.setattr(one.location, "publish_versions", closed_meanwhile)
     assert "is closed" in one.synchronize().error_text

@@ -27,7 +27,7 @@ def place(tmp_path: Path) -> SharedFolder:
     """A folder that is laid out and has one version."""
     found = SharedFolder(tmp_path)
     found.set_up()
-    found.publish([published(1)], state())
+    found.publish_versions([published(1)], state())
     return found
 
 
@@ -71,7 +71,7 @@ def test_pipe_in_place_of_a_version_is_damaged_and_replaced(place: SharedFolder,
     path.unlink()
     os.mkfifo(path)
     assert in_time(lambda: cause_of(place.read_text, one.version))[0] is SharingErrorCause.DAMAGED
-    in_time(lambda: place.publish([one], state()))
+    in_time(lambda: place.publish_versions([one], state()))
     assert place.read_text(one.version) == one.program_text
 
 

@@ -46,7 +46,7 @@ def cause_of(call: object, *args: object) -> tuple[SharingErrorCause, str]:
 
 def test_version_published_by_one_machine_is_read_by_another(rig: Rig) -> None:
     one, two = published(1), published(2, "ÄÖ 2.NC")
-    rig.place(1).publish([one, two], state(one, two))
+    rig.place(1).publish_versions([one, two], state(one, two))
     other = rig.place(2)
     found = other.read_contents({})
     assert set(found.unknown_versions) == {one.version, two.version}
@@ -58,8 +58,8 @@ def test_version_published_by_one_machine_is_read_by_another(rig: Rig) -> None:
 def test_known_version_is_listed_but_not_read_again(rig: Rig) -> None:
     one, two = published(1), published(2)
     place = rig.place()
-    place.publish([one], state(one))
-    place.publish([two], state(two))
+    place.publish_versions([one], state(one))
+    place.publish_versions([two], state(two))
     found = place.read_contents({one.version.id: one.version})
     assert (found.unknown_versions, found.stored_ids) == ((two.version,), {one.version.id, two.version.id})
 
@@ -67,37 +67,37 @@ def test_known_version_is_listed_but_not_read_again(rig: Rig) -> None:
 def test_publishing_the_same_again_changes_nothing(rig: Rig) -> None:
     one = published(1)
     place = rig.place()
-    place.publish([one], state(one))
-    place.publish([one], state(one))
+    place.publish_versions([one], state(one))
+    place.publish_versions([one], state(one))
     found = place.read_contents({})
     assert (found.unknown_versions, found.foreign_items, len(found.machine_states)) == ((one.version,), (), 1)
 
 
 def test_machine_state_replaces_its_previous_state(rig: Rig) -> None:
     one, place = published(1), rig.place()
-    place.publish([one], state(one))
+    place.publish_versions([one], state(one))
     other = PublishedMachineState("f" * 32, "LATHE 2", AT, {})
-    rig.place(2).publish([], other)
-    place.publish([], state())
+    rig.place(2).publish_versions([], other)
+    place.publish_versions([], state())
     desks = {each.machine_id: each for each in rig.place(2).read_contents({}).machine_states}
     assert desks == {HOME: state(), "f" * 32: other}
 
 
 def test_repeated_setup_changes_nothing(rig: Rig) -> None:
     one = published(1)
-    rig.place().publish([one], state(one))
+    rig.place().publish_versions([one], state(one))
     rig.place(2).set_up()
     assert rig.place().read_contents({}).unknown_versions == (one.version,)
 
 
 def test_unreachable_location_is_reported_and_works_when_it_returns(rig: Rig) -> None:
     one, two, place = published(1), published(2), rig.place()
-    place.publish([one], state(one))
+    place.publish_versions([one], state(one))
     rig.leave()
-    asked = [cause_of(place.read_contents, {}), cause_of(place.publish, [two], state(two))]
+    asked = [cause_of(place.read_contents, {}), cause_of(place.publish_versions, [two], state(two))]
     rig.come_back()
     assert [cause for cause, _ in asked] == [rig.away_cause] * 2
-    place.publish([two], state(two))
+    place.publish_versions([two], state(two))
     assert {each.id for each in place.read_contents({}).unknown_versions} == {one.version.id, two.version.id}
 
 
@@ -106,7 +106,7 @@ def test_newer_format_is_rejected_and_left_unchanged(rig: Rig) -> None:
     rig.make_newer()
     for cause, words in (
         cause_of(place.read_contents, {}),
-        cause_of(place.publish, [one], state(one)),
+        cause_of(place.publish_versions, [one], state(one)),
         cause_of(place.set_up),
     ):
         assert (cause, "newer TurnDesk (format 2)" in words) == (SharingErrorCause.NEWER, True)
@@ -114,7 +114,7 @@ def test_newer_format_is_rejected_and_left_unchanged(rig: Rig) -> None:
 
 def test_garbage_is_listed_and_hides_nothing(rig: Rig) -> None:
     one, place = published(1), rig.place()
-    place.publish([one], state(one))
+    place.publish_versions([one], state(one))
     rig.litter()
     found = place.read_contents({})
     assert (found.unknown_versions, found.machine_states, len(found.foreign_items)) == (
@@ -130,17 +130,17 @@ def test_interrupted_publishing_leaves_each_version_complete_or_absent(
 ) -> None:
     first, more = published(0), [published(number) for number in range(1, 6)]
     place = rig.place()
-    place.publish([first], state(first))
+    place.publish_versions([first], state(first))
     with monkeypatch.context() as patch:
         rig.cut_in_put(patch)
         with pytest.raises((SharingError, PowerCut)):
-            place.publish(more, state(*more))
+            place.publish_versions(more, state(*more))
     rig.mend()
     there = rig.place(2).read_contents({})
     assert first.version in there.unknown_versions  # what was acknowledged
     assert (there.foreign_items, there.machine_states) == ((), (state(first),))
     assert {each.id for each in there.unknown_versions} <= {each.version.id for each in (first, *more)}
-    rig.place().publish(more, state(*more))
+    rig.place().publish_versions(more, state(*more))
     after = rig.place(2).read_contents({})
     assert {each.id for each in after.unknown_versions} == {each.version.id for each in (first, *more)}
     assert after.machine_states == (state(*more),)
@@ -148,7 +148,7 @@ def test_interrupted_publishing_leaves_each_version_complete_or_absent(
 
 
 def test_missing_text_is_rejected(rig: Rig) -> None:
-    rig.place().publish([], state())
+    rig.place().publish_versions([], state())
     cause, words = cause_of(rig.place().read_text, published(7).version)
     assert cause in {SharingErrorCause.DAMAGED, SharingErrorCause.NOT_THERE}
     assert rig.place().name in words
@@ -158,7 +158,7 @@ def test_location_that_is_not_set_up_says_how_to_set_it_up(rig: Rig) -> None:
     empty = _emptied(rig)
     cause, words = cause_of(empty.read_contents, {})
     assert (cause, "turndesk share begin" in words) == (SharingErrorCause.NOT_BEGUN, True)
-    assert cause_of(empty.publish, [published(1)], state())[0] is SharingErrorCause.NOT_BEGUN
+    assert cause_of(empty.publish_versions, [published(1)], state())[0] is SharingErrorCause.NOT_BEGUN
     empty.set_up()
     assert empty.read_contents({}).stored_ids == frozenset()
 
@@ -195,21 +195,21 @@ def test_system_error_is_reported_with_its_cause(
     place = folder_rig.place()
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", refused)
-        assert cause_of(place.publish, [published(1)], state())[0] is cause
+        assert cause_of(place.publish_versions, [published(1)], state())[0] is cause
     assert place.read_contents({}).stored_ids == frozenset()
-    place.publish([published(1)], state())
+    place.publish_versions([published(1)], state())
     assert place.read_contents({}).foreign_items == ()
 
 
 def test_truncated_version_is_set_aside_and_published_again(folder_rig: Rig) -> None:
     one, place = published(1), folder_rig.place()
-    place.publish([one], state(one))
+    place.publish_versions([one], state(one))
     (file,) = (folder_rig.folder / "shop" / "versions").iterdir()
     file.write_bytes(file.read_bytes()[:-3])
     assert place.read_contents({one.version.id: one.version}).stored_ids == frozenset()
     assert place.read_contents({}).foreign_items == (file.name,)
     assert cause_of(place.read_text, one.version)[0] is SharingErrorCause.DAMAGED
-    place.publish([one], state(one))
+    place.publish_versions([one], state(one))
     assert place.read_text(one.version) == one.program_text
     assert place.read_contents({}).foreign_items == (
         f"{file.name}.damaged",
@@ -250,7 +250,7 @@ def test_user_without_permissions_is_reported(database: PostgresRig) -> None:
             database.database,
         )
         assert visitor.read_contents({}).stored_ids == frozenset()
-        assert cause_of(visitor.publish, [published(1)], state())[0] is SharingErrorCause.NO_RIGHT
+        assert cause_of(visitor.publish_versions, [published(1)], state())[0] is SharingErrorCause.NO_RIGHT
     finally:
         database.server.sql("DROP OWNED BY visitor; DROP ROLE visitor", database.database)
 

@@ -41,7 +41,7 @@ def test_columns_are_assigned(tmp_path: Path) -> None:
     columns = {"number": "pos", "x": "Dia", "z": "Length"}
     text = "Pos;Dia;Length;X\n7;76,2;-50,8;99\n"
     tool = tool_of(tmp_path, "a.csv", text, ReadingOptions("mm", "", columns))
-    assert (tool.number, dict(tool.offset_values)) == (7, {"x": 38.1, "z": -50.8})
+    assert (tool.tool_number, dict(tool.offset_values)) == (7, {"x": 38.1, "z": -50.8})
 
 
 def test_a_unit_in_the_heading_precedes_the_option(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from tests.extras.tool_tables.hand import table_of, tool_of
 
 def test_inch_line_is_read(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T3 P3 X1.5 Z-2 D0.0312 I85 J25 Q2 ;roughing\n")
-    assert tool.number == 3
+    assert tool.tool_number == 3
     assert tool.offset_values == {
         "x": pytest.approx(38.1),
         "z": pytest.approx(-50.8),

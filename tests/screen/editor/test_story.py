@@ -50,8 +50,8 @@ def test_new_program_is_written_corrected_and_saved(writer: Writer, tmp_path: Pa
     writer.sees(lambda: writer.proved() and not writer.editor.finding_list.findings.diagnostics)
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
-    assert writer.desk.program_loader.loaded.name == "first.nc"
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
+    assert writer.desk.program_loader.loaded_program.name == "first.nc"
     assert (tmp_path / "first.nc").read_text() == GOOD
     assert [text for text, _why in memory.kept["first.nc"]] == [GOOD.encode()]
     writer.sees(lambda: writer.prompt().startswith(wording("screen.to-start")))
@@ -103,12 +103,12 @@ def test_editor_does_not_open_without_program_or_name(writer: Writer) -> None:
 )
 def test_text_is_edited_while_loaded_program_runs_unchanged(writer: Writer, state: MachineState) -> None:
     writer.load("pin")
-    loaded = writer.desk.program_loader.loaded
+    loaded = writer.desk.program_loader.loaded_program
     writer.machine.now = replace(writer.machine.now, state=state, rpm_command=900.0, rpm_actual=900.0)
     writer.machine.blocks = ()
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.EDITOR)
-    assert writer.desk.program_loader.loaded is loaded
+    assert writer.desk.program_loader.loaded_program is loaded
     assert not writer.desk.window_state.can_start_here  # the palms are for the Automatic page
 
 
@@ -153,8 +153,8 @@ def test_saving_sample_asks_for_name_and_leaves_sample_unchanged(writer: Writer,
     assert (SAMPLES / "pin.nc").read_bytes() == before
     assert (tmp_path / "mine.nc").read_bytes() == b"(MINE)" + before
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
-    assert writer.desk.program_loader.loaded.name == "mine.nc"
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
+    assert writer.desk.program_loader.loaded_program.name == "mine.nc"
 
 
 def test_esc_at_name_of_sample_returns_to_editing(writer: Writer, tmp_path: Path) -> None:
@@ -302,7 +302,7 @@ def test_f1_saves_and_opens_main_menu(writer: Writer, tmp_path: Path) -> None:
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
     assert (tmp_path / "menu.nc").exists()
-    assert writer.desk.program_loader.loaded.phase is LoadingPhase.EMPTY  # that is what F3 is for
+    assert writer.desk.program_loader.loaded_program.phase is LoadingPhase.EMPTY  # that is what F3 is for
     assert writer.desk.prompt_notice == wording("editor.saved-not-loaded", name="menu.nc")
 
 
@@ -310,9 +310,9 @@ def test_viewing_program_leaves_loaded_program_unchanged(writer: Writer, tmp_pat
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     on_desk, posted, model = (
-        writer.desk.program_loader.loaded,
+        writer.desk.program_loader.loaded_program,
         len(writer.machine.posted),
         writer.desk.page_registry.find_model(ProgramListModel),
     )
@@ -326,7 +326,7 @@ def test_viewing_program_leaves_loaded_program_unchanged(writer: Writer, tmp_pat
         writer.sees(lambda: writer.editor.editor.stage is EditorStage.OPEN)
         writer.key(leaves)
         writer.sees(lambda: writer.front != page_table.EDITOR)
-        assert writer.desk.program_loader.loaded is on_desk
+        assert writer.desk.program_loader.loaded_program is on_desk
         if leaves is not Key.Key_Escape:
             assert writer.desk.prompt_notice == wording(
                 "editor.only-looked-at", name="other.nc", other="mine.nc"
@@ -338,23 +338,23 @@ def test_f1_saves_only_and_f3_loads_the_saved_text(writer: Writer, tmp_path: Pat
     """F1 loaded the text although the prompt said that it does not, and the next start ran it."""
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
-    on_desk, posted = writer.desk.program_loader.loaded, len(writer.machine.posted)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
+    on_desk, posted = writer.desk.program_loader.loaded_program, len(writer.machine.posted)
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.editor.editor.stage is EditorStage.OPEN)
     writer.write("(CHANGED)\n")
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
     assert "(CHANGED)" in (tmp_path / "mine.nc").read_text()
-    assert writer.desk.program_loader.loaded is on_desk
+    assert writer.desk.program_loader.loaded_program is on_desk
     assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
     assert writer.desk.prompt_notice == wording("editor.saved-old-runs", name="mine.nc")
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is EditorStage.OPEN)
     writer.key(Key.Key_F3)  # nothing has been typed since, and yet it is not what is loaded
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
-    source = writer.desk.program_loader.loaded.source
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
+    source = writer.desk.program_loader.loaded_program.source
     assert source is not None
     assert "(CHANGED)" in source.text
 
@@ -388,7 +388,7 @@ def test_another_document_does_not_show_the_findings_of_the_last_one(writer: Wri
 def test_loaded_program_is_reloaded_when_its_file_changes(writer: Writer, tmp_path: Path) -> None:
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     before = writer.desk.program_loader.load_count
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.editor.editor.stage is EditorStage.OPEN)
@@ -401,14 +401,14 @@ def test_loaded_program_is_reloaded_when_its_file_changes(writer: Writer, tmp_pa
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     writer.sees(lambda: writer.desk.program_loader.load_count == before + 1)
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
 
 
 def test_f3_with_unknown_name_offers_new_program_and_creates_no_file(writer: Writer, tmp_path: Path) -> None:
     """It edits no other one, and nothing is there before it is said so."""
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     writer.frame.open_page(page_table.PROGRAMS)
     model = writer.desk.page_registry.find_model(ProgramListModel)
     assert model is not None
@@ -437,7 +437,7 @@ def test_f3_at_file_question_edits_marked_or_typed_program(writer: Writer, tmp_p
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
     assert writer.desk.program_choice.load_by_name("mine")
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     writer.key(Key.Key_F2)
     writer.key(Key.Key_F3)
     assert writer.front == page_table.AUTOMATIC
@@ -503,6 +503,6 @@ def test_editor_session_saves_text_and_versions(writer: Writer, tmp_path: Path, 
     writer.sees(lambda: writer.text().rstrip() == written)
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     assert (tmp_path / "day.nc").read_text().rstrip() == written
     assert len(memory.kept["day.nc"]) == 3

@@ -104,7 +104,7 @@ def test_correction_at_program_stop_applies_to_next_repeat(jog: JogBench, tmp_pa
     jog.until(lambda: jog.shot.parts == 1, 60.0)
     jog.until(lambda: jog.shot.line == 7, 60.0)
     assert jog.shot.demand[0] == pytest.approx((-1.0 - 0.001 + 0.25) * INCH, abs=1e-6)
-    job = jog.desk.program_loader.loaded.job
+    job = jog.desk.program_loader.loaded_program.job
     assert job is not None
     assert job.setup.tools[1].x == pytest.approx((-1.0 - 0.001) * INCH)
     jog.key(Key.Key_C)

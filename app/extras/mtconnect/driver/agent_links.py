@@ -31,11 +31,11 @@ ItemValue = str | float | None  # None: not known
 class ActiveCondition(NamedTuple):
     """Condition that is active.
 
-    ``level`` is WARNING or FAULT, and ``code`` identifies the condition.
+    ``condition_level`` is WARNING or FAULT, and ``code`` identifies the condition.
     """
 
-    level: str
-    code: str
+    condition_level: str
+    native_code: str
     text: str
 
 
@@ -94,7 +94,7 @@ def make_active_line(time_text: str, key: str, active_condition: ActiveCondition
     The fields for severity and qualifier are empty.
     """
     return (
-        f"{time_text}|{key}|{active_condition.level}|{replace_separators(active_condition.code)}|||"
+        f"{time_text}|{key}|{active_condition.condition_level}|{replace_separators(active_condition.native_code)}|||"
         f"{replace_separators(active_condition.text)}\n"
     )
 
@@ -183,9 +183,11 @@ def _changed_condition(
     """Return the lines of new and changed conditions, followed by the lines of ended conditions."""
     if not now or before is None:
         return _whole_condition(time, key, now)
-    codes = {each.code for each in now}
+    codes = {each.native_code for each in now}
     lines = [make_active_line(time, key, each) for each in now if each not in before]
-    return lines + [make_cleared_line(time, key, each.code) for each in before if each.code not in codes]
+    return lines + [
+        make_cleared_line(time, key, each.native_code) for each in before if each.native_code not in codes
+    ]
 
 
 MAX_UNSENT_BYTES = 64 * 1024  # bytes that may wait for a slow agent; about one minute at ten lines per second
@@ -346,7 +348,7 @@ def open_listening_socket(bind_address: str, port: int) -> socket.socket:
     return wire
 
 
-def accepted(listener: socket.socket) -> socket.socket:
+def accept_connection(listener: socket.socket) -> socket.socket:
     """Accept a connection without waiting, and return its socket.
 
     Raises OSError if the peer has disconnected.

@@ -24,7 +24,7 @@ from app.extras.mtconnect.driver.agent_links import (
     AgentLostError,
     MachineReport,
     SentState,
-    accepted,
+    accept_connection,
     format_utc_time,
     open_listening_socket,
 )
@@ -148,7 +148,7 @@ class MtconnectAdapter:
     def _welcome(self) -> None:
         assert self._door is not None
         try:
-            wire = accepted(self._door)
+            wire = accept_connection(self._door)
         except OSError:  # the peer has gone or no file is free; the next turn tries again
             return
         if len(self._links) >= MAX_AGENTS + _AT_DOOR:
@@ -337,7 +337,7 @@ def _attributes(item: DataItem, device: str) -> dict[str, str]:
         "category": item.category.value,
         "id": f"{device}_{item.key}",
         "name": item.key,
-        "type": item.type,
+        "type": item.item_type,
         "subType": item.sub_type,
         "units": item.units,
         "coordinateSystem": item.coordinate_system,

@@ -26,7 +26,7 @@ class DataItem:
 
     key: str
     category: Category
-    type: str
+    item_type: str
     sub_type: str = ""
     units: str = ""
     coordinate_system: str = ""  # coordinate system of a position

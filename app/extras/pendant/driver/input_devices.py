@@ -41,8 +41,8 @@ class InputEvent(NamedTuple):
     """
 
     time_s: float
-    kind: int
-    code: int
+    event_kind: int
+    event_code: int
     value: int
 
 

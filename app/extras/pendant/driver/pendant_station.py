@@ -38,7 +38,7 @@ class PendantState:
     the pendant, or empty.
     """
 
-    inputs: Mapping[str, bool]
+    input_states: Mapping[str, bool]
     wheel_counts: int
     missing_reason: str
     lost_at_s: float  # time at which the device or events were last lost
@@ -211,7 +211,7 @@ class PendantStation:
         lost = pendant.missing_reason if pendant.missing_reason and (self._stops or just) else ""
         return dataclasses.replace(
             state,
-            hold=state.hold or pendant.inputs.get("hold", False),
+            hold=state.hold or pendant.input_states.get("hold", False),
             handwheel=state.handwheel + pendant.wheel_counts,
             trouble=state.trouble or lost,
             wheel_trouble=state.wheel_trouble or (self._of_wheel(pendant, just=just) if self._wheel else ""),
@@ -230,7 +230,7 @@ class PendantIO:
 
     def inputs(self) -> Mapping[str, bool]:
         """Return the inputs of the machine and of the pendant."""
-        return {**self._io.inputs(), **self._pendant.get_state().inputs}
+        return {**self._io.inputs(), **self._pendant.get_state().input_states}
 
     def get_outputs(self) -> Mapping[str, bool]:
         """Return the outputs of the machine.
@@ -274,7 +274,7 @@ class PendantButtons:
 
     control_by_name: Mapping[str, PendantControl]
     stop_inputs: frozenset[str]
-    wheel: PendantControl | None = None
+    wheel_control: PendantControl | None = None
     has_absolute_wheel: bool = False
     wheel_counts: int = 0
     pressed_names: set[str] = field(default_factory=set)
@@ -294,8 +294,12 @@ class PendantButtons:
         held = {name for name, control in self.control_by_name.items() if self._held(control, pressed)}
         self.pressed_names = held & self.stop_inputs
         self.ineffective_names = held - self.stop_inputs
-        if self.wheel is not None and self.wheel.kind == ABS and self.wheel.code in self.axis_ranges:
-            self._at = self.axis_ranges[self.wheel.code].value
+        if (
+            self.wheel_control is not None
+            and self.wheel_control.event_kind == ABS
+            and self.wheel_control.event_code in self.axis_ranges
+        ):
+            self._at = self.axis_ranges[self.wheel_control.event_code].value
 
     def release_all(self) -> None:
         """Release all buttons and discard the position of the wheel because the device is disconnected."""
@@ -310,14 +314,17 @@ class PendantButtons:
         """
         for event in packet.events:
             late = now_s - event.time_s > MAX_EVENT_AGE_S
-            if self.wheel is not None and (event.kind, event.code) == self.wheel[:2]:
+            if (
+                self.wheel_control is not None
+                and (event.event_kind, event.event_code) == self.wheel_control[:2]
+            ):
                 self._turn(event, late)
             for name, control in self.control_by_name.items():
-                if (event.kind, event.code) == control[:2]:
+                if (event.event_kind, event.event_code) == control[:2]:
                     self._press(name, control, event, late)
 
     def _press(self, name: str, control: PendantControl, event: InputEvent, late: bool) -> None:
-        if control.kind == KEY:
+        if control.event_kind == KEY:
             if event.value == _REPEAT:
                 return
             pressed = event.value != 0
@@ -337,25 +344,25 @@ class PendantButtons:
             self.ineffective_names.add(name)
 
     def _turn(self, event: InputEvent, late: bool) -> None:
-        if event.kind == REL and not self.has_absolute_wheel:
+        if event.event_kind == REL and not self.has_absolute_wheel:
             self.wheel_counts += 0 if late else event.value
             return
-        if event.kind == ABS:
+        if event.event_kind == ABS:
             self._keep(event)
-        reach = self.axis_ranges.get(event.code) if event.kind == ABS else None
+        reach = self.axis_ranges.get(event.event_code) if event.event_kind == ABS else None
         size = reach.maximum - reach.minimum + 1 if reach is not None else _PLACES
         last, self._at = self._at, event.value
         if last is not None and not late and size > 1:
             self.wheel_counts += (event.value - last + size // 2) % size - size // 2
 
     def _keep(self, event: InputEvent) -> None:
-        reach = self.axis_ranges.get(event.code)
+        reach = self.axis_ranges.get(event.event_code)
         if reach is not None:
-            self.axis_ranges[event.code] = reach._replace(value=event.value)
+            self.axis_ranges[event.event_code] = reach._replace(value=event.value)
 
     def _held(self, control: PendantControl, keys: set[int]) -> bool:
-        if control.kind == KEY:
-            return control.code in keys
+        if control.event_kind == KEY:
+            return control.event_code in keys
         return self._share(control) > _FREE
 
     def _share(self, control: PendantControl) -> float:
@@ -363,7 +370,7 @@ class PendantButtons:
 
         The result is negative in the opposite direction.
         """
-        reach = self.axis_ranges.get(control.code)
+        reach = self.axis_ranges.get(control.event_code)
         if reach is None or reach.maximum <= reach.minimum:
             return 0.0
         middle, half = (reach.maximum + reach.minimum) / 2.0, (reach.maximum - reach.minimum) / 2.0

@@ -27,8 +27,8 @@ class PendantControl(NamedTuple):
     ``axis_end`` is -1 or +1 for an axis that is used as two buttons.
     """
 
-    kind: int
-    code: int
+    event_kind: int
+    event_code: int
     axis_end: int = 0
 
 

@@ -116,7 +116,7 @@ class ClearingData:
         """Yield a rapid up to the clearance height."""
         yield self.tool.move_to_z(max(self.safe_z_mm, self.tool.z_position))
 
-    def retract(self) -> Iterator[Block]:
+    def retract_tool(self) -> Iterator[Block]:
         """Yield the retract to the clearance height at the feed Q208."""
         tool = self.tool
         asked = tool.read_value(208, MAX_FEED_VALUE)
@@ -189,7 +189,7 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
             yield from _move_to_depth(clearing, cut, top, z, slow)
             yield from _along(tool, cut.loop, feed if cut.moves_at_depth else slow)
         top = z
-    yield from clearing.retract()
+    yield from clearing.retract_tool()
 
 
 def _move_to_depth(
@@ -262,7 +262,7 @@ def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterato
         elif math.dist(tool.xy_position, start) > SAME_POINT_TOLERANCE_MM:
             yield tool.move_straight(start, None, feed)
         yield from _along(tool, cut.loop, feed)
-    yield from clearing.retract()
+    yield from clearing.retract_tool()
 
 
 # --- walls ------------------------------------------------------------------------------------------------
@@ -294,7 +294,7 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
             yield tool.move_to_z(z, plunge)
             yield from _along(tool, [each for each in (to_it, *ring, off_it) if each is not None], feed)
         yield tool.move_to_z(clearing.clearance_z_mm)
-    yield from clearing.retract()
+    yield from clearing.retract_tool()
 
 
 def _add_approach_arcs(

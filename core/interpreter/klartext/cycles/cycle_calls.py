@@ -279,7 +279,7 @@ class ActiveCycle:
         self._state.check_condition(
             node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint
         )
-        angle = value(self._state, node.words[-1].value.formula)
+        angle = value(self._state, node.words[-1].value.as_formula)
         if not -360.0 <= angle <= 360.0:
             text = "{parameter} is not a valid spindle angle."
             hint = "Enter an angle from -360 to 360 degrees."
@@ -314,7 +314,7 @@ class ActiveCycle:
 
     def _seconds(self, word: AxisWord) -> float:
         """Return the dwell time of cycle 9 in seconds. Raises ProgramError if the time is negative."""
-        seconds = value(self._state, word.value.formula)
+        seconds = value(self._state, word.value.as_formula)
         if seconds < 0.0:
             text = "The dwell time of {seconds} s is negative."
             raise self._state.make_error(

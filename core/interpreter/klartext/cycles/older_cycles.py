@@ -57,7 +57,7 @@ class OlderCycleData:
                 part=line_number,
                 axis=axis or "number",
             )
-        return value(self._state, word.value.formula)
+        return value(self._state, word.value.as_formula)
 
     def read_length_mm(self, line_number: int, axis: str = "") -> float:
         """Return the number of a line or of an axis word, converted to mm."""

@@ -64,7 +64,7 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
     for each in lines:
         if not (each.has_block_delete and state.setup.block_delete):
             reader.read_line(each)
-    elements = reader.finish()
+    elements = reader.finish_contour()
     text = "The contour of G{one_shot} does not contain a line or an arc."
     hint = "Write the points of the contour."
     statement.check_condition(
@@ -110,7 +110,7 @@ class _Reader:
         elif line.has_x_or_z_move:
             self._move(line)
 
-    def finish(self) -> list[Element]:
+    def finish_contour(self) -> list[Element]:
         """Return the elements of the contour.
 
         If the modes at the end of the contour differ from the modes at the start, a warning is logged.

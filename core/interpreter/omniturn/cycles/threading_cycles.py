@@ -194,7 +194,7 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
     """
     thread = read_thread(state, statement)
     _warn(state, statement, thread)
-    return _ThreadBlockGenerator(state, statement, thread).blocks()
+    return _ThreadBlockGenerator(state, statement, thread).generate_blocks()
 
 
 def compute_pass_depths(thread: ThreadCycle) -> list[float]:
@@ -220,7 +220,7 @@ class _ThreadBlockGenerator:
         self._state, self._line, self._thread = state, statement.line, thread
         self._rpm = state.compute_rpm_at(state.x)
 
-    def blocks(self) -> Iterator[Block]:
+    def generate_blocks(self) -> Iterator[Block]:
         thread = self._thread
         retract = thread.retract_x
         depths = compute_pass_depths(thread)

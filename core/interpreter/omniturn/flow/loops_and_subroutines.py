@@ -47,7 +47,7 @@ class _Finder:
         self._contour: Statement | None = None  # G75 or G78 without its RF so far
         self._contour_lost = False  # the G75 or G78 is on a line that cannot be read
 
-    def accept(self, statement: Statement) -> None:
+    def accept_statement(self, statement: Statement) -> None:
         if self._in_contour(statement):
             return
         if statement.flow_code == "}":
@@ -185,7 +185,7 @@ class _Finder:
             make_error_diagnostic(line, 0, "no-end", text, "Write M30 before the subroutines.")
         )
 
-    def finish(self, length: int) -> None:
+    def finish_search(self, length: int) -> None:
         self._open_contour()
         self._unclosed_loops()
         if not self._ended:
@@ -221,10 +221,10 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Progra
     finder = _Finder(length)
     calls: list[Statement] = []
     for statement in statements:
-        finder.accept(statement)
+        finder.accept_statement(statement)
         if statement.calls_subroutine or (statement.is_contour_cycle and statement.get_value("P")):
             calls.append(statement)
-    finder.finish(length)
+    finder.finish_search(length)
     for statement in calls:
         number = get_subroutine_number(statement)
         if number not in finder.structure.subroutines:

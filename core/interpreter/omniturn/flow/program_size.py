@@ -35,7 +35,7 @@ def check_program_size(program: Program, read_input: Callable[[str], bool]) -> D
     if not program.structure.loop_ends and not program.structure.subroutines:
         return _refusal(ProgramSize(len(program.executable_lines), len(program.executable_lines)))
     counter = _Counter(program, read_input)
-    return _refusal(counter.region(0, program.structure.main_end_index, 0))
+    return _refusal(counter.measure_region(0, program.structure.main_end_index, 0))
 
 
 def _refusal(count: ProgramSize) -> Diagnostic | None:
@@ -69,7 +69,7 @@ class _Counter:
         self._inputs = inputs
         self._known: dict[tuple[int, int], ProgramSize] = {}
 
-    def region(self, start: int, end: int, depth: int) -> ProgramSize:
+    def measure_region(self, start: int, end: int, depth: int) -> ProgramSize:
         """Return the size of the lines from index ``start`` to the index before ``end``.
 
         ``depth`` is the call depth.
@@ -123,7 +123,7 @@ class _Counter:
         if key not in self._known:
             start = structure.subroutines[number] + 1
             end = structure.subroutine_ends.get(number, start)
-            self._known[key] = self.region(start, end, depth)
+            self._known[key] = self.measure_region(start, end, depth)
         return self._known[key]
 
 

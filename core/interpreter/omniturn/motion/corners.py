@@ -108,7 +108,7 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
 
     def _keeps_waiting(self, buffered: _BufferedMove, item: StageItem) -> bool:
         if isinstance(item, CompensationSwitch):
-            if item.code == 40:
+            if item.g_code == 40:
                 raise _refused(buffered, "corner-next", "nose compensation ends before the next move")
             return True
         if isinstance(item.action, _PARTS):

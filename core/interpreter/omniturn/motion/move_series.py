@@ -42,14 +42,14 @@ from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries,
 def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
     """Return a mask (m,) of the lines that contain only X, Z and words that are already active."""
     answer = lines.is_plain_move.copy()
-    fed = ~np.isnan(lines.f)
+    fed = ~np.isnan(lines.feeds)
     for g in (0, 1, NO_G_CODE):
-        coded = lines.g == g
+        coded = lines.g_codes == g
         if g != NO_G_CODE and not is_already_active(state, g, None):
             answer &= ~coded | fed
-        for f in set(lines.f[coded & fed].tolist()):  # np.unique would first import masked arrays.
+        for f in set(lines.feeds[coded & fed].tolist()):  # np.unique would first import masked arrays.
             if not is_already_active(state, g, f):
-                answer &= ~coded | (lines.f != f)
+                answer &= ~coded | (lines.feeds != f)
     return answer
 
 
@@ -62,17 +62,17 @@ def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
     answer = mask_unchanged_lines(state, lines)
     if state.steady_feed is None:
         return answer
-    fed = lines.is_plain_move & ~answer & ~np.isnan(lines.f) & (lines.g != 0)
-    for f in set(lines.f[fed].tolist()):
+    fed = lines.is_plain_move & ~answer & ~np.isnan(lines.feeds) & (lines.g_codes != 0)
+    for f in set(lines.feeds[fed].tolist()):
         if is_feed_accepted(state, state.convert_feed(f)):
-            answer |= fed & (lines.f == f)
+            answer |= fed & (lines.feeds == f)
     return answer
 
 
 def _feeds(state: State, lines: LineColumns) -> FloatArray | None:
     """Return the feed (m,) of each line in mm/s or mm/rev, or None if no line changes the feed."""
-    fed = ~np.isnan(lines.f)
-    feeds = np.where(fed, state.convert_feed(lines.f), state.feed)
+    fed = ~np.isnan(lines.feeds)
+    feeds = np.where(fed, state.convert_feed(lines.feeds), state.feed)
     if (feeds == state.feed).all():
         return None
     last = np.maximum.accumulate(np.where(fed, np.arange(len(fed)), -1))

@@ -126,12 +126,12 @@ class _Contour(ContourStage):
         approach: Block,
         radius: float,
     ) -> None:
-        super().__init__(moves, approach, radius if switch.code == 41 else -radius)
+        super().__init__(moves, approach, radius if switch.g_code == 41 else -radius)
         self._log, self._mark = log, switch
         self._first: list[Element] = []  # of the contour, near the approach
         self._recent: deque[Element] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
 
-    def move(self, block: Block) -> Iterator[Block]:
+    def add_move(self, block: Block) -> Iterator[Block]:
         """Add a move, which is the departure if no other move follows.
 
         Raises ProgramError if compensation is not possible.
@@ -151,7 +151,7 @@ class _Contour(ContourStage):
         self._recent.append(element)
         yield from self._yield_pieces(self._add_move(last, element))
 
-    def close(self) -> Iterator[Block]:
+    def close_contour(self) -> Iterator[Block]:
         """Process G40, which makes the last move the departure.
 
         Raises ProgramError if compensation is not possible.
@@ -173,14 +173,14 @@ class _Contour(ContourStage):
             block.z0 - mark.secondary_z + modal.secondary_z,
         )
         approach_path = Line((block.x0, block.z0), to)
-        lead = ApproachOrDeparture(block, False, mark.code, self.nose_radius_mm, self._first)
+        lead = ApproachOrDeparture(block, False, mark.g_code, self.nose_radius_mm, self._first)
         lead.check_path(approach_path, begun, (block.x, block.z), self._log)
         return [approach_path]
 
     def _check_departure(self, departure_path: Line) -> None:
         block, after = self.last_move.block, self.last_move.following_blocks
         contour = list(reversed(self._recent))
-        lead = ApproachOrDeparture(block, True, self._mark.code, self.nose_radius_mm, contour)
+        lead = ApproachOrDeparture(block, True, self._mark.g_code, self.nose_radius_mm, contour)
         if any(each.moves for each in after):
             text = "The departure, the last move before G40, has zero length."
             raise lead._replace(block=after[-1]).make_error("-short", text, "Move off the part.")
@@ -226,7 +226,7 @@ class CompensationStage:
         if isinstance(item, CompensationSwitch):
             if mark is not None:
                 yield from self._close()
-            self._mark = None if item.code == 40 else item
+            self._mark = None if item.g_code == 40 else item
         elif mark is None:
             yield item
         elif isinstance(item.action, ToolChange):
@@ -243,11 +243,11 @@ class CompensationStage:
         elif contour is None:
             self._contour = _Contour(self._moves, self._log, mark, item, self.nose_radius_mm)
         else:
-            yield from contour.move(item)
+            yield from contour.add_move(item)
 
     def _close(self) -> Iterator[Block]:
         if self._contour is not None:
-            yield from self._contour.close()
+            yield from self._contour.close_contour()
         self.discard_moves()
 
 

@@ -52,7 +52,7 @@ def parse_plain_move(text: str) -> PlainMove | None:
 
 
 def _words(text: str) -> re.Match[str] | None:
-    """Return the match of a plain move with the groups ``g x z f``, or None for any other line.
+    """Return the match of a plain move with the groups ``g_codes x z feeds``, or None for any other line.
 
     A plain move has X or Z.
     """
@@ -75,8 +75,8 @@ class LineColumns(NamedTuple):
 
     x: FloatArray
     z: FloatArray
-    f: FloatArray
-    g: npt.NDArray[np.int8]
+    feeds: FloatArray
+    g_codes: npt.NDArray[np.int8]
     has_fifth_decimal: BoolArray
     is_plain_move: BoolArray
 
@@ -96,8 +96,8 @@ class LineColumns(NamedTuple):
     def store_line(self, index: int, move: PlainMove) -> None:
         """Store a plain move that was parsed individually."""
         x, z, f, g, fine = move
-        self.x[index], self.z[index], self.f[index] = (np.nan if v is None else v for v in (x, z, f))
-        self.g[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
+        self.x[index], self.z[index], self.feeds[index] = (np.nan if v is None else v for v in (x, z, f))
+        self.g_codes[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
 
     def list_moves(self) -> list[PlainMove | None]:
         """Return each line in the form of ``parse_plain_move``.
@@ -105,7 +105,7 @@ class LineColumns(NamedTuple):
         The entry is None for a line that is not a plain move.
         """
         x, z, f = (_column_values(column) for column in self[:3])
-        rows = zip(x, z, f, self.g.tolist(), self.has_fifth_decimal.tolist(), strict=True)
+        rows = zip(x, z, f, self.g_codes.tolist(), self.has_fifth_decimal.tolist(), strict=True)
         return [row if known else None for row, known in zip(rows, self.is_plain_move.tolist(), strict=True)]
 
     def select_lines(self, indices: slice | IntArray) -> LineColumns:
@@ -113,8 +113,8 @@ class LineColumns(NamedTuple):
         return LineColumns(
             self.x[indices],
             self.z[indices],
-            self.f[indices],
-            self.g[indices],
+            self.feeds[indices],
+            self.g_codes[indices],
             self.has_fifth_decimal[indices],
             self.is_plain_move[indices],
         )
@@ -160,7 +160,7 @@ def _read_length(
         form = shapes[begin : begin + length]
         same = np.ones(len(rows), bool)
         for at, character in enumerate(form.tolist()):
-            same &= lines.column(shapes, at) == character
+            same &= lines.get_characters(shapes, at) == character
         alike = rows if same.all() else rows[same]
         match = _words(form.tobytes().decode()) if len(alike) >= _FEW else None
         if match is not None:
@@ -178,11 +178,11 @@ def _read_length(
 class _Lines(NamedTuple):
     """The indices of the first characters of lines in a text.
 
-    ``step`` is the distance between lines, or 0 if the distance varies.
+    ``line_distance`` is the distance between lines, or 0 if the distance varies.
     """
 
     first: IntArray
-    step: int
+    line_distance: int
 
     @classmethod
     def from_line_starts(cls, first: IntArray) -> _Lines:
@@ -190,11 +190,11 @@ class _Lines(NamedTuple):
         steps = np.diff(first)
         return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
 
-    def column(self, text: DigitArray, at: int) -> DigitArray:
+    def get_characters(self, text: DigitArray, at: int) -> DigitArray:
         """Return the character at index ``at`` of each line."""
-        if not self.step:
+        if not self.line_distance:
             return text.take(self.first + at)
-        return text[self.first[0] + at : self.first[-1] + at + 1 : self.step]
+        return text[self.first[0] + at : self.first[-1] + at + 1 : self.line_distance]
 
 
 def _read_shape(
@@ -202,15 +202,15 @@ def _read_shape(
 ) -> None:
     """Fill the lines ``rows``, which all have the form of the match."""
     known = np.ones(len(rows), bool)
-    for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.f)):
+    for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.feeds)):
         if match[name] is not None:
             column[rows] = _numbers(match, name, lines, digits)
     if match["f"] is not None:
-        known &= columns.f[rows] > 0.0
+        known &= columns.feeds[rows] > 0.0
     if match["g"] is not None:
         at = match.start("g")
-        columns.g[rows] = lines.column(digits, at) - ord("0")
-        known &= (lines.column(digits, at - 1) == ord("0")) & (columns.g[rows] <= 1)
+        columns.g_codes[rows] = lines.get_characters(digits, at) - ord("0")
+        known &= (lines.get_characters(digits, at - 1) == ord("0")) & (columns.g_codes[rows] <= 1)
     columns.has_fifth_decimal[rows] = _is_fine(match.string)
     columns.is_plain_move[rows] = known
 
@@ -226,7 +226,7 @@ def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: DigitArray)
     for at, character in enumerate(text, start=start):
         if character.isdigit():
             whole *= 10
-            whole += lines.column(digits, at)
+            whole += lines.get_characters(digits, at)
             whole -= ord("0")
     decimals = len(text) - text.index(".") - 1 if "." in text else 0
     value: FloatArray = whole / 10.0**decimals

@@ -82,7 +82,7 @@ class CycleCall:
         modal = state.modal
         self.x, self.z = state.x - modal.offset_x, state.z - modal.offset_z
         if state.transformation is not None:
-            self.x, self.z = 0.0, state.transformation.depth
+            self.x, self.z = 0.0, state.transformation.depth_mm
 
     def _by_name(self) -> dict[str, CallArgument]:
         names, arguments = CYCLE_PARAMETERS[self.line.called_name], self.line.arguments or ()

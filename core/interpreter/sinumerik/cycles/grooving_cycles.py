@@ -160,7 +160,7 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
     count = cycle.compute_pass_count(max(room, 0.0), width * _OVERLAP, "WIDG", _CUTS)
     for k in range(count + 1):
         place = shape.bottom_max_z - flank_left - width - (room * k / count if count else 0.0)
-        steps += plan.plunge(place, bottom)
+        steps += plan.plan_plunge(place, bottom)
     steps += plan.plunge_under_flank(
         shape.bottom_max_z - flank_left - width, shape.high_flank_z_extent, width, bottom
     )
@@ -168,7 +168,7 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
         shape.bottom_min_z + flank_left, -shape.low_flank_z_extent, width, bottom
     )
     if bottom_left or flank_left or count or shape.high_flank_z_extent or shape.low_flank_z_extent:
-        steps += plan.finish(width)
+        steps += plan.plan_finishing(width)
     return cycle.make_blocks(steps)
 
 
@@ -183,7 +183,7 @@ class _Plan:
         self._infeed, self._dwell = cycle.read_size_mm("IDEP"), cycle.read_number("DTB")
         cycle.check_parameter(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more")
 
-    def plunge(self, z_position: float, bottom: float) -> list[CycleStep]:
+    def plan_plunge(self, z_position: float, bottom: float) -> list[CycleStep]:
         """Return a plunge in steps of IDEP, a dwell, and the retract.
 
         A short retract after each step breaks the chip.
@@ -215,10 +215,10 @@ class _Plan:
         steps: list[CycleStep] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
             depth = bottom + (self._shape.surface_radius - bottom) * share
-            steps += self.plunge(z_position + flank_extent * share, depth)
+            steps += self.plan_plunge(z_position + flank_extent * share, depth)
         return steps
 
-    def finish(self, width: float) -> list[CycleStep]:
+    def plan_finishing(self, width: float) -> list[CycleStep]:
         """Return the finishing moves down each flank and along the bottom to its middle."""
         shape, feed = self._shape, self._feed
         high, middle = shape.bottom_max_z - width, (shape.bottom_min_z + shape.bottom_max_z - width) / 2.0

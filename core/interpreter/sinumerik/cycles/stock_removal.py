@@ -94,7 +94,7 @@ def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
             continue
         if line.is_executable and reader.read_line(line):
             break
-    return reader.elements()
+    return reader.read_elements()
 
 
 class _Reader:
@@ -154,7 +154,7 @@ class _Reader:
         if "C" in statement.words or statement.frame_word is not None:
             raise _refused(statement.line, "C and frames are not allowed in a contour")
 
-    def elements(self) -> list[Element]:
+    def read_elements(self) -> list[Element]:
         """Return all elements after the first move."""
         self._blocks += self._corners.flush_at_program_end()
         elements = [make_element(block) for block in self._blocks[1:] if block.moves]

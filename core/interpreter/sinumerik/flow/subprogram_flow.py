@@ -194,15 +194,15 @@ def _count(count: int) -> str:
 
 @dataclass(slots=True)
 class _Repeat:
-    """Lines that REPEAT executes again, from index ``start`` up to but not including ``end``.
+    """Lines that REPEAT executes again, from index ``start`` up to but not including ``end_index``.
 
-    ``remaining`` is the number of remaining repeats, and ``back`` is the line at which execution then
+    ``remaining_count`` is the number of remaining repeats, and ``back`` is the line at which execution then
     continues.
     """
 
-    start: int
-    end: int
-    remaining: int
+    start_index: int
+    end_index: int
+    remaining_count: int
     return_index: int
 
 
@@ -223,7 +223,7 @@ class _Call(FlowFrame[Routine]):
             self.file_name,
             self.next_index,
             self.remaining_passes,
-            [(each.start, each.remaining) for each in self.repeats],
+            [(each.start_index, each.remaining_count) for each in self.repeats],
         )
 
 
@@ -264,7 +264,7 @@ class Flow(ControlFlow[_Call]):
         """Return the next line, or None at the end of the main program."""
         while True:
             here = self.active_frame
-            if here.repeats and self.next_index == here.repeats[-1].end:
+            if here.repeats and self.next_index == here.repeats[-1].end_index:
                 self._repeat(here.repeats)
             elif self.next_index < self.end_index:
                 self.next_index += 1
@@ -277,9 +277,9 @@ class Flow(ControlFlow[_Call]):
     def _repeat(self, repeats: list[_Repeat]) -> None:
         """Repeat a REPEAT section at its end, or continue after the REPEAT."""
         part = repeats[-1]
-        part.remaining -= 1
-        if part.remaining > 0:
-            self.next_index = part.start
+        part.remaining_count -= 1
+        if part.remaining_count > 0:
+            self.next_index = part.start_index
         else:
             repeats.pop()
             self.next_index = part.return_index

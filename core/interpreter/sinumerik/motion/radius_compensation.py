@@ -172,7 +172,7 @@ class CompensationStage:
         if not contour.moves:
             text = Message("no contour move follows G{code}.", code=code)
             raise _fault(contour.approach_move.block, "comp-empty", text, "Write the contour before G40.")
-        yield from contour.close(block)
+        yield from contour.close_contour(block)
 
     def _turns(self, block: Block) -> bool:
         return block.c != block.c0 and not self._in_plane
@@ -205,7 +205,7 @@ class _Contour(ContourStage):
         self.moves: list[ContourMove] = []
         self._elements: list[Element] = []
 
-    def close(self, departure: Block) -> Iterator[Block]:
+    def close_contour(self, departure: Block) -> Iterator[Block]:
         """Yield the contour and the move that leaves the contour.
 
         Raises ProgramError if compensation is not possible.

@@ -88,7 +88,7 @@ class ActiveTransformation:
     @property
     def plane_code(self) -> int:
         """Return the G code of the plane for arcs and compensation, which is 17 or 19."""
-        return self._names.plane
+        return self._names.plane_code
 
     @property
     def has_open_contour(self) -> bool:
@@ -96,7 +96,7 @@ class ActiveTransformation:
         return self._corners.has_buffered_move or self._compensation.has_open_contour
 
     @property
-    def depth(self) -> float:
+    def depth_mm(self) -> float:
         """Return the tool position perpendicular to the plane in the program frame, in mm."""
         return self._depth - self._plane.programmed_frame.shift_c
 
@@ -140,7 +140,9 @@ class ActiveTransformation:
             elif name in {"I", "J", "K"}:
                 what = "{word} is not an arc center word in G{plane}."
                 hint = "Use the arc center words for this plane."
-                raise statement.make_error(word, "word-unused", what, hint, word=word.text, plane=names.plane)
+                raise statement.make_error(
+                    word, "word-unused", what, hint, word=word.text, plane=names.plane_code
+                )
             else:
                 words[name] = word
         return replace(statement, words=words)
@@ -175,7 +177,7 @@ class ActiveTransformation:
         state, plane = self._state, self._plane
         for name in _COPIED_ATTRIBUTES:
             setattr(plane, name, getattr(state, name))
-        plane.plane = 18 if state.plane == self._names.plane else 0
+        plane.plane = 18 if state.plane == self._names.plane_code else 0
         nose = replace(state.edge, quadrant=9, nose_radius=state.edge.nose_radius + self.offn_mm)
         plane.edge = nose if state.edge.nose_radius or self.offn_mm else ToolOffset(quadrant=9)
         self._derive()

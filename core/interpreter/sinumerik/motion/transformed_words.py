@@ -18,7 +18,7 @@ class LetterMap(NamedTuple):
     """
 
     transformation_word: str
-    plane: int
+    plane_code: int
     axis_letters: Mapping[str, str]  # X, Z, or C for the depth
     center_letters: Mapping[str, str]
 
@@ -64,9 +64,9 @@ def check_statement(
         or statement.corner_word
         or "ANG" in statement.words
     )
-    if needs and state.plane != names.plane:
+    if needs and state.plane != names.plane_code:
         text = "arcs, corners and radius compensation in {word} need G{plane}."
         hint = "Write G{plane} before this block."
         raise statement.make_error(
-            word, "arc-plane", text, hint, word=names.transformation_word, plane=names.plane
+            word, "arc-plane", text, hint, word=names.transformation_word, plane=names.plane_code
         )

@@ -16,7 +16,7 @@ def test_f8_opens_the_analyses_page(hands: Hands) -> None:
     hands.key(Key.Key_F8)
     page = hands.frame.current_page
     assert isinstance(page, AnalysesPage)
-    hands.sees(lambda: page.drawing.chart is not None and bool(page.drawing.chart.drawing.curves))
+    hands.sees(lambda: page.drawing.chart is not None and bool(page.drawing.chart.drawing.upper_curves))
     found = page.analyses.result
     assert found is not None
     assert found.worst_deviations
@@ -28,6 +28,6 @@ def test_f8_opens_the_analyses_page(hands: Hands) -> None:
     hands.sees(lambda: page.drawing.chart is not None and len(page.drawing.chart.plots) == 2)
     hands.key(Key.Key_F4)
     hands.sees(lambda: text("scope.no-arc") in page.description.description_text)
-    hands.sees(lambda: page.drawing.chart is not None and not page.drawing.chart.drawing.curves)
+    hands.sees(lambda: page.drawing.chart is not None and not page.drawing.chart.drawing.upper_curves)
     hands.key(Key.Key_F8)
     assert hands.frame.current_page.NAME == page_table.SCOPE

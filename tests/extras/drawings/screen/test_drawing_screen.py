@@ -49,7 +49,7 @@ def test_a_process_that_hangs_is_canceled(
     dxf(path, chain(*STEP))
     assert labels(writer)[6] == "READ"
     writer.key(Key.Key_F6)
-    writer.sees(lambda: model.form is not None and bool(model.form.lines))
+    writer.sees(lambda: model.form is not None and bool(model.form.program_lines))
     assert 6 not in labels(writer)
 
 

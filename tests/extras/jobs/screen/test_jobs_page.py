@@ -88,7 +88,9 @@ def loaded(day: Day, program: str) -> None:
 
     def taken() -> bool:
         job = watch(day).active_job
-        return job is not None and job.program == program and not day.desk.program_loader.loaded.is_busy
+        return (
+            job is not None and job.program == program and not day.desk.program_loader.loaded_program.is_busy
+        )
 
     day.key(Key.Key_F2)
     assert day.page == page_table.AUTOMATIC
@@ -123,7 +125,7 @@ def test_job_queue_is_completed_without_automatic_starts(day: Day) -> None:
     assert day.prompt == f"{wording('screen.job-done', made=2, wanted=2, program='peg.nc')} {following}"
     day.run(3.0)
     assert (day.shot.state, day.shot.program, day.shot.parts) == (MachineState.IDLE, day.shot.program, 2)
-    assert day.desk.program_loader.loaded.name == "peg.nc"
+    assert day.desk.program_loader.loaded_program.name == "peg.nc"
     row = day.desk.page_registry.find_notice(day.shot)
     assert row is not None
     assert row.values_text == following
@@ -132,7 +134,7 @@ def test_job_queue_is_completed_without_automatic_starts(day: Day) -> None:
     opened(day)
     day.key(Key.Key_Down)
     loaded(day, "cap.nc")
-    assert day.desk.program_loader.loaded.name == "cap.nc"
+    assert day.desk.program_loader.loaded_program.name == "cap.nc"
     assert day.desk.program_runs.part_counter.count_text == "0/5"
     assert day.desk.page_registry.find_notice(day.shot) is None
 
@@ -276,7 +278,7 @@ def test_job_program_that_is_not_loaded_is_proved_and_loaded(day: Day) -> None:
     assert model(day).make_table(day.shot).rows[0].cells[4] == "IN PROGRESS"
     day.key(Key.Key_F1, Key.Key_F2)
     assert day.desk.program_choice.load_by_name("cap")
-    day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
+    day.sees(lambda: not day.desk.program_loader.loaded_program.is_busy)
     opened(day)
     day.sees(lambda: model(day).make_table(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")

@@ -303,5 +303,5 @@ def test_the_heading_counts_the_lines_of_the_text_that_is_proved(writer: Writer)
     writer.type("f.5")
     form = shapes_of(writer).model.form
     assert form is not None
-    written = count + len(form.lines) + 1
+    written = count + len(form.program_lines) + 1
     writer.sees(lambda: f" OF {written} " in writer.editor.head_line.heading.cursor_position)

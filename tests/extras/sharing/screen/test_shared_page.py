@@ -161,7 +161,7 @@ def test_unreachable_location_is_shown_and_logged_once(
 
 def test_change_to_the_loaded_program_is_reported_once(day: Day, sharing: ProgramSharing) -> None:
     assert day.desk.program_choice.load_by_name("peg")
-    day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
+    day.sees(lambda: not day.desk.program_loader.loaded_program.is_busy)
     heard = SharingResultHandler(day.desk, day.journal)
     day.desk.ask_operator("PRESS Y TO DELETE IT", lambda: None)
     heard.handle_result(
@@ -169,7 +169,7 @@ def test_change_to_the_loaded_program_is_reported_once(day: Day, sharing: Progra
     )  # on the sharing thread: a question is not spoilt in the middle of being asked
     assert day.desk.prompt_notice == "PRESS Y TO DELETE IT"
     day.desk.update()
-    assert (day.desk.prompt_answers.message, day.desk.prompt_answers.question) == (
+    assert (day.desk.prompt_answers.message, day.desk.prompt_answers.question_text) == (
         wording("screen.changed-elsewhere", name="peg.nc", desk="LATHE 2"),
         "PRESS Y TO DELETE IT",
     )
