@@ -86,10 +86,8 @@ class SettingsStore:
         """
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
-        before, self.current_settings = (
-            getattr(self.current_settings, name),
-            replace(self.current_settings, **{name: value}),
-        )  # type: ignore[arg-type]
+        before = getattr(self.current_settings, name)
+        self.current_settings = replace(self.current_settings, **{name: value})  # type: ignore[arg-type]
         self.persistence.save_setting(SETTINGS_KEY, asdict(self.current_settings))
         if name not in _UNLOGGED_SETTINGS:
             self.persistence.log_change(

@@ -51,16 +51,13 @@ from core.ports import DriverError, MachinePorts, UnknownPart
 
 _REST_STATES = frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT})
 _SETTLED_TICKS = 100  # ticks without a change, after which the machine counts as settled
-# s between two snapshots of a settled machine: five ticks, slightly less because their length varies
-_SNAPSHOT_INTERVAL_S = 0.045
-# s between two ticks at rest; a CANopen host sends its ten SYNC messages per second with these ticks
-REST_TICK_S = 0.095
+_SNAPSHOT_INTERVAL_S = 0.045  # s between snapshots of a settled machine: slightly less than five ticks
+REST_TICK_S = 0.095  # s between ticks at rest, in which a CANopen host also sends its SYNC messages
 _log = logging.getLogger(__name__)
 TICK_PAUSE_S = 0.01  # s from the end of one tick to the start of the next
 _ESTOP_ALARM_CODES = frozenset({"power-lost", "spindle-off"})  # alarms that the E-stop chain causes
 _STALL_INTERVAL_S = 0.2  # s between two ticks that show a stalled computer
-_STALE_PRESS_S = 0.5  # s after which a key press must not start a motion
-"""Age of a key press, in seconds, above which it must not start a motion or enable the drives."""
+_STALE_PRESS_S = 0.5  # age in s from which a key press must not start motion or enable the drives
 _LOGGED_OVERRIDE_CHANGE = 0.1  # smallest change of the feed override that is logged
 _MAX_COMMANDS_PER_TICK = 100  # commands handled in one tick at most
 _POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOMING}

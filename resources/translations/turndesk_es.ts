@@ -5120,8 +5120,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>users</source>
-      <translation>usuarios</translation>
+      <source>user_list</source>
+      <translation type="unfinished">usuarios</translation>
     </message>
     <message>
       <location filename="" />

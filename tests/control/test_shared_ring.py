@@ -24,7 +24,7 @@ sys.stdout.write("x"); sys.stdout.flush()
 while n < 300_000:
     count = 1 + n % 7
     numbers = np.arange(n + 1, n + 1 + count, dtype=float)
-    rows.write(np.repeat(numbers[:, None], 8, axis=1))
+    rows.append_rows(np.repeat(numbers[:, None], 8, axis=1))
     n += count
 """
 

@@ -210,10 +210,7 @@ class WindowFrame(QWidget):
         self.alarm_list.raise_()
 
     def handle_escape(self) -> bool:
-        """Close the alarm log, or something on the page.
-
-        Return False if nothing was open.
-        """
+        """Close the alarm log or a part of the page; return False if nothing was open."""
         if self.alarm_list.isVisible():
             self.alarm_list.hide()
             return True
@@ -480,10 +477,7 @@ class WindowFrame(QWidget):
         return tuple(rows)
 
     def _make_prompt_keys(self, snapshot: Snapshot, loaded: LoadedProgram) -> tuple[tuple[str, str], ...]:
-        """Return the keys for an interrupted job.
-
-        A start that would be rejected is not included.
-        """
+        """Return the keys for an interrupted job, without a start that would be rejected."""
         if snapshot.state is not MachineState.IDLE or not snapshot.interrupted_line:
             return ()
         searchto = (_SEARCHTO,) if can_restart(loaded) else ()

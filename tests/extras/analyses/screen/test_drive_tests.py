@@ -94,7 +94,7 @@ def test_completed_drive_test_is_recorded_with_results(
     qtbot.waitUntil(worked_out, timeout=60_000)  # on a worker, whose time is not the machine's
     found = page.model.results
     assert found is not None
-    assert [each.step_size for each in found.step_responses] == pytest.approx([SIZE, -SIZE])
+    assert [each.step_size_mm for each in found.step_responses] == pytest.approx([SIZE, -SIZE])
     assert page.model.saved_record_text.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
     assert (page.model.scope.recording_store.folder / page.model.saved_record_text).exists()
     kept = page.model.scope.recording_store.read_recording(
