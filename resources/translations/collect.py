@@ -150,7 +150,7 @@ ADDITIONAL_TEXTS = (
     "settings",
     "presets",
     "jobs",
-    "user_list",
+    "users",
     "tools",
     "RED",
     # Of the signal tower.

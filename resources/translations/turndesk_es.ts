@@ -5120,8 +5120,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>user_list</source>
-      <translation type="unfinished">usuarios</translation>
+      <source>users</source>
+      <translation>usuarios</translation>
     </message>
     <message>
       <location filename="" />

@@ -53,10 +53,10 @@ from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.language.source import load_source
-from drivers.wakeups import 
+from drivers.wakeups import ManualClock
 machine = read_machine(None)
 tools, secondary, *_ = make_offsets_reader(sys.argv[2])()
-clock = ()
+clock = ManualClock()
 ports = create_simulation(machine, clock).ports
 executor = Executor(machine, ports, lambda event: None)
 setup = create_setup(machine, tool_offsets=tools, secondary_offsets=secondary)

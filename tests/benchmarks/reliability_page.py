@@ -249,7 +249,7 @@ def _fuzz(result: Result, folder: Path) -> Iterator[str]:
 def _mutants(result: Result, folder: Path) -> Iterator[str]:
     known = tomllib.loads((folder / "survivors.toml").read_text())
     rows, living = [], []
-    for room, each in sorted(result["row_capacities"].items()):
+    for room, each in sorted(result["rooms"].items()):
         same = [name for name in map(_name, each["survivors"]) if known.get(name, {}).get("same")]
         told_since = {_name(survivor) for survivor in each["survivors"] if survivor.get("told by")}
         since = [
@@ -298,7 +298,7 @@ def _name(survivor: Result) -> str:
 
 def _branches(result: Result, _folder: Path) -> Iterator[str]:
     rows: list[list[object]] = []
-    for room, each in sorted(result["row_capacities"].items()):
+    for room, each in sorted(result["rooms"].items()):
         name = room.replace(
             "a whole run and the tests since", "a run of the whole test suite and later tests"
         )

@@ -146,10 +146,7 @@ def test_log_does_not_translate_text_of_program(code: AlarmCode, number: int) ->
 
 @pytest.mark.usefixtures("spanish")
 def test_an_event_of_an_older_store_stays_english() -> None:
-    assert (
-        logged("accept_connection", "machine file a.toml accepted by BEN")
-        == "machine file a.toml accepted by BEN"
-    )
+    assert logged("accepted", "machine file a.toml accepted by BEN") == "machine file a.toml accepted by BEN"
 
 
 @pytest.mark.usefixtures("spanish")

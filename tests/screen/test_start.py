@@ -15,8 +15,8 @@ import sys
 import app.screen.screen_startup
 from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.stored_offsets import read_stored_offsets
-from drivers.wakeups import 
-desk, _ = create_desk_and_executor(None, read_stored_offsets, ())
+from drivers.wakeups import ManualClock
+desk, _ = create_desk_and_executor(None, read_stored_offsets, ManualClock())
 read = [name for name in sys.modules["linecache"].cache if "/app/" in name or "/core/" in name]
 print(*sys.modules)
 print(*read)

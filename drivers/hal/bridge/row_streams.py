@@ -111,8 +111,9 @@ class RowStreams:
         return self.played_row_due_s
 
     def find_first_recallable_row(self, time_s: float) -> int | None:
-        """Return the first row due at ``due_time_s`` or later that can be recalled, or None if it is too
-        late.
+        """Return the first row from this time on that can be recalled, or None.
+
+        ``time_s`` is in seconds. The result is None if it is too late to recall the row.
         """
         soonest = self.played_row_number + _MARGIN
         for each in self._due:
