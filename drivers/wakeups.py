@@ -167,7 +167,7 @@ class ConnectionAttempt(Generic[T]):
         else:
             threading.Thread(target=self._run, name="reopening", daemon=True).start()
 
-    def take(self) -> T | None:
+    def take_connection(self) -> T | None:
         """Return the opened connection, or None while it is being opened.
 
         Raises DriverError if the connection could not be opened.

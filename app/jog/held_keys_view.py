@@ -107,12 +107,15 @@ class JogCross(TouchPanel):
         hold = self._hold
         source = f"finger {axis}{sign}"
 
-        def along(at: QPointF) -> None:
+        def follow_finger(at: QPointF) -> None:
             if not box.contains(at):
                 hold.release_key(source)
 
         return TouchControl(
-            box, lambda _at: self._finger_on(source, axis, sign), along, lambda: hold.release_key(source)
+            box,
+            lambda _at: self._finger_on(source, axis, sign),
+            follow_finger,
+            lambda: hold.release_key(source),
         )
 
 

@@ -120,12 +120,12 @@ class HandwheelDial:
         def down(at: QPointF) -> None:
             self._at, self._rest = bearing(at), 0.0
 
-        def along(at: QPointF) -> None:
+        def follow_finger(at: QPointF) -> None:
             here = bearing(at)
             self._turn((here - self._at + 180.0) % 360.0 - 180.0)
             self._at = here
 
-        return TouchControl(box, down, along, name="HANDWHEEL", kind="slider")
+        return TouchControl(box, down, follow_finger, name="HANDWHEEL", kind="slider")
 
     def turn_by_mouse_wheel(self, delta: int) -> None:
         """Turn the handwheel with the mouse wheel.

@@ -141,7 +141,7 @@ class PartModel:
         except StoreError as error:
             self.stored_part = EMPTY_STORED_PART
             self.desk.show_refusal(str(error))
-        self.stock_entry = StockEntry.of(self.stored_part)
+        self.stock_entry = StockEntry.from_stored_part(self.stored_part)
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -252,8 +252,8 @@ class PartModel:
             self.cancel_entry()
         elif self.desk.prompt_notice:
             self.desk.clear_prompt_line()
-        elif self.stock_entry != StockEntry.of(self.stored_part):
-            self.stock_entry = StockEntry.of(self.stored_part)
+        elif self.stock_entry != StockEntry.from_stored_part(self.stored_part):
+            self.stock_entry = StockEntry.from_stored_part(self.stored_part)
         else:
             return False
         return True

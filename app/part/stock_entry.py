@@ -77,7 +77,7 @@ class StockEntry:
     stick_out: float = 0.0
 
     @classmethod
-    def of(cls, stored: StoredPart) -> StockEntry:
+    def from_stored_part(cls, stored: StoredPart) -> StockEntry:
         """Return the entry for the stored data.
 
         An invalid stock text is ignored, but the stick-out is used.

@@ -229,7 +229,7 @@ class ScopeModel:
         assert live is not None
         most = max(MIN_FROZEN_TIME_S, 3.0 * span)
 
-        def take(_request: object) -> ScopeRecord:
+        def copy_samples(_request: object) -> ScopeRecord:
             end = live.newest_time_s
             record = live.read_between(end - most, end)
             if instant is None or not len(record.times_s):
@@ -242,7 +242,7 @@ class ScopeModel:
             self.is_armed = False
             self.show_recording(record, "", (-before * span, (1.0 - before) * span))
 
-        self.worker.request_work(take, done, self.desk.say)
+        self.worker.request_work(copy_samples, done, self.desk.say)
 
     def show_recording(
         self, record: ScopeRecord, recording_name: str, window: tuple[float, float] | None = None

@@ -121,7 +121,7 @@ class ToolLifeFunction(NumericFunction):
         self.desk.clear_prompt_line()
         self.entry.text, self.limit_kind = "", following(LIMIT_FIELDS, self.limit_kind)
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Set a limit of the selected tool.
 
         Raise EntryError for an invalid value.
@@ -276,7 +276,7 @@ class PartsCounterFunction(NumericFunction):
         else:
             self.desk.ask_operator(RESET, partial(self.desk.try_save, self.part_counter.reset_count))
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Set the target number of parts.
 
         A value of 0 removes the target. Raise EntryError for an invalid value.

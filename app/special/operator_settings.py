@@ -98,7 +98,7 @@ class RParametersFunction(NumericFunction):
         """Clear the selected parameter."""
         self._save_value(self.marked, None)
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Set the selected parameter to the typed value.
 
         Raise EntryError if the value is outside the permitted range.
@@ -304,7 +304,7 @@ class SpindleLimitFunction(NumericFunction):
             Message("spindle speed limit: {details}", details=change)
         )
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Set the limit in rpm.
 
         Raise EntryError if the limit is outside the range of the spindle.

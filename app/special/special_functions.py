@@ -140,7 +140,7 @@ class NumericFunction(SpecialFunction):
         self.entry = InputField()
 
     @abstractmethod
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Accept the typed text.
 
         Return False if it was rejected with a message. Raise EntryError for an invalid entry.
@@ -149,7 +149,7 @@ class NumericFunction(SpecialFunction):
     def submit_entry(self) -> None:
         """Accept the typed text, or show why it was rejected."""
         try:
-            if self.take(self.entry.text):
+            if self.accept_entry(self.entry.text):
                 self.entry.text = ""
         except EntryError as error:
             self.entry.text = refused(self.entry.text)

@@ -85,7 +85,7 @@ class BlockReadAhead:
             if block is not None:
                 self._sort(block)
 
-    def take(self) -> list[Block]:
+    def take_pending_blocks(self) -> list[Block]:
         """Remove and return the pending blocks for motion."""
         taken = list(self.pending_blocks)
         self.pending_blocks.clear()

@@ -80,7 +80,9 @@ class MotionLimits:
             )
 
     @classmethod
-    def of(cls, axes: Sequence[AxisLike], interval: float, corner_tolerance: float = 0.0) -> MotionLimits:
+    def from_axes(
+        cls, axes: Sequence[AxisLike], interval: float, corner_tolerance: float = 0.0
+    ) -> MotionLimits:
         """Return the limits of a machine's axes.
 
         ``corner_tolerance`` (mm) is the distance by which a joint between chords may be moved in X and Z

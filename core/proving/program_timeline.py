@@ -199,7 +199,9 @@ class Timeline:
         self.start_position = setup.start
         self._machine = machine
         self._ideal = ideal
-        limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
+        limits = MotionLimits.from_axes(
+            machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance
+        )
         if ideal:
             limits = replace(limits, amax=(_IDEAL_ACCELERATION,) * len(limits.amax))
         self._planner = WindowPlanner(limits, rpm_max=machine.spindle.max_rpm)

@@ -234,13 +234,13 @@ class StoreWriter:
         """
         future: Future[None] = Future()
 
-        def take(unwritten: UnwrittenEntries) -> None:
+        def add_to(unwritten: UnwrittenEntries) -> None:
             add_entry(unwritten)
             self._waiting.append(future)
             if self._queue.empty():
                 self._write_waiting()
 
-        self._put(take)
+        self._put(add_to)
         return future
 
     def _put(self, task: _Task) -> None:

@@ -214,7 +214,7 @@ class HostConnection:
 
     def _reopen(self, opening: ConnectionAttempt[HostLink]) -> None:
         try:
-            link = opening.take()
+            link = opening.take_connection()
             if link is None:
                 return
             self._link, self._opening, self._at = link, None, -1.0

@@ -389,7 +389,7 @@ class GrblController(ReportedState):
     def _reopen(self, opening: ConnectionAttempt[GrblTransport]) -> None:
         """Complete the opening of the connection, and discard all data of the previous connection."""
         try:
-            wire = opening.take()
+            wire = opening.take_connection()
         except DriverError as error:
             self._opening = None
             self.set_fault(

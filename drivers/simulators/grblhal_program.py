@@ -100,7 +100,7 @@ class ModalState:
     scaling: str = "G50"
     is_hold_disabled: bool = False  # M53 P0
 
-    def take(self, code: str, *, is_lathe_mode: bool) -> int:
+    def apply_code(self, code: str, *, is_lathe_mode: bool) -> int:
         """Apply a G word, and return its error code, or 0 without an error."""
         if code in _LATHE_CODES and not is_lathe_mode:
             return 20
@@ -335,7 +335,7 @@ class LineInterpreter:
         if "G95" in codes and not self._m.behavior.encoder:
             return 20
         for code in (code for code in codes if code[0] == "G"):
-            error = self.modes.take(code, is_lathe_mode=self._m.registers.is_lathe_mode)
+            error = self.modes.apply_code(code, is_lathe_mode=self._m.registers.is_lathe_mode)
             if error:
                 return error
         if "G10" in codes:

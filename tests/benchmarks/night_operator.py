@@ -254,7 +254,7 @@ class Operator:
             return
         self._kept()
         size = 2.0 * self.shift.witness.radius + self._worn + self.chance.gauss(0.0, SCATTER)
-        readings.take(f"{size / INCH:.5f}")
+        readings.accept_entry(f"{size / INCH:.5f}")
         self._kept()
         self.did["reading"] += 1
         self._readings += 1

@@ -248,11 +248,11 @@ def test_pages_without_offsets_also_refuse_protected_changes(room: Room) -> None
 def test_operator_may_lower_but_not_raise_the_spindle_limit(room: Room) -> None:
     room.enter_people()
     limit = room.find(SpindleLimitFunction)
-    assert limit.take("1500")
+    assert limit.accept_entry("1500")
     room.run()
-    assert limit.take("1200")
+    assert limit.accept_entry("1200")
     room.run()
-    assert not limit.take("1500")
+    assert not limit.accept_entry("1500")
     assert shows(
         room.desk.prompt_notice,
         "screen.level-needed",

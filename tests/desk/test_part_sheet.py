@@ -109,7 +109,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
     ["bar:1", "bar:0.75:3+0.02", "bar:25mm", "tube:1:0.5:2.5", "profile:/a/blank.csv+0.1", "after:/b/op1.nc"],
 )
 def test_stored_stock_is_shown_as_it_was_entered(words: str) -> None:
-    entry = StockEntry.of(StoredPart(words, 20.0))
+    entry = StockEntry.from_stored_part(StoredPart(words, 20.0))
     assert entry.words == words
     assert entry.stick_out == 20.0
     assert entry.missing_field is None

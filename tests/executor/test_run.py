@@ -239,7 +239,7 @@ def test_piecewise_planned_run_equals_the_path_planned_at_once() -> None:
     whole = plan_motion(
         build_path(
             [block for block in blocks if block.moves],
-            MotionLimits.of(rig.machine.axes, rig.machine.timing.setpoint),
+            MotionLimits.from_axes(rig.machine.axes, rig.machine.timing.setpoint),
         )
     )
     rig.start(text)

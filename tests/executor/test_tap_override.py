@@ -29,7 +29,9 @@ def test_tap_follows_only_the_spindle_override() -> None:
     assert _feed_in_force(tap, tap.modal) == pytest.approx(15.0)  # what the desk shows a minute
     cut = next(block for block in blocks if block.text.startswith("L Z+40"))
     for block, plain, changed in ((tap, 15.0, 12.0), (cut, 15.0, 7.5)):
-        section = PathSection(MotionLimits.of(MILL.axes, MILL.timing.setpoint), rpm_max=MILL.spindle.max_rpm)
+        section = PathSection(
+            MotionLimits.from_axes(MILL.axes, MILL.timing.setpoint), rpm_max=MILL.spindle.max_rpm
+        )
         section.append_blocks([block])
         assert section.scale_path(OverrideFactors(), None).pieces.rate.max() == pytest.approx(plain)
         rates = section.scale_path(

@@ -34,7 +34,7 @@ def machine(tolerance: str = "") -> Machine:
 
 def limits(tolerance: float) -> MotionLimits:
     lathe = machine()
-    return MotionLimits.of(lathe.axes, lathe.timing.setpoint, tolerance)
+    return MotionLimits.from_axes(lathe.axes, lathe.timing.setpoint, tolerance)
 
 
 def moved(blocks: list[Block], tolerance: float) -> float:
@@ -69,7 +69,7 @@ def test_corner_tolerance_does_not_move_exact_chords() -> None:
 def test_corner_tolerance_is_read_in_unit_of_file() -> None:
     lathe = machine("0.0002")
     assert lathe.limits.corner_tolerance == pytest.approx(0.00508)
-    grain = MotionLimits.of(lathe.axes, lathe.timing.setpoint, lathe.limits.corner_tolerance).grain
+    grain = MotionLimits.from_axes(lathe.axes, lathe.timing.setpoint, lathe.limits.corner_tolerance).grain
     assert grain == pytest.approx(0.00508 / math.sqrt(2.0))
 
 

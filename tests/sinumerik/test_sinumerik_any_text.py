@@ -106,7 +106,7 @@ def text(dice: random.Random) -> str:
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])
 def test_any_text_gives_blocks_or_findings(machine: Machine) -> None:
     dice, ran = random.Random(5), 0
-    limits = MotionLimits.of(machine.axes, 0.001)
+    limits = MotionLimits.from_axes(machine.axes, 0.001)
     for _ in range(1500):
         program = text(dice)
         passed = run(program, setup(machine, (0.0, 0.0, 0.0)))

@@ -336,7 +336,7 @@ class TrendsSection(QualitySection):
             return False
         return True
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Set the first and the last hour of the shift, and return whether they were accepted.
 
         Raises EntryError.
@@ -389,7 +389,7 @@ class ChartsSection(QualitySection):
         """Return False because this section has no entry."""
         return False
 
-    def take(self, _text: str) -> bool:
+    def accept_entry(self, _text: str) -> bool:
         """Return False because this section has no entry."""
         return False
 

@@ -250,7 +250,7 @@ class FeaturesSection(QualitySection):
         self.edit_feature()
         return True
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Set the selected field to the typed text, and select the next field.
 
         Returns whether the entry was accepted. Raises EntryError.
@@ -309,7 +309,7 @@ class FeaturesSection(QualitySection):
             return
         try:
             if self.entry.text:
-                self.take(self.entry.text)
+                self.accept_entry(self.entry.text)
             self.entry.text = ""
             check_feature(draft.feature)
         except (QualityError, EntryError) as error:

@@ -182,7 +182,7 @@ class ReadingsSection(QualitySection):
 
     # --- readings ------------------------------------------------------------------------------------
 
-    def take(self, text: str) -> bool:
+    def accept_entry(self, text: str) -> bool:
         """Store the typed size of the selected feature, and return whether it was accepted.
 
         Raises EntryError.

@@ -323,7 +323,7 @@ class DriveTester:
             self._context.now + min(lease, MAX_LEASE_S),
         )
 
-        def go(start: float, _p: float, _v: float) -> list[Ramp]:
+        def plan_ramps(start: float, _p: float, _v: float) -> list[Ramp]:
             if not self._until:
                 self._began = start
             if start - self._began > self._until:
@@ -331,7 +331,7 @@ class DriveTester:
             kept = slice_ramps(self._ramps, start - self._began, until - self._began)
             return [*kept, *make_braking_ramp(kept, amax)]
 
-        plays = self._jogger.run_drive_test(name, go)
+        plays = self._jogger.run_drive_test(name, plan_ramps)
         if plays:
             self._until = min(until - self._began, self._lasts)
             self._jogger.set_test_queued(self._until >= self._lasts)

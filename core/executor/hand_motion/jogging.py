@@ -178,13 +178,13 @@ class Jogger:
         speed = math.copysign(min(abs(velocity), self._max_line_speed(line)), velocity)
         until = context.now + min(lease_s, MAX_LEASE_S)
 
-        def go(start: float, p: FloatArray, v: FloatArray) -> list[Ramp]:
+        def plan_ramps(start: float, p: FloatArray, v: FloatArray) -> list[Ramp]:
             room = line.get_distance_to_limit(p, speed) if homed else math.inf
             return plan_jog_ramps(
                 line.project_on_line(v), speed, line.max_acceleration, max(until - start, 0.0), room
             )
 
-        moves = self._splice(line, go)
+        moves = self._splice(line, plan_ramps)
         if moves:
             self._axis, self.is_stopping = context.ports.axes.axes.index(name), False
         return moves
@@ -225,7 +225,7 @@ class Jogger:
         axis, until = context.machine.axes[index], context.now + min(lease_s, MAX_LEASE_S)
         top = min(speed, self.get_max_jog_speed(axis, context.axis_sample.homed[index]))
 
-        def go(start: float, p: float, v: float) -> list[Ramp]:
+        def plan_ramps(start: float, p: float, v: float) -> list[Ramp]:
             distance = target - p
             if abs(distance) <= POSITION_TOLERANCE:
                 return []
@@ -238,7 +238,7 @@ class Jogger:
                 min(abs(distance), room),
             )
 
-        moves = self._splice_axis(index, go)
+        moves = self._splice_axis(index, plan_ramps)
         if moves:
             self._axis, self.is_stopping = index, False
         return moves

@@ -201,7 +201,9 @@ class ControllerMotion:
         self._context = context
         self._sink = controller
         machine = context.machine
-        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
+        self._limits = MotionLimits.from_axes(
+            machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance
+        )
         self._waiting: deque[Block] = deque()  # blocks not yet divided into parts
         self._pieces: deque[BlockPart] = deque()  # parts not yet sent
         self._sent: deque[_SentPart] = deque()  # parts sent but not finished
@@ -288,7 +290,7 @@ class ControllerMotion:
         state = self._poll_controller()
         self._detect_absence()
         if not self._thread and read_ahead.pending_blocks and self._ready() < _CUT_AHEAD_S:
-            self._waiting.extend(read_ahead.take())
+            self._waiting.extend(read_ahead.take_pending_blocks())
         self._hand_over()
         if state.is_in_feed_hold and not self._still:
             return SectionProgress.IN_FEED_HOLD

@@ -386,7 +386,7 @@ class Cycle:
             case NextAction.MOTION:
                 self._change(MachineState.RUN)
                 self._read()
-                self._motion.start_section(self._feed.take())
+                self._motion.start_section(self._feed.take_pending_blocks())
             case NextAction.END if self._needs_end:
                 raise AlarmError("no-end")
             case NextAction.END:

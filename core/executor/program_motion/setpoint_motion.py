@@ -41,7 +41,9 @@ class SetpointMotion:
         machine = context.machine
         self._context = context
         self._axes = context.ports.axes
-        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
+        self._limits = MotionLimits.from_axes(
+            machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance
+        )
         self._queue = PlanQueue(self._axes, context.tick_lateness)
         self._section: PathSection | None = None
         # a thread pass, used instead of a path section
@@ -271,7 +273,7 @@ class SetpointMotion:
         ahead = self._context.tick_lateness.lookahead_s
         wanted = feed.pending_motion_s > 0.25 * ahead or feed.is_exhausted or left < 0.75 * ahead
         if feed.pending_blocks and wanted and left < 1.5 * ahead:
-            self._add(feed.take())
+            self._add(feed.take_pending_blocks())
             self._plan_motion(as_soon_as_possible=False)
         self._extend(now)
         if self._pass is not None and self._pass.detect_lost_step():

@@ -29,7 +29,9 @@ def run_reaming(tool: CycleTool) -> Iterator[Block]:
         return
     yield tool.move_to_z(bottom, feed)
     yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
-    yield from out(tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else feed)
+    yield from retract_from_hole(
+        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else feed
+    )
 
 
 def run_boring(tool: CycleTool) -> Iterator[Block]:
@@ -59,7 +61,9 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
             None,
             tool.read_feed(206),
         )
-    yield from out(tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None)
+    yield from retract_from_hole(
+        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+    )
     if off_wall_direction != (0.0, 0.0):
         yield tool.move_straight((x, y))
     yield tool.run_spindle(rpm)
@@ -113,7 +117,7 @@ def run_back_boring(tool: CycleTool) -> Iterator[Block]:
     yield tool.move_to_z(lowest, slow)
     yield tool.orient_spindle(336)
     yield tool.move_straight(offset_position, None, slow)
-    yield from out(tool, surface, clear, slow)
+    yield from retract_from_hole(tool, surface, clear, slow)
     yield tool.move_straight((x, y))
     yield tool.run_spindle(rpm)
 
@@ -153,7 +157,9 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
             yield from tool.make_dwell_blocks(tool.read_value(210, 0.0))
             yield tool.move_to_z(min(clear, surface - depth + tool.read_length_mm(200)))
     yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
-    yield from out(tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None)
+    yield from retract_from_hole(
+        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+    )
 
 
 def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
@@ -185,7 +191,9 @@ def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
             yield tool.move_to_z(clear)
             yield tool.move_to_z(begin - depth + near + (far - near) * depth / whole)
     yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
-    yield from out(tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None)
+    yield from retract_from_hole(
+        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+    )
 
 
 def run_floating_tapping(tool: CycleTool) -> Iterator[Block]:
@@ -222,7 +230,7 @@ def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
         if not last:
             yield tool.run_spindle(rpm, is_in_hole=stays)
     yield from tool.set_spindle_speed(before)
-    yield from out(tool, surface, clear, None)
+    yield from retract_from_hole(tool, surface, clear, None)
 
 
 def _thread(tool: CycleTool) -> tuple[float, float]:
@@ -249,7 +257,7 @@ def _tapped(
     yield tool.run_spindle(-rpm, is_in_hole=True)
     yield tool.make_tap_block(clear, lead)
     yield from tool.set_spindle_speed(before)
-    yield from out(tool, surface, clear, None)
+    yield from retract_from_hole(tool, surface, clear, None)
 
 
 def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
@@ -271,7 +279,7 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
     yield tool.move_to_z(clear)
     if helix_radius_mm < MIN_LENGTH_MM:
         yield tool.move_to_z(bottom, feed)
-        yield from out(tool, surface, clear, None)
+        yield from retract_from_hole(tool, surface, clear, None)
         return
     start = x + helix_radius_mm, y
     yield tool.move_straight(start, None, feed)
@@ -281,7 +289,7 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
         yield tool.move_on_arc(circle, max(clear - turn * pitch, bottom), feed)
     yield tool.move_on_arc(circle, bottom, feed)
     yield tool.move_straight((x, y), None, feed)
-    yield from out(tool, surface, clear, None)
+    yield from retract_from_hole(tool, surface, clear, None)
 
 
 def run_centering(tool: CycleTool) -> Iterator[Block]:
@@ -299,7 +307,7 @@ def run_centering(tool: CycleTool) -> Iterator[Block]:
     yield tool.move_to_z(clear)
     yield tool.move_to_z(bottom, tool.read_feed(206))
     yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
-    yield from out(tool, surface, clear, None)
+    yield from retract_from_hole(tool, surface, clear, None)
 
 
 def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
@@ -329,7 +337,9 @@ def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
     yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
     yield from tool.switch_coolant(430)
     yield tool.run_spindle(slow) if slow else tool.stop_spindle()
-    yield from out(tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None)
+    yield from retract_from_hole(
+        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+    )
     yield tool.run_spindle(rpm)
 
 
@@ -384,7 +394,9 @@ def compute_levels(
     )
 
 
-def out(tool: CycleTool, surface: float, clearance_z_mm: float, feed: float | None) -> Iterator[Block]:
+def retract_from_hole(
+    tool: CycleTool, surface: float, clearance_z_mm: float, feed: float | None
+) -> Iterator[Block]:
     """Yield the retract to the set-up clearance, or to the second set-up clearance if it is higher."""
     second = surface + tool.read_length_mm(204, 0.0)
     if feed is None:

@@ -27,8 +27,8 @@ from core.interpreter.klartext.cycles.hole_cycles import (
     MIN_LENGTH_MM,
     compute_infeeds,
     compute_levels,
-    out,
     read_heights,
+    retract_from_hole,
 )
 from core.interpreter.shared.elementary_blocks import Block
 from core.language.klartext.q_parameters import MAX_FEED_VALUE
@@ -162,7 +162,7 @@ def _pocket(tool: CycleTool, seat: Placement, wall: RoundedRectangle) -> Iterato
         yield from _finish_walls(milling, seat, last)
     yield tool.move_to_z(milling.clearance_z_mm)
     yield tool.move_straight(seat.center)
-    yield from out(tool, milling.surface_z_mm, milling.clearance_z_mm, None)
+    yield from retract_from_hole(tool, milling.surface_z_mm, milling.clearance_z_mm, None)
 
 
 def _plunge(
@@ -336,7 +336,7 @@ def _stud(
             yield from _approach_level(milling, placement, outside, z, True)
             yield from _around(milling, placement, last, milling.finishing_feed)
     yield tool.move_to_z(milling.clearance_z_mm)
-    yield from out(tool, milling.surface_z_mm, milling.clearance_z_mm, None)
+    yield from retract_from_hole(tool, milling.surface_z_mm, milling.clearance_z_mm, None)
 
 
 def _approach_level(
