@@ -59,8 +59,8 @@ SAFE = "G90G94F300\nX.05\nX0\nM30\n"
 BOUNCE = 0.31  # s in which a second start is the same press
 _CALLS = {
     "axes": ("sample", "splice", "demand_at", "horizon", "stop", "enable", "clear_fault", "now"),
-    "spindle": ("run_at", "coast", "speed", "read_angle", "read_fault"),
-    "io": ("inputs", "outputs", "write", "switch_to_safe_state"),
+    "spindle": ("set_speed", "start_coasting", "speed", "read_angle", "read_fault"),
+    "io": ("inputs", "get_outputs", "write", "switch_to_safe_state"),
 }
 
 

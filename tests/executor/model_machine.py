@@ -52,7 +52,7 @@ PORTS = ("axes", "spindle", "io")
 FREEZES = {  # what a port goes on telling, and what it reports as unknown then
     "axes": (("sample",), UnknownPart.AXES),
     "spindle": (("speed", "read_angle", "read_fault"), UnknownPart.SPINDLE),
-    "io": (("inputs", "outputs"), UnknownPart.INPUTS),
+    "io": (("inputs", "get_outputs"), UnknownPart.INPUTS),
 }
 
 

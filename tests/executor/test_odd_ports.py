@@ -10,7 +10,7 @@ import pytest
 from core.executor.commands import CycleStart, EnableDrives, Reset
 from core.executor.executor import Executor
 from core.executor.snapshot import LogEvent, MachineState
-from core.ports import MachinePorts
+from core.ports import AxisSink, DigitalIO, MachinePorts, Spindle, Station
 from tests.executor.rig import Rig
 from tests.texts import text
 
@@ -20,10 +20,11 @@ BUSY = "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F20Z-1\nG04F1\nM00\nX0Z0\nM30\n"
 ODD = [ValueError, SystemExit, GeneratorExit, MemoryError, ZeroDivisionError]
 CALLS = {
     "axes": ("now", "horizon", "splice", "demand_at", "sample", "stop", "clear_fault", "enable"),
-    "spindle": ("run_at", "coast", "speed", "read_angle", "read_fault"),
-    "io": ("inputs", "outputs", "write", "switch_to_safe_state"),
-    "station": ("snapshot",),
+    "spindle": ("set_speed", "start_coasting", "speed", "read_angle", "read_fault"),
+    "io": ("inputs", "get_outputs", "write", "switch_to_safe_state"),
+    "station": ("read_state",),
 }
+PORTS = {"axes": AxisSink, "spindle": Spindle, "io": DigitalIO, "station": Station}
 EACH = [(port, call) for port, calls in CALLS.items() for call in calls]
 NAMED = ["-".join(each) for each in EACH]
 MOMENTS: dict[str, Callable[[Rig], object]] = {
@@ -181,3 +182,7 @@ def test_cycle_start_seen_before_a_driver_failure_starts_nothing_later() -> None
     assert rig.shot.actual[0] == 0.0
     rig.post(CycleStart())
     assert rig.state is MachineState.FAULT
+
+
+def test_calls_that_break_are_methods_of_the_ports() -> None:
+    assert [each for each in EACH if not hasattr(PORTS[each[0]], each[1])] == []

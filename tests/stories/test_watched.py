@@ -97,7 +97,7 @@ def test_axis_pushed_by_hand_with_drives_off_is_reported(story: Story) -> None:
 
 
 @pytest.mark.parametrize(
-    ("port", "call"), [("io", "switch_to_safe_state"), ("axes", "stop"), ("spindle", "coast")]
+    ("port", "call"), [("io", "switch_to_safe_state"), ("axes", "stop"), ("spindle", "start_coasting")]
 )
 def test_estop_with_failing_driver_switches_off_other_outputs(story: Story, port: str, call: str) -> None:
     operator = story.begins(CUT, tools=TOOLS)
