@@ -1,4 +1,4 @@
-"""Interface of a controller with its own planner, and the operations that it receives for blocks."""
+"""Interface of a controller with its own planner, and the block operations that it executes."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ BlockOperation = RapidOperation | LineOperation | ArcOperation | ThreadOperation
 class BlockState(NamedTuple):
     """The state of a block controller and its block queue at one instant.
 
-    ``start_refusal`` is the reason why no motion can start, such as modes that are still being verified.
-    The text is empty if motion can start.
+    ``start_refusal`` is the reason why no motion can start, such as modes that are still being verified, or
+    an empty string if motion can start.
     """
 
     last_done_ticket: int  # every ticket up to this one has been moved to its end
@@ -84,9 +84,9 @@ class BlockController(Protocol):
     def prepare_css(self, max_rpm: float) -> None:
         """Announce the highest rpm that constant surface speed may require.
 
-        ``max_rpm`` is 0 for a constant spindle speed. Otherwise the spindle speed then follows the radius
-        up to this rpm. The method is called ahead of each speed command, so that a driver whose spindle
-        speed has steps can select the range of the steps.
+        ``max_rpm`` is 0 for a constant spindle speed. Otherwise the spindle speed follows the radius up to
+        ``max_rpm``. The method is called before each speed command, so that a driver with speed ranges can
+        select the range.
         """
         ...
 
@@ -105,7 +105,7 @@ class BlockController(Protocol):
     def submit_block(self, block: BlockOperation) -> int | None:
         """Submit a block; return its ticket, or None if the controller cannot accept a block now.
 
-        Raises DriverError.
+        Raises DriverError if the driver fails.
         """
         ...
 
@@ -114,7 +114,7 @@ class BlockController(Protocol):
         ...
 
     def hold_on_path(self) -> None:
-        """Stop on the path; a thread pass is finished first."""
+        """Stop on the path, but finish a thread pass first."""
         ...
 
     def resume(self) -> None:
@@ -137,12 +137,12 @@ class BlockController(Protocol):
     ) -> bool:
         """Start a jog or renew its lease; return False if no travel remains before ``limits``.
 
-        No motion is queued beyond the end of the lease. Raises DriverError.
+        No motion is queued beyond the end of the lease. Raises DriverError if the driver fails.
         """
         ...
 
     def move_by_step(self, axis: str, target: float, speed: float) -> None:
-        """Move an axis to ``target`` in one step that starts and ends at rest. Raises DriverError."""
+        """Move an axis to ``target`` in one step from rest to rest. Raises DriverError if this fails."""
         ...
 
     def stop_jog(self) -> None:

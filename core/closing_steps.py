@@ -22,7 +22,7 @@ It returns whether the step has ended.
 
 
 def wait_for_end(_name: str, end_event: threading.Event, seconds: float) -> bool:
-    """Wait for the end of a step in real time; return whether the step has ended within ``seconds``."""
+    """Wait in real time for at most ``seconds`` for a step to end; return whether it has ended."""
     return end_event.wait(seconds)
 
 
@@ -70,7 +70,7 @@ class _RunningStep:
         return self._done.is_set()
 
     def wait_for_success(self, seconds: float, wait: WaitFunction) -> bool:
-        """Wait for the step to end; return whether it succeeds within this time."""
+        """Wait for the step to end; return whether it succeeds within its time limit."""
         if not wait(self.step.name, self._done, seconds):
             _log.error("closing: %s does not end within %g s", self.step.name, self.step.timeout_s)
             return False

@@ -61,17 +61,17 @@ FaultCode = Literal[
 
 
 class Fault(str):
-    """An active fault: a message with the code of its alarm. An empty string means that there is no fault.
+    """An active fault: its message and its alarm code. An empty string means that there is no fault.
 
     Because a fault is a string, a driver without details can return ``""``, and a driver with several
-    possible faults can join them with ``or``.
+    possible faults can return the first one with ``a or b``.
     """
 
     __slots__ = ("code",)
     code: FaultCode
 
     def __new__(cls, text: str, code: FaultCode, **values: object) -> Fault:
-        """Create a fault from its text and the code of its alarm.
+        """Create a fault from its text and its alarm code.
 
         ``text`` names the drive, wire or terminal and the symptom. ``values`` fill the fields of the text.
         """
@@ -140,7 +140,7 @@ class DriverHostTrip(NamedTuple):
 class TrippingDriverHost(Protocol):
     """A driver host that stops the spindle and switches off the outputs when the control is silent.
 
-    The driver host then raises TrippedError for setpoints and for commands that switch something on, until
+    The driver host then raises TrippedError for setpoints and for commands that switch on a function, until
     the control acknowledges the trip.
     """
 
@@ -149,7 +149,7 @@ class TrippingDriverHost(Protocol):
         ...
 
     def acknowledge_trip(self, trip: DriverHostTrip) -> None:
-        """Acknowledge this trip; a newer trip remains active. Raises DriverError."""
+        """Acknowledge this trip, but not a newer trip. Raises DriverError if the driver host fails."""
         ...
 
 

@@ -93,7 +93,7 @@ def _read_lock_info(file: int) -> bool | None:
 
 
 def _record(kind: int) -> bytes:
-    """Return the ``struct flock`` of a record lock on one byte outside the data."""
+    """Return the ``struct flock`` that describes a lock on one byte outside the data."""
     return struct.pack(_RECORD, kind, os.SEEK_SET, _FAR, 1, 0)
 
 
@@ -149,7 +149,7 @@ def remove_abandoned_files(folder: Path) -> None:
 
 
 def _opened(path: Path) -> int:
-    """Return a handle for locking the path, or -1 if the system cannot open it."""
+    """Return a file handle for locking the path, or -1 if the system cannot open the file."""
     try:
         return os.open(path, os.O_RDONLY)
     except OSError:

@@ -1,4 +1,4 @@
-"""Functions that read input files of limited size, with uniform errors, and parse TOML.
+"""Functions that read input files of limited size and parse TOML, with uniform errors.
 
 A reader calls ``read_input_bytes``, which raises only OSError, and parses the data within
 ``convert_exceptions``, which converts all exceptions of the parser into the reader's own error.
@@ -82,7 +82,7 @@ def _too_large(path: Path, most: int) -> TooLargeError:
 
 @contextmanager
 def convert_exceptions(make_error: Callable[[Exception], Exception]) -> Iterator[None]:
-    """Convert every exception of a parser except ``CodedError`` into ``make_error(error)``."""
+    """Convert every parser exception except a ``CodedError`` into ``make_error(error)``."""
     try:
         yield
     except CodedError:

@@ -56,7 +56,7 @@ def declare_row_keys(
 
 
 def prefix_keys(path: str, keys: Collection[JsonKey]) -> tuple[JsonKey, ...]:
-    """Return the keys with ``path`` put in front of their names."""
+    """Return the keys with the prefix ``path`` added to their names."""
     return tuple(key._replace(name=f"{path}{key.name}") for key in keys)
 
 

@@ -61,9 +61,9 @@ def convert_to_file(value: float, unit: FileUnit, is_inch: bool) -> float:
 
 
 def make_unit_text(unit: FileUnit, is_inch: bool) -> str:
-    """Return the text of a unit with a leading space, with in or mm for lengths.
+    """Return the text of a unit with a leading space; the unit of a length is in or mm.
 
-    The text is empty for numbers without a unit.
+    The result is an empty string for numbers without a unit.
     """
     text = unit.value.replace("len", "in" if is_inch else "mm")
     return f" {text}" if text else ""
@@ -153,8 +153,8 @@ def declare_key(
 ) -> Any:
     """Declare a key on an attribute of a class, with the attribute's annotation as the kind of value.
 
-    ``name`` is the key in the file if it differs from the attribute's name. A ``is_secret`` value is not
-    printed. The other arguments are described in ``KeyField``.
+    ``name`` is the key in the file if it differs from the attribute's name. A value with ``is_secret`` is
+    never printed. The other arguments are described in ``KeyField``.
     """
     return _Key(range, meaning, name, default, choices, is_derived, is_secret)
 

@@ -104,7 +104,7 @@ def join_messages(separator: str, parts: Iterable[str]) -> Message:
 
 
 def collect_values(text: str) -> dict[str, MessageValue]:
-    """Return the values of a message and of the messages inside it by name, or {} for a plain text.
+    """Return the values of a message and of its nested messages by name, or {} for a plain string.
 
     If an outer and an inner value have the same name, the outer value is returned.
     """
@@ -120,9 +120,9 @@ def _plain(value: MessageValue) -> MessageValue:
 
 
 def pack_message(text: str) -> str:
-    """Return the template, values and case of a message as JSON for storage.
+    """Return the template, values and letter case of a message as JSON for storage.
 
-    The result is empty for a plain text.
+    The result is an empty string for a plain string.
     """
     import json  # noqa: PLC0415  only what is stored is packed
 
@@ -175,7 +175,7 @@ class CodedError(Exception):
 
 
 def get_error_code(error: BaseException) -> str:
-    """Return the code of an error, or an empty text if the error has no code.
+    """Return the code of an error, or an empty string if the error has no code.
 
     Callers give this code to the error that replaces the original one.
     """
@@ -183,7 +183,7 @@ def get_error_code(error: BaseException) -> str:
 
 
 def find_similar_word(word: str, known_words: Iterable[str]) -> str:
-    """Return the known word most similar to ``word``, or an empty text if no word is similar."""
+    """Return the known word most similar to ``word``, or an empty string if no word is similar."""
     from difflib import get_close_matches  # noqa: PLC0415  only who has mistyped waits for it
 
     return next(iter(get_close_matches(word, list(known_words), n=1)), "")

@@ -1,8 +1,8 @@
-"""Base class of small immutable values that are created quickly at startup.
+"""Base class of small immutable values that are quick to define at startup.
 
-A start of TurnDesk loads dozens of these classes. Python compiles six functions for each frozen dataclass,
-which takes 0.3 ms. A class with an explicit ``__init__`` needs almost no time. Its attributes are
-``Final``, so mypy rejects assignments to them.
+TurnDesk loads dozens of these classes when it starts. For each frozen dataclass, Python compiles six
+functions, which takes 0.3 ms. A class with an explicit ``__init__`` needs almost no time. Its attributes
+are ``Final``, so mypy rejects assignments to them.
 """
 
 from __future__ import annotations

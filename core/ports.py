@@ -51,7 +51,7 @@ class MotionSegments(NamedTuple):
     def make_rest(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> MotionSegments:
         """Return segments that hold this position from ``start_time_s`` on.
 
-        A splice with these segments discards all motion that was queued after this time.
+        Splicing these segments into the queue discards all motion that was queued after this time.
         """
         still = np.zeros((1, len(position)))
         return cls(
@@ -103,7 +103,7 @@ class SampleSource(Protocol):
 
 
 class AxisSink(Protocol):
-    """Destination of setpoints. A queue is always a complete trajectory that ends at rest."""
+    """Destination of setpoints. Its queue always contains a complete trajectory that ends at rest."""
 
     axes: tuple[str, ...]
     commit: float  # nothing before now() + commit can be changed any more
@@ -113,7 +113,7 @@ class AxisSink(Protocol):
         ...
 
     def horizon(self) -> float:
-        """Return the end time of the queue; the time is not before now() if motion is queued."""
+        """Return the end time of the queue; the result is at least now() if motion is queued."""
         ...
 
     def splice(self, segments: MotionSegments) -> None:
@@ -132,26 +132,26 @@ class AxisSink(Protocol):
         ...
 
     def sample(self) -> AxisSample:
-        """Return the present state of the axes from memory, without waiting."""
+        """Return the current state of the axes from memory, without waiting."""
         ...
 
     def enable(self, is_on: bool) -> None:
         """Switch the drives of all axes on or off.
 
-        Raises DriverError. A drive that fails later reports a fault.
+        Raises DriverError if the driver cannot switch them. A drive that fails later reports a fault.
         """
         ...
 
     def stop(self, mode: StopMode) -> None:
-        """Discard the queue and stop in the given mode. Raises DriverError."""
+        """Discard the queue and stop in the given mode. Raises DriverError if the driver fails."""
         ...
 
     def home(self, axis: str) -> None:
-        """Start homing an axis; ``sample`` reports when the axis is homed. Raises DriverError."""
+        """Start homing an axis; ``sample`` reports its end. Raises DriverError if the driver fails."""
         ...
 
     def clear_fault(self) -> None:
-        """Request that a fault is cleared; ``sample`` reports whether this succeeded. Raises DriverError."""
+        """Request that a fault is cleared, as ``sample`` reports. Raises DriverError if the driver fails."""
         ...
 
 
@@ -175,7 +175,7 @@ class Spindle(Protocol):
         ...
 
     def read_fault(self) -> str:
-        """Return the fault of the spindle drive, or an empty text without a fault."""
+        """Return the fault of the spindle drive, or an empty string without a fault."""
         ...
 
 
@@ -183,7 +183,7 @@ class SpindleCAxis(Protocol):
     """A spindle drive that also serves as the C axis; the mode is changed at standstill."""
 
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
-        """Request C-axis mode or spindle mode; C retains its count.
+        """Request C-axis mode or spindle mode; the position count of C is retained.
 
         If ``should_orient`` is True, the spindle turns by the shortest path until its count equals its
         position from the index, apart from whole revolutions. Raises DriverError while the spindle turns or
@@ -212,7 +212,7 @@ class OrientingSpindle(Protocol):
         ...
 
     def release_spindle(self) -> None:
-        """Release the spindle; if it is still turning to an angle, it stops."""
+        """Release the spindle from its angle; stop it if it is still turning to the angle."""
         ...
 
     def is_oriented(self) -> bool:
@@ -257,13 +257,13 @@ class SpindleGear(Protocol):
     """
 
     def mesh(self, cam: Cam) -> None:
-        """Follow the spindle with a cam.
+        """Make the axes follow the spindle with a cam.
 
         If a cam is already active, the call replaces all of it from ``cam.segments.t[0]`` on. Raises
         DriverError unless the cam starts at or after the position that the spindle will reach within the
         sink's commit time, continues the remaining motion, and ends at rest. The sink's ``demand_at`` and
-        ``horizon`` then predict from the present speed, up to the end of the cam. Its ``splice`` releases a
-        gear that has not moved an axis yet and is rejected otherwise. Its ``stop`` brakes from the present
+        ``horizon`` then predict from the current speed, up to the end of the cam. Its ``splice`` releases a
+        gear that has not moved an axis yet and is rejected otherwise. Its ``stop`` brakes from the current
         position of the axes.
         """
         ...
@@ -281,14 +281,14 @@ class DigitalIO(Protocol):
         ...
 
     def get_outputs(self) -> Mapping[str, bool]:
-        """Return the present state of all outputs, whether the control or another device switched them.
+        """Return the current state of all outputs, whether the control or another device switched them.
 
         An output whose state is not reported to the driver has the last written state.
         """
         ...
 
     def write(self, name: str, is_on: bool) -> None:
-        """Switch an output on or off. Raises DriverError."""
+        """Switch an output on or off. Raises DriverError if the driver fails."""
         ...
 
     def switch_to_safe_state(self) -> None:
@@ -363,7 +363,7 @@ class WakeupSignal(Protocol):
     """
 
     def is_settled(self) -> bool:
-        """Return whether no polled value can change any more without a wakeup. It is called at rest."""
+        """Return whether the driver now announces every change with a wakeup. Called at rest only."""
         ...
 
     def request_poll(self) -> None:
@@ -379,7 +379,7 @@ class WakeupSignal(Protocol):
 
 
 class Clock(Protocol):
-    """Monotonic clock, and the only means of waiting until a time."""
+    """Monotonic clock, and the only permitted function for waiting until a time."""
 
     def now(self) -> float:
         """Return the time in seconds from an arbitrary origin."""

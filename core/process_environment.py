@@ -1,4 +1,4 @@
-"""Environment of the other Python processes that TurnDesk starts, such as the control process."""
+"""Environment variables for Python processes that TurnDesk starts, such as the control process."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FOLDER = str(Path(__file__).parents[1])
 
 
 def make_module_environment(**more: str) -> Mapping[str, str]:
-    """Return an environment in which ``python -m`` finds the modules of this TurnDesk first.
+    """Return environment variables with which ``python -m`` finds the modules of this TurnDesk first.
 
     An installed TurnDesk has its packages in a folder that is not in the module path of other programs.
     """

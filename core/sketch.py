@@ -10,7 +10,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A polyline with a role: ``part``, ``cut`` (the result of the shape), ``tool`` or ``axis``."""
+    """A polyline with a role: ``part``, ``cut`` (the surface to be cut), ``tool`` or ``axis``."""
 
     points: tuple[Point, ...]
     role: str = "part"
@@ -21,8 +21,8 @@ class Outline:
 class Dimension:
     """A dimension from ``start`` to ``end``, drawn at ``line_distance`` from these points.
 
-    If ``end`` is None, the dimension is a number at ``start``. ``field_word`` is the label of the field
-    that has the value. ``prefix`` is a sign in front of the number.
+    If ``end`` is None, the dimension is a number at ``start``. ``field_word`` is the label of the input
+    field with the value. ``prefix`` is a symbol in front of the number.
     """
 
     field_word: str

@@ -81,7 +81,7 @@ class TableReference:
 class FileValues:
     """Values of a machine file by path, in the model's units.
 
-    Lengths can be read only when the unit of the file is known.
+    Lengths can be read only if the file specifies its unit.
     """
 
     def __init__(self, is_inch: bool | None) -> None:
@@ -101,7 +101,7 @@ class FileValues:
     def read_number(self, path: str) -> float:
         """Return the number at the path.
 
-        Raises KeyError without a valid value, or TypeError if the value is a text or a list.
+        Raises KeyError if no valid value exists, or TypeError if the value is a string or a list.
         """
         value = self.values_by_path[path]
         if isinstance(value, str | tuple):
@@ -111,14 +111,14 @@ class FileValues:
     def read_flag(self, path: str) -> bool:
         """Return whether the value at the path is true.
 
-        Raises KeyError without a valid value.
+        Raises KeyError if no valid value exists.
         """
         return self.values_by_path[path] is True
 
     def text(self, path: str) -> str:
         """Return the value at the path as text.
 
-        Raises KeyError without a valid value.
+        Raises KeyError if no valid value exists.
         """
         return str(self.values_by_path[path])
 
@@ -129,14 +129,14 @@ class FileValues:
     def read_integer(self, path: str) -> int:
         """Return the number at the path as an integer, without its decimal places.
 
-        Raises KeyError without a valid value, or TypeError if the value is a text or a list.
+        Raises KeyError if no valid value exists, or TypeError if the value is a string or a list.
         """
         return int(self.read_number(path))
 
     def read_pair(self, path: str) -> Pair:
         """Return the two numbers at the path.
 
-        Raises KeyError without a valid value, or TypeError if the value is not a list of two numbers.
+        Raises KeyError if no valid value exists, or TypeError if the value is not a list of two numbers.
         """
         value = self.values_by_path[path]
         if not isinstance(value, tuple) or len(value) != 2:
@@ -146,7 +146,7 @@ class FileValues:
     def read_numbers(self, path: str) -> tuple[float, ...]:
         """Return the list of numbers at the path.
 
-        Raises KeyError without a valid value, or TypeError if the value is not a list.
+        Raises KeyError if no valid value exists, or TypeError if the value is not a list.
         """
         value = self.values_by_path[path]
         if not isinstance(value, tuple):
@@ -156,7 +156,7 @@ class FileValues:
     def make_model(
         self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, /, **given: object
     ) -> _Model:
-        """Return a table without errors as a dataclass.
+        """Return the dataclass object for a table without errors.
 
         A field gets its value from ``given``, from the key that ``keys`` specifies for it, or from the key
         of the same name.
@@ -173,7 +173,7 @@ def join_path(path: str, key: str) -> str:
 
 
 def find_unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> list[FileFinding]:
-    """Return a finding for every unknown key, with the most similar known key or its replacement."""
+    """Return a finding for every unknown key; it names the most similar known key or the replacement."""
     found = []
     for key in table:
         place = join_path(path, key)
@@ -280,7 +280,7 @@ def _parts(raw: object) -> list[float]:
 
 
 def _problem(raw: object, field: KeyField, is_inch: bool | None) -> str:
-    """Return a description of the expected value if ``raw`` is invalid, otherwise an empty text.
+    """Return a description of the expected value if ``raw`` is invalid, otherwise an empty string.
 
     NaN is always invalid.
     """
@@ -335,7 +335,7 @@ def find_raw_value(data: object, path: str) -> object:
 
 @dataclass(frozen=True, slots=True)
 class MachineFileReading:
-    """A machine file during reading, with the values that drivers and their rules need."""
+    """A machine file that is being read, with the values that drivers and their rules need."""
 
     parsed_data: Mapping[str, object]
     values: FileValues
@@ -348,7 +348,7 @@ class MachineFileReading:
     address_prefixes: tuple[str, ...]  # prefixes of the addresses on such devices
 
     def raw(self, path: str) -> object:
-        """Return the unprocessed value at a path of the file, or None."""
+        """Return the unprocessed value at a path of the machine file, or None if the path does not exist."""
         return find_raw_value(self.parsed_data, path)
 
     def find_wired_pots(self) -> dict[str, str]:
@@ -413,7 +413,7 @@ class DriverDeclaration:
     True if the spindle can stop at an angle. ``max_count_rate`` is the highest rate in counts per second
     that the driver accepts for an axis. ``normalize_terminal`` returns equal values for equivalent
     addresses, and None for an address of another driver. ``inputs`` yields the possible input addresses in
-    order. ``address_prefix`` begins the addresses on the driver's own device outside the backend.
+    order. ``address_prefix`` is the prefix of addresses on the driver's device outside the backend.
     """
 
     tables: tuple[DriverTable, ...]
@@ -427,7 +427,7 @@ class DriverDeclaration:
 
 
 def make_table_finding(path: str, raw: object) -> FileFinding:
-    """Return the finding for a value that should be a table."""
+    """Return the finding for a value that must be a table but is not."""
     return FileFinding(
         path,
         format_toml_value(raw),
@@ -437,9 +437,9 @@ def make_table_finding(path: str, raw: object) -> FileFinding:
 
 
 def read_named_tables(raw: object, keys: KeySchema, path: str, values: FileValues) -> list[FileFinding]:
-    """Read every inner table of a table in which the machine owner chooses the names.
+    """Read every nested table of a table in which the machine owner chooses the names.
 
-    Each inner table is read as by ``read_table``.
+    Each nested table is read with ``read_table``.
     """
     if not isinstance(raw, dict):
         return [make_table_finding(path, raw)]
@@ -455,8 +455,8 @@ def read_axes_and_spindle(
 ) -> Iterator[FileFinding]:
     """Read a driver's tables for the axes and for the spindle; yield the findings.
 
-    ``axes`` and ``spindle`` each contain the path of a table and its class. Both tables may be missing from
-    the file.
+    ``axes`` and ``spindle`` each contain a table's path and its class. Both tables may be missing from the
+    file.
     """
     (path, kind), (spindle_path, spindle_kind) = axes, spindle
     named, turns = file.raw(path), file.raw(spindle_path)

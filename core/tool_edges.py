@@ -43,7 +43,7 @@ class NamedTool(int):
 
 
 def _like(key: int, number: int) -> int:
-    """Return ``number`` with the tool name of ``key``, if ``key`` has one."""
+    """Return ``number`` as a ``NamedTool`` with the tool name of ``key``, if ``key`` has a tool name."""
     return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
 
 
@@ -65,7 +65,7 @@ def get_edge_number(key: int) -> int:
 def format_edge_suffix(key: int) -> str:
     """Return the text that follows T for a row, such as ``3``, ``="ROUGHER"`` or ``3 D2``.
 
-    The text contains D only for a cutting edge other than D1.
+    The text contains D only for cutting edges D2 to D9.
     """
     number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{get_tool_number(key)}"
     return number if key < _STEP else f"{number} D{get_edge_number(key)}"

@@ -33,7 +33,7 @@ class TwoHandRelay:
         self._on_until = -1.0
 
     def press_palm(self, palm: str, now_s: float) -> None:
-        """Press the palm button ``palm``, "left" or "right", at time ``now`` in seconds."""
+        """Press the palm button ``palm``, "left" or "right", at time ``now_s`` in seconds."""
         if self._down[palm] is not None:
             return
         self._down[palm] = now_s
@@ -45,9 +45,9 @@ class TwoHandRelay:
         self._armed = False
 
     def release_palm(self, palm: str, now_s: float) -> None:
-        """Release a palm button and turn the output off.
+        """Release a palm button and turn the relay output off.
 
-        The output remains on until the minimum pulse ``pulse_s`` has passed.
+        If the minimum pulse has not ended yet, the output turns off at the end of this pulse.
         """
         self._down[palm] = None
         if self._on_until > now_s:
@@ -92,12 +92,12 @@ class PanelState:
             self._hold_until = now + self._pulse
 
     def is_settled(self, now: float) -> bool:
-        """Return whether the reported state remains the same until the operator acts."""
+        """Return whether the reported state will not change until the operator acts."""
         pulse = now < self._hold_until or self.relay.will_turn_off(now)
         return self._silent is None and not self.noise_amplitude and not pulse
 
     def set_disconnected(self, disconnected: bool, now: float) -> None:
-        """Disconnect or reconnect the cable of the station."""
+        """Disconnect the cable of the station if ``disconnected`` is true, otherwise reconnect it."""
         self._silent = self.state(now) if disconnected else None
         self._silent_since = now
 
@@ -132,7 +132,7 @@ _WINDOW, _PULSE = 0.5, 0.1  # Seconds; two-hand relay that the screen replaces.
 class StationControls:
     """Operator actions at a panel.
 
-    Any thread may call the methods, because they lock ``lock``, which the reader of the panel also uses.
+    Any thread may call the methods, because they acquire ``lock``, as the reader of the panel does.
     """
 
     def __init__(self, panel: PanelState, lock: AbstractContextManager[object], clock: Clock) -> None:
@@ -203,9 +203,9 @@ class StationControls:
 class OnScreenStation(StationControls):
     """``core.ports.Station`` that combines an on-screen panel with wired inputs.
 
-    Any thread may call the methods. ``inputs`` returns the inputs of the machine; an E-stop, start or hold
-    input has the same effect as the on-screen button. ``wired`` is a station that provides only a handwheel
-    or the spindle load.
+    Any thread may call the methods. ``inputs`` returns the states of the wired inputs. A wired E-stop,
+    start or hold input has the same effect as the on-screen button. ``wired`` is an optional station that
+    provides only a handwheel or the spindle load.
     """
 
     def __init__(
@@ -216,7 +216,7 @@ class OnScreenStation(StationControls):
         self._wired = wired
 
     def read_state(self) -> StationState:
-        """Return the present state of the station."""
+        """Return the current state of the station."""
         with self._lock:
             state = self._panel.state(self._clock.now())
         inputs = self._inputs()
@@ -232,7 +232,7 @@ class OnScreenStation(StationControls):
         )
 
     def press_estop(self) -> None:
-        """Press the on-screen E-stop, so that the control stops everything that it can stop.
+        """Press the on-screen E-stop, so that the control stops the machine as far as it can.
 
         The on-screen E-stop is not a safety device.
         """
@@ -249,7 +249,7 @@ class OnScreenStation(StationControls):
 
 
 class PotSettings(Protocol):
-    """Settings of a pot in the machine file: its values at both ends and the input that enables the pot."""
+    """Pot settings in the machine file: the values at both ends and the input that enables the pot."""
 
     @property
     def low_value(self) -> float:
@@ -278,8 +278,8 @@ def build_station_state(
     """Build the state of the station from inputs and pots.
 
     A button that is not in the machine file counts as released. ``read_pot`` takes the name of a pot and
-    returns its position as a fraction. If there is no input ``spindle_auto``, the switch input of the
-    spindle pot selects AUTO. Without this input, AUTO is always selected.
+    returns its position as a fraction. Without an input ``spindle_auto``, the switch input of the spindle
+    pot selects AUTO. If the pot has no switch input either, AUTO is always selected.
     """
     pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
     auto = inputs.get(pot.switch_input, True) if pot is not None and pot.switch_input else True
@@ -309,7 +309,7 @@ def _scaled(pot: PotSettings, fraction: float) -> float:
 
 
 def _posted_action(name: str) -> Callable[..., None]:
-    """Return a method that posts its own name and arguments without waiting for a result."""
+    """Return a method that posts its own name and its arguments, and does not wait for a result."""
 
     def use(self: PostedControls, *values: object) -> None:
         self.post_action(name, *values)

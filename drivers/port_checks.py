@@ -17,9 +17,9 @@ T = TypeVar("T")
 
 
 def require_no_fault(fault: str) -> None:
-    """Raise DriverError if a ``fault`` prevents the drives from switching on.
+    """Raise DriverError if a fault prevents the drives from switching on.
 
-    An empty text means that there is not a fault.
+    If ``fault`` is an empty string, there is no fault.
     """
     if fault:
         raise DriverError(
@@ -36,9 +36,9 @@ def require_power(fault: str, is_powered: bool) -> None:
 
 
 def require_no_homing(axis: str) -> None:
-    """Raise DriverError if ``axis`` is the name of an axis that is homing.
+    """Raise DriverError if an axis is homing.
 
-    An empty name means that no axis is homing.
+    ``axis`` is the name of the homing axis, or an empty string if no axis is homing.
     """
     if axis:
         raise DriverError("{name} is homing; wait until homing is complete", reason="homing", name=axis)
@@ -51,7 +51,7 @@ def require_axis(axis: str, axes: Container[str]) -> None:
 
 
 def require_standstill(axis: str, is_moving: bool) -> None:
-    """Raise DriverError if any axis is moving, because ``axis`` can home only when all axes are at rest."""
+    """Raise DriverError if any axis is moving, because homing ``axis`` requires all axes at rest."""
     if is_moving:
         raise DriverError(
             "{axis} cannot home while an axis is moving; wait until all axes are at rest",
@@ -62,7 +62,7 @@ def require_standstill(axis: str, is_moving: bool) -> None:
 
 
 def require_spindle_ready(problem: str) -> None:
-    """Raise DriverError if a ``problem`` prevents the spindle from turning."""
+    """Raise DriverError if ``problem`` describes a reason why the spindle cannot turn."""
     if problem:
         raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=problem)
 
@@ -76,7 +76,7 @@ def require_estop_released(is_pressed: bool) -> None:
 
 
 def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
-    """Raise DriverError if the spindle drive is off or turning and therefore cannot become the C axis."""
+    """Raise DriverError if the spindle drive cannot become the C axis because it is off or turning."""
     if not is_enabled:
         raise DriverError(
             "C uses the spindle drive, and the drives are off; switch them on first",
@@ -104,7 +104,7 @@ def find_output(name: str, outputs: Mapping[str, T]) -> T:
 
 
 def require_output_allowed(name: str, is_on: bool, problem: str) -> None:
-    """Raise DriverError if the output is to be switched on and a ``problem`` prevents this."""
+    """Raise DriverError if the output is to be switched on although ``problem`` prevents this."""
     if is_on and problem:
         raise DriverError("output {name} stays off: {problem}", "output", name=name, problem=problem)
 
@@ -124,7 +124,7 @@ class FirstTouchInput:
         self._kept = None
 
     def read_latch(self) -> TouchLatch | None:
-        """Return the first touch since the last call of ``arm_latch``, or None without a touch."""
+        """Return the first touch since the last call of ``arm_latch``, or None if there was no touch."""
         return self._kept
 
     def _is_first_touch(self, is_on: bool) -> bool:

@@ -13,7 +13,7 @@ _CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAUL
 def request_scheduling(policy: str, priority: int) -> str:
     """Request a scheduling policy of sched(7), such as ``SCHED_FIFO``, for this process.
 
-    Return the reason for a refusal, or an empty text if the system grants the policy.
+    Return the reason why the system rejects the request, or an empty string if it grants the policy.
     """
     try:
         os.sched_setscheduler(0, getattr(os, policy), os.sched_param(priority))
@@ -23,9 +23,9 @@ def request_scheduling(policy: str, priority: int) -> str:
 
 
 def lower_thread_priority(priority: int) -> None:
-    """Set the calling thread to a lower real-time priority, if its process has a real-time policy.
+    """Lower the real-time priority of the calling thread if the process has a real-time policy.
 
-    A refusal is ignored; the thread then runs at the priority of its process.
+    If the system rejects the change, the thread continues to run at the priority of its process.
     """
     with suppress(OSError, AttributeError):
         policy = os.sched_getscheduler(0)
@@ -34,12 +34,12 @@ def lower_thread_priority(priority: int) -> None:
 
 
 def lock_process_memory(*, only_used: bool = False) -> tuple[str, int]:
-    """Lock the present and future memory of the process, and reduce garbage collection.
+    """Lock the current and future memory of the process, and reduce garbage collection.
 
-    With ``only_used``, reserved memory is locked only when the process first uses it. Return the reason for
-    a refusal, or an empty text, and the limit of locked memory in bytes, or 0 without a limit. If there is
-    a limit, only present memory is locked, because with ``MCL_FUTURE`` the first allocation beyond the
-    limit would fail during a cut.
+    With ``only_used``, reserved memory is locked only when it is first used. Return the reason why locking
+    failed, or an empty string, and the limit of locked memory in bytes, or 0 if there is no limit. With a
+    limit, only current memory is locked: if ``MCL_FUTURE`` were used, the first allocation beyond the limit
+    would fail during a cut.
     """
     gc.collect()
     gc.freeze()

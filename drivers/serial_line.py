@@ -1,4 +1,4 @@
-"""Serial line as the drivers use it: settings, transfer, parity and explanations of errors."""
+"""Serial line interface for drivers: settings, transfer, parity and explanations of errors."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ class SerialTransport(Protocol):
     """
 
     def send(self, data: bytes) -> None:
-        """Send bytes; the call blocks only briefly."""
+        """Send bytes; the call blocks for a short time at most."""
         ...
 
     def receive(self, timeout_s: float) -> bytes:
-        """Return received bytes, after waiting at most ``timeout_s`` seconds for the first byte."""
+        """Return the received bytes, after waiting up to ``timeout_s`` seconds for the first byte."""
         ...
 
     def discard_input(self) -> None:
@@ -64,20 +64,17 @@ class FlowControlTransport(SerialTransport, Protocol):
 
     @property
     def damaged_count(self) -> int:
-        """Return the number of characters received with a parity or framing error.
-
-        The count starts when the line is opened.
-        """
+        """Return the number of characters with a parity or framing error since the line was opened."""
         ...
 
     def send_available(self, data: bytes) -> int:
-        """Send as many bytes as the line accepts now, and return their number, which may be 0."""
+        """Send as many bytes as the line accepts now, and return the number of bytes sent, possibly 0."""
         ...
 
     def enable_xon_xoff(self) -> None:
         """Let the other side stop and resume the output with XOFF (DC3) and XON (DC1).
 
-        A line that does not support this returns these characters as received data.
+        If the line does not support flow control, these characters are returned as received data.
         """
         ...
 
@@ -127,10 +124,7 @@ _REMEDIES = {
 
 
 def why(error: Exception) -> str:
-    """Return the remedy for an error of a serial port.
-
-    If no remedy is known, return the error text of the operating system.
-    """
+    """Return the remedy for a serial port error, or the system's error text if no remedy is known."""
     number = _error_number(error)
     if number is None and error.__context__ is not None:  # The library hides the cause in its own text.
         number = _error_number(error.__context__)
@@ -140,7 +134,7 @@ def why(error: Exception) -> str:
 
 
 def _error_number(error: BaseException) -> int | None:
-    """Return the error number of the operating system, or None if it has no number.
+    """Return the operating system's error number, or None if the error has no number.
 
     For termios errors, the number is the first argument.
     """

@@ -20,7 +20,7 @@ from drivers.serial_line import PARITY_VALUES, LineSettings, SerialLineError, cr
 class ParityMarkDecoder:
     """Decoder of the PARMRK marks of termios, which also counts damaged characters.
 
-    The bytes FF 00 c mean a damaged character c, and FF FF means a valid FF.
+    The bytes FF 00 c represent a damaged character c, and the bytes FF FF represent a valid FF.
     """
 
     def __init__(self) -> None:
@@ -76,10 +76,10 @@ def list_ports() -> list[PortInfo]:
 
 
 class SerialPort:
-    """Serial port of this computer, opened exclusively.
+    """Serial port of this computer, opened for exclusive use.
 
     With ``count_damaged``, damaged characters are counted. If the port does not support seven bits with
-    parity, this class adds the parity bit; XOFF and XON from the other side are ignored in this case.
+    parity, this class adds the parity bit in software; it then ignores XOFF and XON from the other side.
     """
 
     def __init__(self, settings: LineSettings, *, count_damaged: bool = False) -> None:
@@ -164,7 +164,7 @@ class SerialPort:
             raise self._cut(error) from error
 
     def receive(self, timeout_s: float) -> bytes:
-        """Return received bytes, after waiting at most ``timeout_s`` seconds for the first byte."""
+        """Return the received bytes, after waiting up to ``timeout_s`` seconds for the first byte."""
         try:
             come = self._read_available(max(timeout_s, 0.0))
         except _FAILURES as error:
@@ -174,8 +174,8 @@ class SerialPort:
     def _read_available(self, limit: float) -> bytes:
         """Wait at most ``limit`` seconds for the first byte, and return all received bytes.
 
-        The method waits with ``select``, because pyserial would reconfigure the port whenever the timeout
-        changes.
+        The method waits with ``select``, because changing the pyserial timeout would reconfigure the port
+        each time.
         """
         if sys.platform == "win32":
             self._port.timeout = limit
@@ -209,8 +209,8 @@ class SerialPort:
         """Close the port.
 
         If the other side has stopped the output, the remaining output is discarded, because closing would
-        block. Otherwise the output is not discarded, because that would also clear the transmitter of some
-        UARTs and of a pseudo terminal, and the last bytes would be lost.
+        block. Otherwise the output is not discarded, because some UARTs and pseudo terminals would then
+        also lose the bytes that they are transmitting.
         """
         with suppress(*_FAILURES):  # A disconnected cable does not block.
             if not self._is_sending():
@@ -219,7 +219,7 @@ class SerialPort:
             self._port.close()
 
     def _is_sending(self) -> bool:
-        """Return whether the kernel transmits the remaining output within the expected time."""
+        """Return whether the kernel is expected to transmit the remaining output within the usual time."""
         for _ in range(_ENDING):
             if not (left := self._port.out_waiting):
                 return True
@@ -283,7 +283,7 @@ if sys.platform != "win32":
     def enable_kernel_flow_control(handle: int) -> None:
         """Let XOFF and XON from the other side stop and resume the output in the kernel.
 
-        Raises termios.error.
+        Raises termios.error if the port has failed.
         """
         attributes = termios.tcgetattr(handle)
         attributes[0] |= termios.IXON | termios.IXOFF
@@ -292,7 +292,7 @@ if sys.platform != "win32":
     def enable_parity_marks(handle: int, *, check_parity: bool) -> None:
         """Make the kernel mark a damaged character c as FF 00 c, and a valid FF as FF FF.
 
-        With ``parity``, parity errors are also marked. Raises termios.error.
+        With ``check_parity``, parity errors are also marked. Raises termios.error if the port has failed.
         """
         attributes = termios.tcgetattr(handle)
         attributes[0] |= termios.PARMRK | (termios.INPCK if check_parity else 0)

@@ -77,7 +77,7 @@ class PieceQueue:
         return calculate_piece_motion(self._pieces[index], time_s)
 
     def find_piece_at(self, time_s: float) -> tuple[MotionPiece, float]:
-        """Return the piece that is valid at time ``time_s`` and the end time of that piece.
+        """Return the piece that is active at time ``time_s``, and the end time of that piece.
 
         If no motion is queued for ``time_s``, return a piece at rest.
         """
@@ -103,14 +103,14 @@ class PieceQueue:
 
     @property
     def pieces(self) -> Sequence[MotionPiece]:
-        """Return the queued pieces, including past pieces that have not been discarded yet."""
+        """Return the queued pieces, including those that have ended but are not discarded yet."""
         return self._pieces
 
     def brake_to_rest(self, now: float, decelerations: Sequence[float]) -> float:
-        """Replace the queue with a straight deceleration, and return its end time.
+        """Replace the queue with a straight-line deceleration to rest, and return its end time.
 
         All axes decelerate at the same time. This method is for stops without the host, such as an E-stop
-        or a fault. The axes leave their path only by the curvature of the path within the braking distance.
+        or a fault. On a curved path, the axes leave the path by its curvature within the braking distance.
         """
         return self._brake(now, self.get_commanded_state(now), decelerations)
 
@@ -127,7 +127,7 @@ class PieceQueue:
         return now + dt
 
     def discard_pieces_before(self, time_s: float) -> None:
-        """Discard the pieces that ended before ``time_s``, as soon as at least 64 pieces can be discarded."""
+        """Discard the pieces that ended before ``time_s``, but only if there are at least 64 of them."""
         gone = bisect_right(self._starts, time_s) - 1
         if gone >= _TRIM_COUNT:
             del self._pieces[:gone], self._starts[:gone]

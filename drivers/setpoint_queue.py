@@ -1,8 +1,8 @@
 """Setpoint queue of a driver, which always contains a complete trajectory that ends at rest.
 
 If the host stalls, is killed or is disconnected, the axes therefore stop on their path at the planned
-deceleration without a fault. Hold, override, abort and jog all use one operation, which replaces the end of
-the queue (splice).
+deceleration without a fault. Hold, override, abort and jog all use the same operation (splice), which
+replaces the end of the queue.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def convert_segments(
 ) -> list[MotionPiece]:
     """Convert segments into motion pieces.
 
-    ``yield_cpu`` is called repeatedly, because the conversion of thousands of pieces may take too long for
-    some drives. Raises DriverError if an array has the wrong shape or a value is not finite.
+    ``yield_cpu`` is called repeatedly, because some drives cannot wait until thousands of pieces are
+    converted. Raises DriverError if an array has the wrong shape or a value is not finite.
     """
     count = len(segments.start_times_s)
     shapes = {segments.positions.shape, segments.velocities.shape, segments.accelerations.shape}
@@ -79,7 +79,7 @@ def check_limits(
 ) -> None:
     """Raise DriverError if a setpoint is too fast or outside the travel of a homed axis.
 
-    With ``actual_positions``, an axis that is outside its travel may move back from its present position.
+    ``actual_positions`` permits an axis outside its travel to move back from its current position.
     """
     for n, axis in enumerate(axes):
         if abs(segments.velocities[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
@@ -113,9 +113,9 @@ _REST_SPEED = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
 
 @dataclass(frozen=True, slots=True)
 class JunctionTolerance:
-    """Permitted steps of position (mm or degrees) and velocity of each axis where two pieces meet.
+    """Permitted jumps of position (mm or degrees) and velocity of each axis where two pieces meet.
 
-    The position tolerance covers rounding. The velocity tolerance is that of a corner, ``amax * interval``.
+    The position tolerance covers rounding. The velocity tolerance covers a corner: ``amax * interval``.
     """
 
     position: tuple[float, ...]
@@ -123,7 +123,7 @@ class JunctionTolerance:
 
     @classmethod
     def from_axes(cls, axes: Sequence[AxisProperties]) -> JunctionTolerance:
-        """Create the tolerance for these axes: 0.001 mm or degrees, and their corner velocities."""
+        """Create the tolerance for these axes: 0.001 mm or degrees, and the corner velocity of each axis."""
         return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
 
@@ -149,7 +149,7 @@ class SetpointQueue(PieceQueue):
         self.get_transferred_until: Callable[[], float] = lambda: -math.inf
 
     def splice_segments(self, segments: MotionSegments, now: float) -> None:
-        """Replace all setpoints from ``segments.t[0]`` on.
+        """Replace all setpoints from time ``segments.t[0]`` on.
 
         The segments must start no earlier than the commit time after ``now``. They must continue the
         remaining queue in position and velocity, be continuous, and end at rest. Otherwise DriverError is
@@ -171,10 +171,7 @@ class SetpointQueue(PieceQueue):
         self.replace_pieces_from(start, pieces)
 
     def _check_run(self, segments: MotionSegments) -> None:
-        """Check that each piece begins where the previous piece ends, and that the last piece ends at rest.
-
-        Raises DriverError.
-        """
+        """Raise DriverError if the segments contain a gap or a jump, or do not end at rest."""
         dt = segments.durations_s[:, None]
         t_end = segments.start_times_s + segments.durations_s
         p_end = segments.positions + (segments.velocities + 0.5 * segments.accelerations * dt) * dt
@@ -218,9 +215,9 @@ class SetpointQueue(PieceQueue):
         old: tuple[tuple[float, ...], tuple[float, ...]],
         new: tuple[tuple[float, ...], tuple[float, ...]],
     ) -> None:
-        """Check that old and new position and velocity at the splice point agree within the tolerance.
+        """Raise DriverError if the old and new setpoints do not agree at the splice point.
 
-        Raises DriverError.
+        Position and velocity must agree within the tolerance.
         """
         templates = (
             "{axis}: at the splice point between queued and new setpoints, the position jumps from "
@@ -249,7 +246,7 @@ def plan_axis_move(
     speed: float,
     accel: float,
 ) -> MotionSegments:
-    """Plan a move of one axis from rest to rest: ramp up, run at ``speed``, ramp down.
+    """Plan a move of one axis from rest to rest, with ramps and a phase at constant ``speed``.
 
     The axis with index ``axis_index`` moves to ``target``; the other axes remain at rest.
     """

@@ -20,14 +20,14 @@ _DECAY_RATE = 250.0
 
 
 class SpindlePhaseFilter:
-    """Filter for the angle and speed of a spindle that has no lag at constant speed or acceleration.
+    """Filter for spindle angle and speed, without lag at constant speed or constant acceleration.
 
     It is a fading-memory filter of third order (Morrison 1969). With 4096 steps per revolution, read every
     millisecond, the angle error is below 0.02° at 3000 rpm while the speed oscillates by 2 % at 4 Hz.
     """
 
     def __init__(self, time_s: float, revolutions: float, speed_rev_per_s: float) -> None:
-        """Start the filter with a reading at time ``t`` in seconds and the known speed in rev/s, signed."""
+        """Start the filter with a reading at ``time_s`` in seconds and the known speed in rev/s, signed."""
         self.time_s = time_s
         self.revolutions = revolutions
         self.speed_rev_per_s = speed_rev_per_s
@@ -54,7 +54,7 @@ class SpindlePhaseFilter:
         self.acceleration_rev_per_s2 += lose**3 / (dt * dt) * off
 
     def predict_revolutions(self, time_s: float) -> float:
-        """Return the predicted revolutions at time ``t``, which must be shortly after the last reading."""
+        """Return the predicted revolutions at ``time_s``, which must be shortly after the last reading."""
         dt = time_s - self.time_s
         return self.revolutions + (self.speed_rev_per_s + 0.5 * self.acceleration_rev_per_s2 * dt) * dt
 
@@ -100,7 +100,7 @@ class SpeedLimit(NamedTuple):
 class SpeedLimits:
     """Speed limits of a cam, sorted by position.
 
-    ``min_deceleration`` is the deceleration in rev/s² that is possible everywhere on the cam.
+    ``min_deceleration`` is the deceleration in rev/s² that the axes permit everywhere on the cam.
     """
 
     def __init__(self, limits: Sequence[SpeedLimit], min_deceleration: float) -> None:
@@ -117,8 +117,8 @@ class SpeedLimits:
     def get_max_speed_squared(self, position_rev: float, braking_rev: float) -> float:
         """Return the square of the permitted speed at ``position_rev``, in rev²/s².
 
-        The speed must permit braking to each limit ahead, ``braking_rev`` revolutions before that limit
-        begins.
+        At this speed, the spindle can still slow down to each limit ahead, ``braking_rev`` revolutions
+        before that limit begins.
         """
         near = position_rev + braking_rev
         ahead = bisect_right(self._begins, near)
@@ -130,10 +130,10 @@ class SpeedLimits:
 
 
 class CamGearing:
-    """Cam and the present position of the axes on this cam.
+    """Cam and the current position of the axes on this cam.
 
-    The object is not thread-safe, so the driver must lock it. ``rest_position`` is the rest position of the
-    axes. Raises DriverError if the spindle does not turn in the direction of the cam, and in the cases that
+    The object is not thread-safe, so the driver must lock it. The axes start at ``rest_position``. Raises
+    DriverError if the spindle does not turn in the direction of the cam, and in the cases that
     ``core.ports.SpindleGear`` lists.
     """
 
@@ -157,9 +157,9 @@ class CamGearing:
         self.load_cam(cam)
 
     def load_cam(self, cam: Cam) -> None:
-        """Replace the present cam from the start of the new path on.
+        """Replace the current cam from the start of the new path on.
 
-        Raises DriverError if the new cam counts from another index pulse.
+        Raises DriverError if the new cam counts from a different index pulse.
         """
         if not self.is_same_cam(cam):
             raise DriverError(
@@ -181,7 +181,7 @@ class CamGearing:
         return SetpointQueue(self._slides.names, self._standing, 0.0, per_turn)
 
     def is_same_cam(self, cam: Cam) -> bool:
-        """Return whether a cam has the same reference as the present cam.
+        """Return whether a cam has the same reference as the current cam.
 
         The cams must count from the same index pulse and in the same direction.
         """
@@ -218,14 +218,14 @@ class CamGearing:
         return self._queue.get_commanded_state(math.inf)[0]
 
     def will_be_at_rest(self, time_s: float) -> bool:
-        """Return whether all axes will still be at their rest position at time ``t``.
+        """Return whether all axes will still be at their rest position at time ``time_s``.
 
-        The prediction assumes the present spindle speed.
+        The prediction assumes the current spindle speed.
         """
         return self.predict_motion(time_s)[0] == self._standing
 
     def predict_end_time(self) -> float:
-        """Return the time when the axes reach the end of the cam at the present spindle speed.
+        """Return the time when the axes reach the end of the cam at the current spindle speed.
 
         Return inf if the spindle is at rest.
         """
@@ -233,14 +233,14 @@ class CamGearing:
         return self._t + left / self._speed if self._speed > _STANDSTILL_REV_PER_S else math.inf
 
     def predict_motion(self, time_s: float) -> MotionState:
-        """Return the positions and velocities that the last reading predicts for time ``t``."""
+        """Return the positions and velocities at time ``time_s``, predicted from the last reading."""
         p, v = self._queue.get_commanded_state(self.cam_position_rev + self._speed * (time_s - self._t))
         return p, tuple([each * self._speed for each in v])
 
     def calculate_setpoint(self, time_s: float, reading_time: float, reading_rev: float) -> AxisMotion:
-        """Add an encoder reading and return the positions, velocities and accelerations for time ``t``.
+        """Add an encoder reading and return the positions, velocities and accelerations for ``time_s``.
 
-        The accelerations are only those that a change of the spindle speed causes.
+        The accelerations include only those that a change of the spindle speed causes.
         """
         self._phase.add_reading(reading_time, reading_rev)
         if time_s > self._t:
@@ -270,10 +270,10 @@ class CamGearing:
         self.cam_position_rev += self._speed * dt
 
     def _speed_and_accel_limit(self, reach: float) -> tuple[float, float]:
-        """Return the limits of the speed (rev/s) and of its change (rev/s²) at the present position.
+        """Return the limits of spindle speed (rev/s) and acceleration (rev/s²) at the current position.
 
-        The limits are inf if the axes are at rest there. The speed also permits braking for the limits
-        ahead, ``reach`` revolutions early, because a setpoint is valid for its whole interval.
+        The limits are inf where the axes are at rest. The speed also permits braking to each limit ahead,
+        ``reach`` revolutions before that limit, because a setpoint is valid for its whole interval.
         """
         _, per_turn, accel = self._queue.get_commanded_motion(self.cam_position_rev)
         bend = math.inf
@@ -284,7 +284,7 @@ class CamGearing:
         return math.sqrt(self._walls.get_max_speed_squared(self.cam_position_rev, reach)), bend
 
     def _list_speed_limits(self, pieces: Sequence[MotionPiece]) -> tuple[list[SpeedLimit], float]:
-        """Return the speed limit of each piece, and the deceleration that is possible in all pieces."""
+        """Return the speed limit of each piece, and the deceleration that all pieces permit."""
         walls, softest = [], math.inf
         for piece in pieces:
             most = math.inf
@@ -311,7 +311,7 @@ class CamGearing:
 
 
 class GearedQueue(SetpointQueue):
-    """Setpoint queue whose setpoints advance with the time or with the spindle.
+    """Setpoint queue whose setpoints follow either the time or the spindle angle.
 
     The queue is not thread-safe, so the driver must lock it.
     """
@@ -325,7 +325,7 @@ class GearedQueue(SetpointQueue):
     def is_engaged(self) -> bool:
         """Return whether the axes follow the spindle.
 
-        The driver must then call ``calculate_setpoint`` for every setpoint.
+        If they do, the driver must call ``calculate_setpoint`` for every setpoint.
         """
         return self._gearing is not None
 
@@ -341,7 +341,7 @@ class GearedQueue(SetpointQueue):
     def engage_cam(self, cam: Cam, phase: SpindlePhaseFilter, now: float) -> None:
         """Make the axes follow the spindle from time ``now`` on.
 
-        ``phase`` measures the spindle. Raises DriverError if the axes move, and in the cases that
+        ``phase`` measures the spindle angle. Raises DriverError if an axis is moving, and in the cases that
         ``core.ports.SpindleGear`` lists.
         """
         gearing = self._gearing
@@ -357,7 +357,7 @@ class GearedQueue(SetpointQueue):
         self._gearing = CamGearing(cam, phase, self._slides, self._rest)
 
     def calculate_setpoint(self, time_s: float, reading_time: float, reading_rev: float) -> AxisMotion:
-        """Return the setpoint for time ``t`` from an encoder reading, while the axes follow the spindle."""
+        """Return the setpoint for ``time_s`` from an encoder reading, while the axes follow the spindle."""
         assert self._gearing is not None
         motion = self._gearing.calculate_setpoint(time_s, reading_time, reading_rev)
         if self._gearing.is_finished:
@@ -365,14 +365,14 @@ class GearedQueue(SetpointQueue):
         return motion
 
     def reset_to(self, position: Sequence[float]) -> None:
-        """Stop following the spindle and stay at rest at this position."""
+        """Stop following the spindle, and set the axes at rest at this position."""
         self._gearing = None
         super().reset_to(position)
 
     def get_end_time(self, now: float) -> float:
         """Return the end time of the queue in seconds.
 
-        If the axes follow the spindle, the end is predicted at the present spindle speed.
+        If the axes follow the spindle, the end is predicted at the current spindle speed.
         """
         if self._gearing is None:
             return super().get_end_time(now)
@@ -383,9 +383,9 @@ class GearedQueue(SetpointQueue):
         return max(ends, now + self.commit)  # The predicted end may pass before the end is reached.
 
     def get_commanded_state(self, time_s: float) -> MotionState:
-        """Return the positions and velocities at time ``t``.
+        """Return the positions and velocities at time ``time_s``.
 
-        If the axes follow the spindle, the values are predicted at the present spindle speed.
+        If the axes follow the spindle, the values are predicted at the current spindle speed.
         """
         return (
             super().get_commanded_state(time_s)
@@ -394,7 +394,7 @@ class GearedQueue(SetpointQueue):
         )
 
     def splice_segments(self, segments: MotionSegments, now: float) -> None:
-        """Splice setpoints that advance with the time.
+        """Splice time-based setpoints into the queue.
 
         Raises DriverError if the axes still follow the spindle at the start time of the setpoints.
         """
@@ -426,7 +426,7 @@ class GearedQueue(SetpointQueue):
     def _leave_gearing(self, t: float, gearing: CamGearing) -> None:
         """Stop following the spindle at the end of the cam.
 
-        If the cam has following segments, the axes continue with these segments.
+        If segments follow the cam, the axes continue with these segments.
         """
         self.reset_to(gearing.end_position)
         then = gearing.loaded_cam.following_segments

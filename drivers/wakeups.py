@@ -1,7 +1,7 @@
 """Wake-ups, clocks and background connection attempts for drivers.
 
-With a wake-up, a driver reports a change to its control at once, so that a machine at rest is polled less
-often. A separate thread reopens lost connections, so that the control never waits for a missing port or
+With a wake-up, a driver reports a change to the control at once, so the control can poll a machine at rest
+less often. A separate thread reopens lost connections, so the control never waits for a missing port or
 process.
 """
 
@@ -28,8 +28,8 @@ _CHUNK = 1 << 16
 class LocalWakeup:
     """``core.ports.WakeupSignal`` within one process.
 
-    The driver supplies ``is_settled``, which returns whether the machine state stays the same until a
-    wake-up.
+    The driver supplies ``is_settled``, which returns whether the machine state will not change before the
+    next wake-up.
     """
 
     def __init__(self, is_settled: Callable[[], bool]) -> None:
@@ -66,7 +66,7 @@ class ProcessWakeup:
     def wait(self, seconds: float, file_handles: Sequence[int] = ()) -> bool:
         """Wait at most ``seconds`` for a wake-up or a readable file, and return whether either occurred.
 
-        Wake-ups that were sent before the call also count.
+        A wake-up that was sent before the call also ends the wait.
         """
         try:
             if not select.select([self._near.fileno(), *file_handles], [], [], seconds)[0]:
@@ -85,7 +85,7 @@ class ProcessWakeup:
 
 
 class ActionLock:
-    """Lock for actions on a machine, which wakes up the control when the lock is released."""
+    """Lock for actions on a machine; releasing the lock wakes up the control."""
 
     def __init__(self, lock: AbstractContextManager[object], wake: Callable[[], None]) -> None:
         self._lock, self._ring = lock, wake
@@ -119,25 +119,25 @@ class RealClock:
         return time.monotonic() - self.origin_s
 
     def sleep_until(self, time_s: float) -> None:
-        """Wait until time ``time_s``; return at once if this time has passed."""
+        """Wait until time ``time_s``, or return at once if that time has passed."""
         left = time_s - self.now()
         if left > 0:
             time.sleep(left)
 
 
 class ManualClock:
-    """Thread-safe clock whose time advances only when a method is called, including ``sleep_until``."""
+    """Thread-safe clock that advances only when ``advance`` or ``sleep_until`` is called."""
 
     def __init__(self, start: float = 0.0) -> None:
         self._t = start
         self._lock = threading.Lock()
 
     def now(self) -> float:
-        """Return the present time in seconds."""
+        """Return the current time in seconds."""
         return self._t
 
     def sleep_until(self, time_s: float) -> None:
-        """Advance the clock to ``time_s`` at once, but never backward."""
+        """Set the clock to ``time_s`` without waiting, but never backward."""
         with self._lock:
             self._t = max(self._t, time_s)
 
@@ -156,7 +156,7 @@ T = TypeVar("T")
 class ConnectionAttempt(Generic[T]):
     """Attempt to reopen a lost connection in a separate thread.
 
-    With ``synchronous``, the connection is opened in the calling thread.
+    If ``synchronous`` is true, the connection is opened in the calling thread instead.
     """
 
     def __init__(self, open_connection: Callable[[], T], *, synchronous: bool = False) -> None:
@@ -168,7 +168,7 @@ class ConnectionAttempt(Generic[T]):
             threading.Thread(target=self._run, name="reopening", daemon=True).start()
 
     def take_connection(self) -> T | None:
-        """Return the opened connection, or None while it is being opened.
+        """Return the opened connection, or None while the connection is still being opened.
 
         Raises DriverError if the connection could not be opened.
         """

@@ -8,7 +8,7 @@ _HERE = Path(__file__).parent
 
 
 def list_machine_names() -> frozenset[str]:
-    """Return the names of the shipped machine files, without their ending."""
+    """Return the names of the shipped machine files without their file extension."""
     return frozenset(each.stem for each in (_HERE / "machines").glob("*.toml"))
 
 

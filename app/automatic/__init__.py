@@ -1,1 +1,1 @@
-"""Automatic page, whose model is ``Desk``."""
+"""Automatic page. Its model is ``Desk``."""

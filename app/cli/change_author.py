@@ -1,4 +1,4 @@
-"""Identification of the user who makes a change on the command line, and check of the user's access level.
+"""Identification of a user who changes data on the command line, and access level check.
 
 If access levels are off, nothing is checked. Otherwise the user must enter the PIN, either at the terminal
 or as a line of standard input.
@@ -158,9 +158,9 @@ RESET = "RESET"
 
 
 def _confirm_reset(error: StoreError, actions: Collection[ProtectedChange]) -> str:
-    """Return the user name for the log.
+    """Return the user name for the log after the user confirms a restore at the machine.
 
-    Raises CommandError unless the user confirms a restore at the machine.
+    Raises CommandError if the user does not confirm the restore.
     """
     if ProtectedChange.RESTORE not in actions:
         raise CommandError(

@@ -1,4 +1,4 @@
-"""Argument parser of ``turndesk``, which accepts each option only once and only in full.
+"""Argument parser of ``turndesk``. It rejects repeated and abbreviated options.
 
 The parser accepts an option only if the command uses it. Screen options may be written ahead of a command,
 as in ``turndesk --machine FILE prove …``. They then have the same effect as after the command, or are
@@ -67,14 +67,14 @@ class SubcommandsAction(argparse._SubParsersAction):  # type: ignore[type-arg]
 
 
 class HelpFormatter(argparse.HelpFormatter):
-    """Help formatter for the width of the terminal that does not import the archive modules."""
+    """Help formatter that uses the width of the terminal and does not import the archive modules."""
 
     def __init__(self, prog: str, *args: Any, **kwargs: Any) -> None:
         super().__init__(prog, *args, **{"width": _terminal_width() - 2, **kwargs})
 
 
 def _terminal_width() -> int:
-    """Return the width of the terminal in columns, determined like ``shutil.get_terminal_size``."""
+    """Return the width of the terminal in columns, as ``shutil.get_terminal_size`` would."""
     words = os.environ.get("COLUMNS", "")
     columns = int(words) if words.isdecimal() else 0
     if columns <= 0 and sys.__stdout__ is not None:
@@ -84,7 +84,7 @@ def _terminal_width() -> int:
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Argument parser that reports errors in one line and accepts each option only once and only in full."""
+    """Argument parser that reports errors in one line and rejects repeated and abbreviated options."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **{"allow_abbrev": False, "formatter_class": HelpFormatter, **kwargs})
@@ -114,7 +114,7 @@ class CommandParser(argparse.ArgumentParser):
         super()._check_value(action, value)
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse the arguments like argparse, but name the most similar option if an option is unknown."""
+        """Parse the arguments as argparse does, but name the most similar option if an option is unknown."""
         self._check_first_options(sys.argv[1:] if args is None else args)
         found, rest = self.parse_known_args(args, namespace)
         if rest:
@@ -144,7 +144,7 @@ class CommandParser(argparse.ArgumentParser):
     def _raise_unknown(self, words: str, name: str, elsewhere_message: str) -> NoReturn:
         """Report unknown arguments and exit.
 
-        ``elsewhere_message`` is the message if a different parser has the option.
+        ``elsewhere_message`` is the message to print if the option belongs to a different parser.
         """
         options = self._all_options()
         if name in options:
@@ -159,7 +159,7 @@ class CommandParser(argparse.ArgumentParser):
         )
 
     def print_help(self, file: Any = None) -> None:
-        """Print the help, and raise an OSError that argparse would suppress."""
+        """Print the help. Raises OSError if printing fails, although argparse would suppress the error."""
         out = file or sys.stdout
         out.write(self.format_help())
         out.flush()
@@ -213,7 +213,7 @@ def has_only_screen_options(argv: Sequence[str]) -> bool:
 
 
 def insert_program_option(argv: Sequence[str], commands: Collection[str]) -> Sequence[str]:
-    """Return the arguments with ``--program`` inserted ahead of a program file.
+    """Return the arguments with ``--program`` inserted before the name of a program file.
 
     The option is inserted if the first word is a file and not a command. ``commands`` are the names of all
     commands. A command takes precedence over a file of the same name.
@@ -238,7 +238,7 @@ def move_demo_first(argv: Sequence[str]) -> Sequence[str]:
 
 
 def assign_screen_options(args: argparse.Namespace) -> argparse.Namespace:
-    """Assign the options written before a command to the command, and return the arguments.
+    """Copy the options written before a command to the command's arguments, and return the arguments.
 
     Raises CommandError if the command does not have such an option.
     """

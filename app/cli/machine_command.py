@@ -104,10 +104,7 @@ def _report_file(source: str, out: str | None, hal: GeneratedHal) -> None:
 
 
 def _save_hal(output_path: Path, text: str, extra_files: Mapping[str, str]) -> None:
-    """Write all files, which must not exist yet.
-
-    Raises CommandError if a file exists or cannot be written.
-    """
+    """Write all files. Raises CommandError if a file already exists or cannot be written."""
     files = {output_path: text, **{output_path.parent / name: more for name, more in extra_files.items()}}
     for path in files:
         if path.exists():
@@ -240,7 +237,7 @@ def _unaccepted_changes(machine: Machine) -> Sequence[KeyChange]:
 
 
 def format_check_table(rows: TableRows) -> Iterator[str]:
-    """Yield the lines of the table, at most 80 characters long. Long details continue on the next line."""
+    """Yield the lines of the check table, at most 80 characters long. Long details are wrapped."""
     widths = [max((len(row[column]) for row in rows), default=0) for column in range(3)]
     start = " " * (2 + sum(width + 2 for width in widths))
     for *cells, detail in rows:
@@ -251,7 +248,7 @@ def format_check_table(rows: TableRows) -> Iterator[str]:
 
 
 def summarize_names(names: Sequence[str]) -> str:
-    """Return the names as one line, in which several inputs or outputs are only counted."""
+    """Return the names as one line. If there are several inputs or outputs, only their number is listed."""
     parts = [name for name in names if not name.startswith(("input ", "output "))]
     for kind in ("input", "output"):
         terminals = [name for name in names if name.startswith(f"{kind} ")]

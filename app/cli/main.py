@@ -78,7 +78,7 @@ def list_commands() -> Sequence[str]:
 
 
 def _feature_commands() -> Mapping[str, Subcommand]:
-    """Return the subcommands of the optional features."""
+    """Return the subcommands of the optional features by name."""
     return {name: each for extra in extras().values() for name, each in extra.subcommands.items()}
 
 
@@ -99,7 +99,7 @@ def build_parser(
 ) -> argparse.ArgumentParser:
     """Return the parser for the named subcommands, or for all subcommands if ``commands`` is None.
 
-    ``without_options`` adds the subcommands without their options, so that no module is imported.
+    If ``without_options`` is true, subcommands have no options, so that their modules are not imported.
     """
     parser = CommandParser(
         prog="turndesk",
@@ -125,7 +125,7 @@ def build_parser(
 
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
-    """Return the requested command, so that only its module is imported, or all commands if it is invalid."""
+    """Return only the requested command, or all commands if the requested command is invalid."""
     first = next((word for word in argv if word != "--demo"), "")
     if first in CORE_COMMANDS:
         return (first,)
@@ -202,21 +202,21 @@ def _is_library_missing(error: ImportError) -> bool:
 
 
 def _flush_output(status: int) -> int:
-    """Flush stdout and return ``status``. A full disk could not be reported later."""
+    """Flush stdout and return the exit status. An error such as a full disk is thus still reported."""
     sys.stdout.flush()
     return status
 
 
 def _discard_output() -> None:
-    """Discard the output that Python would write at exit."""
+    """Discard buffered output, which Python would otherwise write at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _clear_interrupt() -> None:
     """Clear the interpreter's interrupt flag, so that the exit status is used.
 
-    Ctrl+C during the creation of a dataclass (``exec`` of a text) marks the interpreter as ended by the
-    signal, even if the exception is caught. Executing another text clears the flag.
+    If Ctrl+C interrupts the creation of a dataclass (``exec`` of a string), Python exits as if ended by the
+    signal, even if the exception is caught. Executing another string clears the flag.
     """
     exec("")
 

@@ -135,9 +135,9 @@ def read_inputs_file(path: Path, known_names: Collection[str] = ()) -> dict[str,
     """Return input states by name. If ``known_names`` is not empty, other names are errors.
 
     The file has a table [inputs] with ``10 = true`` for PLC input 10 and ``"TB2-5" = false`` for a
-    terminal. M95 reads the input that the control calls 7, which is terminal TB2-9. The state of ``7`` is
-    therefore also used for TB2-9 if the file does not contain TB2-9. Raises CommandError that lists every
-    error.
+    terminal. M95 reads terminal TB2-9, which the control calls input 7. The state of ``7`` is therefore
+    also used for TB2-9 if the file does not contain TB2-9. Raises CommandError, which lists every error, if
+    the file is invalid.
     """
     from app.desk.toml_file import make_unknown_key_error, raise_mistakes, read_toml
 

@@ -106,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _uses_workers(args: argparse.Namespace) -> bool:
-    """Return whether workers prove the programs and a table is printed.
+    """Return whether the programs are proved by workers and the results printed as a table.
 
     This applies to folders and to the options that specify workers. Raises CommandError for invalid
     combinations.
@@ -153,9 +153,9 @@ def _create_job(args: argparse.Namespace) -> ProofJob:
 
 
 def _other_offsets(args: argparse.Namespace, setup: Setup) -> ComparisonOffsets | None:
-    """Return the offsets of --compare, or None without the option.
+    """Return the offsets of --compare, or None if the option is not used.
 
-    Raises CommandError that lists every error.
+    Raises CommandError, which lists every error, if the offsets are invalid.
     """
     if args.compare is None:
         return None
@@ -224,7 +224,7 @@ def _silenced_text(report: ProofReport) -> str:
 
 
 def _limits_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
-    """Return the travel limits of the program as text, X and Z on a lathe and all axes on a mill."""
+    """Return the travel limits of the program as text, for X and Z on a lathe or all axes on a mill."""
     if report.mill_results is not None:
         from app.cli.outputs.klartext_output import format_machine_limits
 
@@ -234,14 +234,14 @@ def _limits_text(report: ProofReport, length: Callable[[float], float], unit: st
 
 
 def _eased_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
-    """Return the corner tolerance as text, or an empty text if the machine file does not specify one."""
+    """Return the corner tolerance as text, or an empty string if the machine file has none."""
     if not report.corner_tolerance_mm:
         return ""
     return f"  joints of short chords within {length(report.corner_tolerance_mm):.5f} {unit} of their words\n"
 
 
 def _paths_text(report: ProofReport) -> str:
-    """Return the number and cycle times of the program paths as text.
+    """Return the number and the cycle times of the paths that the program can take, as text.
 
     The paths depend on inputs and block delete.
     """

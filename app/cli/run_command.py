@@ -56,7 +56,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prove the program and run one cycle. Return 1 if the program or the run has errors."""
+    """Prove the program and run one cycle. Return 1 if the proof or the run has errors."""
     from core.executor.job import make_job
 
     path = Path(args.file)
@@ -105,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _prove_program(args: argparse.Namespace, circumstances: CommandContext, job: Job) -> ProofReport:
-    """Return the proof of the program and its part."""
+    """Return the proof of the program and of its part."""
     from app.cli.part_options import apply_stored_stock, read_part_settings
     from core.proving.part_proof import prove_with_part
 

@@ -67,7 +67,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_line_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for both directions. Missing values are read from [dnc] of the machine file."""
+    """Add the options for both directions. Their default values are in [dnc] of the machine file."""
     parser.add_argument("--machine", metavar="FILE", help="machine file with the settings in [dnc]")
     parser.add_argument(
         "--port",
@@ -182,7 +182,7 @@ def _send(args: argparse.Namespace, settings: SerialLineModel) -> int:
 
 
 def _check_readable(path: Path) -> None:
-    """Raise CommandError if the file cannot be read, before the serial line is opened."""
+    """Raise CommandError if the file cannot be read. The check precedes the opening of the serial line."""
     try:
         with open_input_file(path) as file:
             file.read(1)
@@ -260,7 +260,7 @@ _POLL_INTERVAL_S = 0.1  # s
 
 
 def _format_received(progress: TransferProgress) -> str:
-    """Return the reason why the received data is not a program."""
+    """Return a text that gives the reason why the received data is not a program."""
     if progress.wait_reason == "noise":
         return Message(
             "the received data is not text ({received}); check --baud, --bits, --parity and the cable",
@@ -273,7 +273,7 @@ def _format_received(progress: TransferProgress) -> str:
 
 
 def _tell(last_reason: str, progress: TransferProgress) -> str:
-    """Report received data that is not a program, and return the last reported reason.
+    """Report received data that is not a program, and return the reason that was reported last.
 
     Each reason is reported once.
     """

@@ -122,7 +122,7 @@ def _completion(args: argparse.Namespace) -> int:
 
 
 def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
-    """Make shell completion offer ``files`` for every argument without choices.
+    """Make shell completion offer ``files`` for every argument that has no fixed choices.
 
     Most of these arguments are file names.
     """

@@ -1,6 +1,6 @@
 """The command ``turndesk store``, which manages the store.
 
-The command performs backup, restore, export, import, upgrade and verification of the store.
+The command backs up, restores, exports, imports, upgrades and verifies the store.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _row_values(rows: Mapping[int, OffsetRow]) -> dict[int, Mapping[str, FieldValue]]:
-    """Return each imported row as a change of all fields of the row."""
+    """Return the imported rows by number. Each row becomes a change of all its fields."""
     return {number: row._asdict() for number, row in rows.items()}
 
 

@@ -1,7 +1,4 @@
-"""The command ``turndesk trace FILE --out FILE.csv``, which writes the setpoints for the drives.
-
-The setpoints have time stamps.
-"""
+"""The command ``turndesk trace FILE --out FILE.csv``, which writes time-stamped drive setpoints."""
 
 from __future__ import annotations
 
@@ -103,7 +100,7 @@ def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
 
 
 class _Table:
-    """Columns of a machine's CSV file, which are time, axes in order, spindle angle and program line."""
+    """Columns of a machine's CSV file: time, axes in order, spindle angle and program line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
         from app.cli.outputs.units import MM_PER_INCH
@@ -126,7 +123,7 @@ class _Table:
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: ProgramSource) -> None:
-    """Write the complete file or no file, even after errors of the program, a full disk or Ctrl+C."""
+    """Write the complete file. After a program error, a full disk or Ctrl+C, no file remains."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:

@@ -50,9 +50,9 @@ def create_desk_and_executor(
     journal: Journal | None = None,
     records_folder: Path | None = None,
 ) -> tuple[Desk, Executor]:
-    """Return the screen model and the executor, which is not yet ticked. Events are written to ``journal``.
+    """Return the screen model and the executor, which has not run a tick yet. ``journal`` receives events.
 
-    Scope records are saved in the folder ``records_folder``. None stores the records only in memory.
+    Scope records are saved in the folder ``records_folder``. If it is None, they are only in memory.
     """
     machine = read_machine(machine_file)
     if journal is not None:
@@ -129,7 +129,7 @@ def create_desk(
 
 
 def _handle_late_store(desk: Desk, journal: Journal) -> None:
-    """Report data that was unknown at startup because the store was unavailable.
+    """Report data that was unknown at startup because the store could not be opened then.
 
     The function is called in a different thread.
     """
@@ -148,7 +148,7 @@ def _report_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> 
 
 
 class EventDistributor:
-    """Distributor of events to the screen model and the journal, if these exist."""
+    """Distributor of events to the screen model and to the journal. Either of them may be None."""
 
     def __init__(
         self,
@@ -161,7 +161,7 @@ class EventDistributor:
         self._clock = clock
 
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
-        """Distribute an event, unless an earlier screen has stored it. In that case, confirm ``receipt``."""
+        """Distribute an event. If an earlier screen has stored the event, only confirm its ``receipt``."""
         if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
             receipt.confirm_storage()
             if self.journal is not None:
@@ -244,7 +244,7 @@ def _list_stops(journal: Journal) -> Sequence[EventRow]:
 
 
 def _discard(_value: InterruptedJob | None) -> None:
-    """Discard the interrupted job of a screen that has no store."""
+    """Discard the interrupted job. This function is for a screen that has no store."""
 
 
 def _connected(machine: Machine, clock: Clock) -> ConnectedMachine:
@@ -253,7 +253,7 @@ def _connected(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _describe_drives(machine: Machine) -> str:
-    """Return a text for the operator that says which parts of the machine are simulated."""
+    """Return a text that tells the operator which parts of the machine are simulated."""
     if not is_simulated(machine):
         return machine.backend.upper()
     return "SIMULATED AXES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"

@@ -105,7 +105,7 @@ def _register_editor(setup: PageSetup) -> None:
 
 
 def _create_editor(setup: PageSetup) -> EditorModel:
-    """Return the editor, which proves the edited text without saving a version after each key press."""
+    """Return the editor. It proves the edited text and does not save a version after each key press."""
     from app.editor.editor_model import EditorModel
     from app.editor.version_history import NullArchive
 
@@ -185,7 +185,7 @@ def _register_mill_touch(setup: PageSetup) -> None:
 
 
 def _register_searchto(setup: PageSetup) -> None:
-    """Register SEARCHTO, which moves at the manual rapid, and at a lower speed inside the part."""
+    """Register SEARCHTO. It moves at the manual rapid rate, but more slowly inside the part."""
     desk, rapid = setup.desk, setup.machine.limits.manual_rapid
     choices = OperatorChoices(outside_speed_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
 
@@ -213,7 +213,7 @@ def _register_searchto(setup: PageSetup) -> None:
 
 
 def register_sounds(setup: PageSetup) -> None:
-    """Register the sounds of the screen, which the special functions need."""
+    """Register the sounds of the screen. The special functions need these sounds."""
     sounds = EventSounds(setup.desk, setup.persistence)
     setup.desk.page_registry.attach_model(sounds)
     setup.desk.page_registry.add_frame_watcher(sounds.play_new_event_sounds)

@@ -1,7 +1,4 @@
-"""Services of the operator screen.
-
-The services are supervised threads, the status file, the daily backup and the shop network.
-"""
+"""Services of the operator screen: supervised threads, status file, backup and shop network."""
 
 from __future__ import annotations
 
@@ -41,7 +38,7 @@ SUPERVISED_THREAD_TEXTS = {
 
 
 def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
-    """Report that a supervised thread has ended. The machine continues.
+    """Report that a supervised thread has ended. The machine continues to run.
 
     The function is called in the watchdog's thread.
     """

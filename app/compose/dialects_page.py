@@ -1,4 +1,4 @@
-"""Generator of the part of ``docs/dialects.md`` that lists languages, their codes and the shipped machines.
+"""Generator of the lists of languages, codes and shipped machines in ``docs/dialects.md``.
 
 ``python -m app.compose.dialects_page docs/dialects.md`` writes this part between its begin and end marks.
 """
@@ -27,7 +27,7 @@ _MACHINES = Path(__file__).parents[2] / "resources" / "machines"
 
 
 def load_shipped_machines() -> dict[str, Machine]:
-    """Return every shipped machine by the name that ``--machine`` accepts."""
+    """Return every shipped machine. The keys are the names that ``--machine`` accepts."""
     names = sorted(path.stem for path in _MACHINES.glob("*.toml"))
     return {name: load_shipped_machine(name) for name in names}
 

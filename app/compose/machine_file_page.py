@@ -245,7 +245,7 @@ def _bounds(field: KeyField) -> str:
 
 
 def _format_in_units(unit: FileUnit, *values: float) -> str:
-    """Return values of the model as text in file units, with lengths in both mm and inches."""
+    """Return values of the model as text in the units of a machine file, lengths in mm and inches."""
     if unit not in LENGTH_UNITS:
         return " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
     if values == (0.0,):
@@ -271,7 +271,7 @@ def _default(field: KeyField) -> str:
 def _is_possible(field: KeyField) -> bool:
     """Return whether a file could contain the default value.
 
-    A default out of range means that there is no default.
+    A default value outside the permitted range means that the key has no default.
     """
     value = field.default
     if isinstance(value, bool | str) or value is None:

@@ -1,4 +1,4 @@
-"""Table that registers the optional features, and interface of a feature.
+"""Table of the installed optional features, and interface of a feature.
 
 The code of a feature is in ``core/extras/NAME`` (without Qt), ``app/extras/NAME`` and
 ``tests/extras/NAME``. ``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``OptionalFeature`` that
@@ -142,18 +142,18 @@ class OptionalFeature:
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         """Return the outputs that this feature adds to --json.
 
-        Each key is the name of the output that precedes them in the reference.
+        In the reference, the new outputs follow the output that is their key.
         """
         return {}
 
     def words(self) -> Sequence[str]:
-        """Return screen texts that look like identifiers in the source, for the list of all texts."""
+        """Return the screen texts to list as texts although they look like identifiers in the source."""
         return ()
 
     def list_shop_outputs(self) -> Sequence[JsonOutput]:
-        """Return declarations of the data that this feature sends to the shop network.
+        """Return descriptions of the data that this feature sends to the shop network.
 
-        ``command`` of a declaration is the title of its section in the reference.
+        The member ``command`` of each description is the title of its section in the reference.
         """
         return ()
 

@@ -1,4 +1,4 @@
-"""Data of a part that is known before its proof, such as tools and clamping of the stock.
+"""Data of a part that are known before its proof, such as the tools and the clamping.
 
 The store has the stock of each program, by program name. The stock is never written to the program text.
 """
@@ -54,7 +54,7 @@ def apply_stored_clamping(
 ) -> PartSettings:
     """Return the part settings with the stored stick-out and the stored silenced checks.
 
-    ``is_explicit`` retains the current stick-out, because it was specified explicitly.
+    If ``is_explicit`` is true, the current stick-out is retained, because the user specified it.
     """
     if stored_part.stick_out_mm is not None and not is_explicit and machine.clamping.diameter:
         part_settings = replace(part_settings, clamping=_stock_clamping(machine, stored_part.stick_out_mm))
@@ -68,7 +68,7 @@ def _axis_travel(machine: Machine) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def _stock_clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
-    """Return the clamping by chuck or collet and by the tailstock, or None if it is unknown.
+    """Return how the chuck, collet and tailstock hold the stock, or None if the clamping is unknown.
 
     Without a stick-out, only the chuck's speed limit and the tailstock apply.
     """
@@ -114,8 +114,8 @@ def read_stored_parts(programs: Iterable[str]) -> dict[str, StoredPart]:
 def save_stock(program: str, text: str, stick_out_mm: float | None) -> None:
     """Save the stock text and the stick-out of a program.
 
-    ``stick_out`` is in mm. None retains the stored stick-out. Raises CommandError if the store cannot be
-    written.
+    ``stick_out`` is in mm. If it is None, the stored stick-out does not change. Raises CommandError if the
+    store cannot be written.
     """
     from core.store.store import Store, StoreError
 

@@ -1,4 +1,4 @@
-"""Proof of the loaded program's part, with the known part data and the severity of each finding.
+"""Proof of the part that the loaded program makes, with the severity of each finding.
 
 The part is proved after the program. Decision 0011 specifies which functions wait for the proof of the
 part.
@@ -63,9 +63,9 @@ class PartProver:
     def read_settings(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
-        """Return the specified stock, tools and clamping, and a finding or None.
+        """Return the specified stock, tools and clamping, and a finding if the stock cannot be used.
 
-        The finding reports that the specified stock cannot be used.
+        Without such a problem, the finding is None.
         """
         from app.compose.part_data import apply_stored_clamping, read_known_part
         from app.compose.specified_stock import StockContext, read_stock
@@ -144,7 +144,7 @@ def _unusable(why: str) -> Diagnostic:
 
 
 def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) -> PartProof:
-    """Return the proof with all findings.
+    """Return the proof with a severity for each finding.
 
     The proof also contains the texts of the findings that are announced when the operator starts the
     program.

@@ -1,6 +1,6 @@
 """Proving of programs, MDI lines and restarts on this machine.
 
-The module also proves the effect of other offsets on a path.
+The module also proves how other offsets would change a path.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ def create_loading_steps(
     """Return the functions that load a program.
 
     Offsets, tool shapes and the stored part data of a program are read at the time of loading. The unit and
-    the rapid rate of the previous job are then read from ``read_modal_state``. ``draw_pictures`` means that
-    programs are drawn and their parts proved.
+    the rapid rate of the previous job are then read from ``read_modal_state``. If ``draw_pictures`` is
+    true, programs are drawn and their parts proved.
     """
 
     def new_job(source: ProgramSource, block_delete: bool) -> Job:
@@ -80,7 +80,7 @@ def create_loading_steps(
 
 
 class _ProofAndPicture:
-    """Proof and picture of a program from a single pass. The picture is saved until it is requested."""
+    """Proof and picture of a program, made in a single pass. The picture is stored until it is requested."""
 
     def __init__(self, machine: Machine, parts: PartProver, *, pictures: bool) -> None:
         self._machine, self._parts = machine, parts
@@ -150,7 +150,7 @@ def _read(path: Path) -> ProgramSource:
 
 
 def _read_complete(source: ProgramSource, *folders: Path) -> ProgramSource:
-    """Return the program with its subprograms, which are read from its folder or the program folders."""
+    """Return the program with its subprograms, which are in its own folder or the program folders."""
     from core.language.called_files import load_called_files
 
     return load_called_files(source, [*folders, find_data_folder() / "programs", get_samples_folder()])
@@ -160,7 +160,7 @@ def _read_complete(source: ProgramSource, *folders: Path) -> ProgramSource:
 
 
 def create_proof(job: Job, report: ProofReport) -> Proof:
-    """Return the executor's proof of this job. The report must belong to the text and setup of this job."""
+    """Return the proof of this job for the executor. The report must be for the same text and setup."""
     return Proof(
         digest=job.digest,
         errors=tuple(d.format_one_line(job.source.name) for d in report.errors),
@@ -197,7 +197,7 @@ def create_thumbnail_drawer(
 
 
 def create_drawer(machine: Machine) -> DrawPaths:
-    """Return a function that draws the path of a job with a specified offset for each tool."""
+    """Return a function that draws the path of a job with specified offsets for the tools."""
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
         from app.path.path_picture import build_picture

@@ -1,4 +1,4 @@
-"""Transfer of programs over a serial line, which sends files and checks received programs."""
+"""Transfer of programs over a serial line: sending files, and receiving and checking programs."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]  # error
 class SerialLines:
     """Implementation of ``app.transfer.line_transfer.Lines``.
 
-    ``check_program`` proves received programs, and ``file_suffix`` is the suffix of the files that it
-    creates.
+    ``check_program`` proves received programs. ``file_suffix`` is the suffix of the files in which they are
+    saved.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class FileSendTransfer(_LineTransfer):
         self._settings, self._path, self._clock = settings, path, clock
 
     def run_transfer(self) -> int:
-        """Read the file, open the line, and send the data. Raises FileOperationError or DriverError."""
+        """Read and send the file. Raises FileOperationError or DriverError if this fails."""
         try:
             text = read_input_bytes(self._path, MAX_FILE_BYTES)
         except OSError as error:
@@ -113,7 +113,7 @@ class ProgramReceiveTransfer(_LineTransfer):
     def run_transfer(self) -> ReceivedProgram:
         """Receive a program and prove it.
 
-        Raises FileOperationError or DriverError and saves nothing after an error.
+        Raises FileOperationError or DriverError if the transfer fails. Nothing is then saved.
         """
         inner = ReceiveTransfer(
             open_serial_port(self._settings.receiving_settings, count_damaged=True),

@@ -48,8 +48,8 @@ class RecordedSamples:
 def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
     """Register the scope with ``live_samples``, or with the samples of the control.
 
-    Without any samples, the scope shows only files. The scope is created when the operator first opens its
-    page.
+    Without a source of samples, the scope shows only files. The scope is created when the operator first
+    opens its page.
     """
     desk.page_registry.attach_lazily("app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples))
     desk.page_registry.set_recording_opener(partial(_open_alarm_recording, desk))

@@ -57,7 +57,7 @@ def _setup_sheet(
 def _create_transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, program_folder: Path
 ) -> SpecialFunction:
-    """Return the RS-232 function. Its initial settings come from [dnc], and it proves received programs."""
+    """Return the RS-232 function. It proves received programs, and its initial settings are in [dnc]."""
     lines = SerialLines(create_proof_check(workshop), get_default_extension(Dialect(machine.mdi_language)))
     return SerialTransferFunction(
         desk,

@@ -1,6 +1,6 @@
 """Reading of the specified stock.
 
-The stock is a bar, a tube, a profile from a file, or the part of another program.
+The stock is a bar, a tube, a profile from a file, or the part that another program makes.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class StockContext(NamedTuple):
 
     ``read_source`` reads that program and may raise any exception that the caller handles.
     ``report_progress`` receives the progress of the proof. ``read_stored_part`` returns the stored stock
-    and stick-out of a program by name. ``preceding_programs`` are the names of the programs that depend on
-    this program.
+    and stick-out of a program by name. ``preceding_programs`` are the names of the programs whose proofs
+    depend on this program.
     """
 
     read_source: Callable[[Path], ProgramSource]
@@ -77,7 +77,7 @@ def read_stock(text: str, context: StockContext) -> Stock | StockSpec:
 
 
 def _stock_from_program(path: Path, context: StockContext, spec: StockSpec) -> Stock:
-    """Return the last part that the preceding program makes, as stock."""
+    """Return the last part that the preceding program makes. This part is the stock."""
     from core.part.stock import Stock
     from core.proving.part_proof import prove_with_part
 

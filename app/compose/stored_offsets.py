@@ -121,7 +121,7 @@ def read_stored_shapes() -> dict[int, ToolShape]:
 def try_read_shapes() -> dict[int, ToolShape]:
     """Return the tool shapes for a picture, or {} if the store cannot be read.
 
-    Other functions report the error.
+    The error is not reported here, because other functions report it.
     """
     try:
         return read_stored_shapes()

@@ -1,4 +1,4 @@
-"""Signed-in user, access level and permissions of TurnDesk, without Qt and without waiting.
+"""Signed-in user, access level and permissions, without Qt. No function of this module waits.
 
 Without configured users, access levels are off and every change is allowed. Signing in is an optional
 feature. If users are stored but the feature is not installed, the level remains OPERATOR.
@@ -74,12 +74,12 @@ class UserAccess:
 
     @property
     def recorded_user(self) -> str:
-        """Return the user name that the history records for a change."""
+        """Return the user name to record in the history for a change."""
         return self.user_name or DEFAULT_USER
 
     @property
     def header_text(self) -> str:
-        """Return the user and the current level for the header, or an empty text if access levels are off."""
+        """Return the user and the current level for the header, or an empty string without access levels."""
         if not self.user_list.is_access_restricted:
             return ""
         if self.pending_notice:
@@ -88,7 +88,7 @@ class UserAccess:
         return join_messages(" · ", (mark_untranslated(self.user_name), level)) if self.user_name else level
 
     def find_refusal(self, change: ProtectedChange) -> str:
-        """Return why the current level does not permit this act, or an empty text if the act is permitted."""
+        """Return the reason why the level does not permit this act, or an empty string if it does."""
         needed = get_required_level(change)
         if not self.user_list.is_access_restricted or self.access_level >= needed:
             return ""
@@ -145,7 +145,7 @@ class UserAccess:
     def remove_levels(self) -> None:
         """Remove the access levels after a service reset.
 
-        If the stored levels cannot be read, they are ignored until TurnDesk closes.
+        Stored levels that cannot be read are ignored until TurnDesk closes.
         """
         self._lifted, self.user_list = True, UserList()
         self.reload()

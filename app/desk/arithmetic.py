@@ -13,13 +13,13 @@ _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
 
 
 class EntryError(ValueError):
-    """Error for an expression without a numeric value. The message gives the reason."""
+    """Error for an expression that has no numeric value. The message gives the reason."""
 
 
 def evaluate_expression(entry: str) -> float:
     """Return the value of an arithmetic expression.
 
-    Raises EntryError that gives the invalid character, its position and the reason.
+    Raises EntryError, with the invalid character, its position and the reason, if it is invalid.
     """
     if not entry.strip():
         raise EntryError("no value entered; type a number")
@@ -128,7 +128,7 @@ class _ExpressionParser:
 def _split_tokens(entry: str) -> list[tuple[str, int]]:
     """Return the numbers and operators of an expression, each with its column, counted from 1.
 
-    Raises EntryError for a character that an expression cannot contain.
+    Raises EntryError for a character that must not occur in an expression.
     """
     tokens, at = [], 0
     while at < len(entry):

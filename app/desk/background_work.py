@@ -1,7 +1,7 @@
 """Slow and repeated work of TurnDesk on worker threads.
 
-The newest request for proving, drawing or searching replaces older requests, because an outdated result is
-useless. Queued work, such as writing, always runs to its end. Results are delivered on the caller's thread
+A new request for proving, drawing or searching replaces older requests, because their results would be
+outdated. Queued work, such as writing, always runs to its end. Results are delivered on the caller's thread
 when the caller polls, once per frame.
 """
 
@@ -78,7 +78,7 @@ def describe_error(error: BaseException) -> str:
 
 @dataclass(slots=True, eq=False)
 class WorkRequest:
-    """One request to a worker, which the work calls as its ``ProgressCallback`` to report progress."""
+    """One request to a worker. The work calls this object as its ``ProgressCallback`` to report progress."""
 
     worker: LatestRequestWorker
     # Does the work and returns the function that delivers the result.
@@ -95,7 +95,7 @@ class WorkRequest:
         self.worker.progress_percent = int(reached)
 
     def publish_result(self, deliver: Callable[[], None]) -> None:
-        """Call ``deliver`` on the worker with an intermediate result.
+        """Call ``deliver`` with an intermediate result on the worker thread.
 
         Newer requests are blocked during the call. Raises AbandonedError if the result is no longer needed.
         """
@@ -110,7 +110,7 @@ class LatestRequestWorker:
     """Worker on which a new request replaces the previous request.
 
     ``enqueue_work`` adds work that is never canceled. For requests that follow typing, work begins after
-    ``quiet_time_s`` seconds without another request, and at the latest after ``max_delay_s`` seconds. A
+    ``quiet_time_s`` seconds without another request, but no later than after ``max_delay_s`` seconds. A
     replaced request may continue for ``grace_time_s`` seconds. ``thread_owner`` is another worker whose
     thread this worker shares.
     """
@@ -165,9 +165,9 @@ class LatestRequestWorker:
     def enqueue_work(
         self, work: Callable[[], ResultT], on_done: Callable[[ResultT], None], on_failed: FailureCallback
     ) -> None:
-        """Add ``work`` that runs after all waiting work and is never canceled.
+        """Add ``work`` to the end of the queue. Queued work is never canceled.
 
-        ``deliver_results`` delivers the result as for ``request``.
+        ``deliver_results`` delivers the result, as it does for ``request_work``.
         """
         with self.lock:
             self._begin(lambda _request: work(), on_done, on_failed, queued=True)
@@ -281,7 +281,7 @@ class LatestRequestWorker:
 
 
 def _run_request(request: WorkRequest) -> Callable[[], None] | None:
-    """Do the work, and return the function that delivers its result, or None if the work was canceled."""
+    """Do the work and return the function that delivers its result. If the work is canceled, return None."""
     try:
         return request.run_work(request)
     except AbandonedError:
@@ -294,7 +294,7 @@ def _run_request(request: WorkRequest) -> Callable[[], None] | None:
 
 
 def _is_defect(error: BaseException) -> bool:
-    """Return whether an error is a programming error, so that its traceback must be logged."""
+    """Return whether an error is a programming error. The traceback of such an error must be logged."""
     return type(error).__module__ == "builtins" and not isinstance(error, OSError | ValueError)
 
 

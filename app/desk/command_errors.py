@@ -1,4 +1,4 @@
-"""Exit statuses of commands, and exception that ends a command with an error message."""
+"""Exit statuses of commands, and the exception that ends a command with an error message."""
 
 from __future__ import annotations
 

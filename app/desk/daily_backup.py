@@ -29,9 +29,9 @@ class DailyBackup:
     """Service that makes and verifies a backup each day and deletes old backups.
 
     ``write_backup`` writes a backup. ``verify_backup`` returns the defects of a backup file. ``is_idle``
-    returns whether the machine is at rest. ``data_folder`` is the folder of the original data if the
-    machine file specifies a separate folder for backups. ``report_same_disk`` is called if both folders are
-    on the same disk.
+    returns whether the machine is at rest. ``data_folder`` is the folder of the original data, or None if
+    the machine file does not specify a separate folder for backups. ``report_same_disk`` is called if both
+    folders are on the same disk.
     """
 
     folder: Path
@@ -120,7 +120,7 @@ class DailyBackup:
     def _check_disk(self) -> None:
         """Report once if the backup folder is on the same disk as the data.
 
-        This happens if the backup disk is not mounted.
+        The folder is on the same disk if, for example, the backup disk is not mounted.
         """
         if self.data_folder is not None and not self._hinted:
             self._hinted = self.folder.stat().st_dev == self.data_folder.stat().st_dev
@@ -135,5 +135,5 @@ class DailyBackup:
 
 
 def _sort_key(now: str, path: Path) -> tuple[bool, str]:
-    """Return the sort key for the age of a backup. ``now`` is the name that a backup made now would have."""
+    """Return the key that sorts backups by age. ``now`` is the name that a new backup would have now."""
     return path.name <= now, path.name

@@ -1,4 +1,4 @@
-"""Data folder (``TURNDESK_HOME``) of this installation, with its store, logs and settings."""
+"""Data folder of this installation (``TURNDESK_HOME``) with its store, logs and settings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ RECORDS_FOLDER_NAME = "records"  # Subfolder for recordings of the scope.
 
 
 class DataFolderError(CodedError):
-    """Error for TURNDESK_HOME if it is not a folder, or if it must be set.
+    """Error if TURNDESK_HOME must be set, or if it is set to a path that is not a folder.
 
     The text explains how to set the variable.
     """
@@ -43,7 +43,7 @@ def find_data_folder() -> Path:
     """Return the folder of the store, logs and settings.
 
     This is ``TURNDESK_HOME`` if it is set, and otherwise the platform's data folder. Raises DataFolderError
-    for a user without a home folder, as in a container.
+    if the variable is not set and the user has no home folder, as in a container.
     """
     named = os.environ.get(HOME_VARIABLE, "")
     try:

@@ -1,4 +1,4 @@
-"""Model of the Automatic page and of the running TurnDesk, which does not use Qt and never waits.
+"""Model of the Automatic page and of the running TurnDesk. It does not use Qt and never waits.
 
 Every method that a key or a touch calls returns immediately. If the action is not possible, the prompt line
 shows the reason (``prompt_notice``). Otherwise the method posts a command, and a later snapshot shows the
@@ -63,8 +63,8 @@ _NO_MACHINE = DeskMachine()
 class Desk:
     """Model of the Automatic page, with the objects that all pages share.
 
-    ``persistence`` stores settings, levels, counts and runs. Without it, these are lost when TurnDesk
-    closes. ``start_watch`` checks the first move of a start, if the machine supports this check.
+    ``persistence`` stores settings, levels, counts and runs. Without ``persistence``, they are lost when
+    TurnDesk closes. ``start_watch`` checks the first move of a start, if the machine supports this check.
     """
 
     def __init__(
@@ -149,29 +149,29 @@ class Desk:
         self.prompt_answers.say(text)
 
     def show_warning(self, text: str) -> None:
-        """Show a message for 4 s, even if a key is pressed, for example because input was dropped."""
+        """Show a warning for 4 s, for example about dropped input. Key presses do not remove it."""
         self.prompt_answers.say(text, is_lasting=True)
 
     def show_success(self, text: str) -> None:
-        """Show a success message, which has a different style from a refusal."""
+        """Show a message that an action has succeeded. Its style differs from that of a refusal."""
         self.prompt_answers.say(text, is_success=True)
 
     def show_refusal(self, reason: str) -> None:
-        """Show that an action was rejected, and the reason."""
+        """Show a message that an action was rejected, with the reason."""
         self.say(Message("REJECTED: {why}", why=reason))
 
     def ask_operator(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
         """Ask the operator to confirm an action that loses data or moves the machine.
 
-        The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` means yes, and is different
-        from the key that caused the question. On a touch screen, the prompt line has a button for the
-        reply.
+        The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` is the key that means yes.
+        It must differ from the key that caused the question. On a touch screen, the prompt line has a
+        button for the reply.
         """
         self.prompt_answers.ask_question(question, on_confirmed, key)
 
     @property
     def confirm_key(self) -> str:
-        """Return the key that means yes to the open question, or an empty text if no question is open."""
+        """Return the key that means yes to the open question, or an empty string if no question is open."""
         return self.prompt_answers.key if self.prompt_answers.on_confirmed is not None else ""
 
     def clear_prompt_line(self) -> None:
@@ -180,7 +180,7 @@ class Desk:
 
     @property
     def prompt_notice(self) -> str:
-        """Return the message for the last key or the open question, or an empty text if there is neither."""
+        """Return the open question, the message for the last key, or an empty string."""
         return self.prompt_answers.shown_message
 
     @property
@@ -216,7 +216,7 @@ class Desk:
         return ReadoutKind(self.settings_store.current_settings.readout)
 
     def is_refused(self, change: ProtectedChange) -> bool:
-        """Return whether the access level is too low for this act, and if so show the reason."""
+        """Return whether the access level is too low for this act. If it is, show the reason."""
         why = self.user_access.find_refusal(change)
         if why:
             self.say(why)
@@ -245,7 +245,7 @@ class Desk:
         self.apply_setting("readout", self.readout_kind.next_kind.value)
 
     def close(self) -> None:
-        """Stop the machine and close its drivers, then end the workers and close all attached models."""
+        """Stop the machine and close its drivers. Then end the workers and close all attached models."""
         own = [
             ClosingStep("loading", self.program_loader.close),
             ClosingStep("levels", self.user_access.close),
@@ -258,7 +258,7 @@ class Desk:
         self.alarm_log.hear(event)
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
+        """Return the reason why the start buttons have no effect, or an empty string if they work."""
         if self.window_state.is_stop_held() or not self.window_state.can_start_here:
             return (
                 prompt_line.RELEASE_STOP_KEY
@@ -320,9 +320,9 @@ class Desk:
             self.try_save(partial(self.program_runs.update_first_job, snapshot, loaded))
 
     def find_first_move_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why the first move prevents a start of the program.
+        """Return the reason why the first move of the program prevents its start.
 
-        The text is empty if the first move is clear.
+        The result is an empty string if the first move is clear.
         """
         if self.start_watch is None or snapshot.state is not MachineState.IDLE:
             return ""
@@ -347,7 +347,7 @@ class Desk:
     def can_close(self, close: Callable[[], None]) -> bool:
         """Return whether TurnDesk can close without losing unsaved work.
 
-        If work would be lost, this method asks the operator. The key Y then calls ``close``.
+        If work would be lost, this method asks the operator, and the reply Y calls ``close``.
         """
         waiting = self.storage_state.read_unsaved()
         if waiting:
@@ -406,13 +406,13 @@ class Desk:
             self.post(ConfirmStart(found.at))
 
     def reject_question(self) -> None:
-        """Handle the key N, which rejects the open question or cancels the confirmed start at line 1."""
+        """Handle the key N, which rejects the open question or cancels a confirmed start at line 1."""
         self.clear_prompt_line()
         if self.read_snapshot().confirmed:
             self.post(ConfirmStart(""))
 
     def enable_drives(self) -> None:
-        """Switch the drives on after an E-stop or power-up, or show why this is not possible."""
+        """Switch the drives on after an E-stop or power-up. If this is not possible, show the reason."""
         state = self.read_snapshot().state
         if state is MachineState.DISABLED:
             self.clear_prompt_line()
@@ -444,7 +444,7 @@ class Desk:
         return True
 
     def confirm_if_unchanged(self) -> None:
-        """Confirm the open question if the machine is still in the state in which the question was asked."""
+        """Confirm the open question if the state of the machine has not changed since it was asked."""
         if self.window_state.late_presses.refuse_late_press(StartingAction.YES):
             return
         self.prompt_answers.remove_expired(self.read_snapshot())
@@ -454,6 +454,6 @@ class Desk:
     def was_question_read(self) -> bool:
         """Return whether the operator had enough time to read the open question.
 
-        The time ends at the current key press.
+        This is the time from the display of the question to the current key press.
         """
         return self.prompt_answers.was_read(self.station_controls.at())

@@ -25,7 +25,7 @@ RUNNING_STATES = frozenset(MachineState) - {
 
 
 class HeadlessControl(Protocol):
-    """Interface of the executor that the headless run uses."""
+    """Interface of the executor that a headless run uses."""
 
     @property
     def snapshot(self) -> Snapshot:
@@ -176,7 +176,7 @@ class HeadlessRun:
         return False
 
     def _is_stuck(self, snapshot: Snapshot) -> bool:
-        """Return whether the program has waited too long for an input. Inputs never change in this run."""
+        """Return whether the program has waited too long for an input. In this run, inputs never change."""
         now = self._clock.now()
         if snapshot.state is not MachineState.WAIT or snapshot.waiting_for.startswith("DWELL"):
             self._last_move = now

@@ -43,7 +43,7 @@ class StartingAction(Enum):
 
 
 def name_starting_action(action: StartingAction) -> str:
-    """Return the operator's translated name of a starting action."""
+    """Return the name of a starting action, translated for the operator."""
     names = {
         StartingAction.CYCLE: tr("CYCLE START"),
         StartingAction.DRIVES: tr("DRIVES ON"),
@@ -74,7 +74,7 @@ def _always(_command: Command, _now: Snapshot) -> bool:
 
 
 def _is_acknowledge(_command: Command, now: Snapshot) -> bool:
-    """Return whether a reset would acknowledge an alarm, which may be new.
+    """Return whether a reset would acknowledge an alarm that the operator may not have seen yet.
 
     A reset in any other state stops the program.
     """
@@ -93,7 +93,7 @@ def _is_drive_switch(command: Command, _now: Snapshot) -> bool:
 def _is_override_increase(command: Command, now: Snapshot) -> bool:
     """Return whether a command raises the feed override.
 
-    An operator who sees no effect on a stalled screen tends to press the key too often.
+    While the screen is stalled, an operator sees no effect and therefore may press the key too often.
     """
     return isinstance(command, commands.SetFeedOverride) and command.fraction > now.feed_override
 
@@ -181,7 +181,7 @@ class LatePressFilter:
     def suspend_check(self) -> Iterator[None]:
         """Return a context in which actions are not attributed to the current press.
 
-        The context is used once per frame, while a key that is held down is renewed.
+        Once per frame, the screen renews keys that are held down in this context.
         """
         late, self.is_late = self.is_late, False
         try:
@@ -190,7 +190,7 @@ class LatePressFilter:
             self.is_late = late
 
     def guard_post(self, post_command: Callable[[Command], None]) -> Callable[[Command], None]:
-        """Return a version of ``post_command`` that drops commands that a late press must not send."""
+        """Return a version of ``post_command`` that drops the commands that a late press must not send."""
 
         def guarded(command: Command) -> None:
             starting = find_starting_action(command, self.read_snapshot()) if self.is_late else None

@@ -1,4 +1,4 @@
-"""Description of a page of the main window, which contains class names but imports no class."""
+"""Description of a page of the main window. It contains the names of classes but imports none of them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class PageDescription:
 class ProgramKey:
     """Function key of the program list that opens ``page_name``.
 
-    ``use`` is called with the program's name.
+    ``use`` is called with the name of the selected program.
     """
 
     label: str

@@ -1,4 +1,4 @@
-"""Interface to the store that the screen uses, and its replacement if no store can be opened."""
+"""Interface through which the screen uses the store, and a substitute if no store can be opened."""
 
 from __future__ import annotations
 
@@ -75,13 +75,13 @@ class Persistence:
         return self.settings.get(key)
 
     def save_setting(self, key: str, value: object) -> None:
-        """Store a value that JSON can represent. None removes the setting."""
+        """Store the value of a setting, which JSON must be able to represent. None removes the setting."""
         self.settings[key] = value
 
     def save_settings(self, values: Mapping[str, object]) -> None:
         """Store several settings and wait until they are on the disk.
 
-        Call this method on a worker thread. Raises StoreError.
+        Call this method on a worker thread. Raises StoreError if storing fails.
         """
         for key, value in values.items():
             self.save_setting(key, value)
@@ -98,7 +98,7 @@ class Persistence:
 
     @property
     def runs(self) -> RunRecords | NullRunRecords:
-        """Return the run records of the open store. A restore opens a different store."""
+        """Return the run records of the open store. After a restore, call this method again."""
         return NullRunRecords()
 
     def require_store(self) -> Store:
@@ -106,13 +106,13 @@ class Persistence:
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def people(self) -> UserList:
-        """Return the users of the machine. Raises StoreError."""
+        """Return the users of the machine. Raises StoreError if they cannot be read."""
         return UserList()
 
     def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
-        """Return up to ``_limit`` log entries, with the newest entry first.
+        """Return up to ``_limit`` log entries, newest first.
 
-        Empty ``_kinds`` includes all kinds.
+        If ``_kinds`` is empty, all kinds are included.
         """
         return ()
 
@@ -122,23 +122,22 @@ class Persistence:
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Save a version of a program, wait until it is on the disk, and return its number.
 
-        Raises StoreError.
-
-        Without a store, this method always raises the error, because the text would be lost.
+        Raises StoreError if saving fails. Without a store, this method always raises the error, because the
+        text would be lost.
         """
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def backup(self, _target: Path) -> None:
-        """Write a backup of the whole store. Raises StoreError."""
+        """Write a backup of the whole store. Raises StoreError if the backup fails."""
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def check_backup(self, _source: Path) -> BackupVerdict:
         """Check a backup, compare it with the current store, and return the result.
 
-        Call this method on a worker thread. Raises StoreError.
+        Call this method on a worker thread. Raises StoreError if the check cannot be made.
         """
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def restore(self, _source: Path) -> Path | None:
-        """Replace the store with a backup, and return the path of the replaced store. Raises StoreError."""
+        """Replace the store with a backup, and return the old store's path. Raises StoreError on failure."""
         raise StoreError(NOTHING_SAVED, "nothing-stored")

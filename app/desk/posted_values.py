@@ -10,7 +10,7 @@ ARRIVAL_TIMEOUT_S = 0.3  # Seconds within which the snapshot shows a posted valu
 
 @dataclass(slots=True)
 class PostedValues:
-    """Newest posted value of each name, so that two quick key presses both take effect.
+    """Newest posted value for each name. Because of it, two quick key presses both take effect.
 
     ``read_time_s`` returns monotonic time in seconds.
     """
@@ -19,14 +19,14 @@ class PostedValues:
     _posted: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def toggle_value(self, name: str, displayed_state: bool) -> bool:
-        """Return the opposite state of a switch, which the caller posts immediately.
+        """Return the opposite state of a switch. The caller must post this state immediately.
 
         ``displayed`` is the state in the snapshot.
         """
         return bool(self.change_value(name, displayed_state, lambda now: not now))
 
     def change_value(self, name: str, displayed_value: float, change: Callable[[float], float]) -> float:
-        """Return the value after ``change``, which the caller posts immediately.
+        """Return the value after adding ``change``. The caller must post this value immediately.
 
         The change applies to the value that was posted last, or to ``displayed`` if no value was posted in
         the last 0.3 s.

@@ -59,7 +59,7 @@ _UNLOGGED_SETTINGS = frozenset({"readout"})  # Settings that change many times p
 
 @dataclass(slots=True)
 class SettingsStore:
-    """The current screen settings. A stored value that is not a valid choice is ignored."""
+    """The current screen settings. If a stored value is not a valid choice, it is ignored."""
 
     persistence: Persistence = field(default_factory=Persistence)
     current_settings: ScreenSettings = field(init=False)

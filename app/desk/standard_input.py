@@ -1,4 +1,4 @@
-"""Reading of standard input in place of a file for the argument ``-``.
+"""Reading of standard input. The argument ``-`` selects standard input instead of a file.
 
 Only one argument can use standard input.
 """

@@ -63,13 +63,13 @@ class StationPanel(Protocol):
         ...
 
     def turn_handwheel(self, count_change: int) -> None:
-        """Turn the handwheel of a machine with a handwheel by a signed number of counts."""
+        """Turn the handwheel by a signed number of counts, if the machine has one."""
         ...
 
 
 @dataclass(slots=True)
 class PalmButtons:
-    """Pressed palm buttons with their press times, which explain a failed start.
+    """Pressed palm buttons and their press times, from which the reason for a failed start is found.
 
     A pair of presses is invalid if the buttons were not pressed in time, or if one button was released
     while the other remained pressed. An invalid pair has no effect until both buttons are released, so that
@@ -115,7 +115,7 @@ POT_SLEW_RATE = 1.0  # Fraction of the range per second. A control treats a fast
 
 @dataclass(slots=True)
 class OverridePot:
-    """A pot on the screen.
+    """An override pot on the screen.
 
     ``wanted`` is the target that a touch sets. ``current_fraction`` moves toward the target at a limited
     speed.
@@ -128,7 +128,7 @@ class OverridePot:
     late_presses: LatePressFilter | None = None
 
     def set(self, fraction: float) -> None:
-        """Set the target of the pot, toward which the pot turns at a limited speed.
+        """Set the target of the pot. The pot turns toward the target at a limited speed.
 
         A late press does not raise the target, because an operator who sees no effect presses too often.
         """
@@ -143,7 +143,7 @@ class OverridePot:
         self.wanted = max(0.0, min(self.max_fraction, fraction))
 
     def turn_toward_target(self, elapsed_s: float) -> bool:
-        """Turn the pot for this number of seconds, and return whether it has moved."""
+        """Turn the pot for this number of seconds, and return whether its position has changed."""
         if self.current_fraction == self.wanted:
             return False
         step = POT_SLEW_RATE * elapsed_s
@@ -187,22 +187,22 @@ class StationControls:
     _looked: float | None = None
 
     def use_late_presses(self, late_presses: LatePressFilter) -> None:
-        """Drop late presses that would start an action at the station."""
+        """Set the filter that drops late presses that would start an action at the station."""
         self.late = self.spindle_pot.late_presses = self.feed_pot.late_presses = late_presses
 
     def _refuses(self, starting: StartingAction) -> bool:
         return self.late is not None and self.late.refuse_late_press(starting)
 
     def at(self) -> float:
-        """Return the time of the press that is being processed, as measured by this object's clock."""
+        """Return the time of the press that is being processed, in seconds of this object's clock."""
         return self.clock() - self.find_press_age()
 
     def palm(self, side: str, is_down: bool) -> None:
         """Press or release a palm button, at the time of the key event.
 
-        The relay of the station decides whether the pair starts a cycle. It receives a press when this
-        method is called and not at the time of the key event. Therefore this method forwards only one press
-        if the two buttons were not pressed together.
+        The relay of the station decides whether the two presses start a cycle. The relay receives a press
+        when this method is called, not at the time of the key event. If the buttons were not pressed
+        together, this method therefore forwards only one press.
         """
         station = self.station
         if station is None:
@@ -222,8 +222,8 @@ class StationControls:
     def latch(self, side: str) -> None:
         """Press a palm button of a simulated machine with one touch or the mouse.
 
-        The button remains latched until the other button is touched. That touch presses both buttons
-        together, and its release releases both buttons.
+        The button remains latched until the other button is touched. Touching the other button presses both
+        buttons together, and the end of the touch releases both.
         """
         first, self.latched = self.update_latched_side(), ""
         if self._refuses(StartingAction.CYCLE):
@@ -239,7 +239,7 @@ class StationControls:
             self.palm(each, is_down=True)
 
     def update_latched_side(self) -> str:
-        """Return the palm button that is latched until the other button is touched.
+        """Return the palm button that is currently latched. It waits for a touch of the other button.
 
         The latch ends after a time limit.
         """

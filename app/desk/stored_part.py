@@ -1,4 +1,4 @@
-"""Stored part settings of a program, which are stock, stick-out and silenced checks.
+"""Stored part settings of a program: stock, stick-out and silenced checks.
 
 The settings are stored under the program's name. They are never written to the program text.
 """
@@ -52,6 +52,6 @@ def load_stored_part(read_setting: ReadSetting, program: str) -> StoredPart:
 
 
 def make_stock_absolute(stock: str) -> str:
-    """Return a stock specification that is valid in every folder, with the absolute path of its file."""
+    """Return a stock specification that is valid in every folder because its file path is absolute."""
     kind, _, rest = stock.partition(":")
     return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else stock

@@ -42,7 +42,7 @@ def make_tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow
 def describe_mistakes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> tuple[str, ...]:
     """Return an error text for every mistake in the shapes.
 
-    Each field was valid when it was entered. A later change of another field or offset causes a mistake.
+    Each field was valid when it was entered. Mistakes result from later changes of other fields or offsets.
     """
     return tuple(
         Message(

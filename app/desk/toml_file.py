@@ -1,4 +1,4 @@
-"""Reading of TOML files that users write, with one error that reports all mistakes of a file."""
+"""Reading of TOML files that users write. One error reports all mistakes of a file."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _with_nought(found: re.Match[str]) -> str:
 def _read_bytes(path: Path) -> bytes:
     """Return the bytes of a file, or of standard input for ``-``.
 
-    Raises CommandError if standard input is too large, TooLargeError if the file is too large, or OSError.
+    Raises CommandError or TooLargeError if the input is too large, and OSError if reading fails.
     """
     if str(path) == STDIN_ARGUMENT:
         data = read_standard_input("TOML")
@@ -71,7 +71,7 @@ def _too_large(path: Path) -> CommandError:
 
 
 def describe_unknown_key(key: str, known_keys: Iterable[str]) -> str:
-    """Return the error text for an unknown key, which names the most similar known key."""
+    """Return the error text for an unknown key. The text names the most similar known key."""
     names = list(known_keys)
     near = find_similar_word(key, names)
     return Message(
@@ -82,7 +82,7 @@ def describe_unknown_key(key: str, known_keys: Iterable[str]) -> str:
 
 
 def make_unknown_key_error(key: str, known_keys: Iterable[str], table_name: str = "") -> CodedError:
-    """Return the error for an unknown key, which names the table of the key."""
+    """Return the error for an unknown key. The error names the table that contains the key."""
     return CodedError(
         Message("[{table}] {key}", table=table_name, key=describe_unknown_key(key, known_keys))
         if table_name

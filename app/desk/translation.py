@@ -50,10 +50,7 @@ _DATA, _END = "\u2068", "\u2069"  # Unicode's isolate characters, which are not 
 
 
 def mark_untranslated(text: str) -> str:
-    """Return a user text with a mark that prevents ``tr`` from translating the text.
-
-    A remark or a name is such a text.
-    """
+    """Return a user text, such as a remark, with a mark that prevents its translation by ``tr``."""
     return f"{_DATA}{text}{_END}" if text else ""
 
 

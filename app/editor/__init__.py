@@ -1,4 +1,4 @@
-"""Editor page (F3): the program text, its proof while you type, its files and its versions.
+"""Editor page (F3): program text, live proof of the text, program files and version history.
 
 The package contains the model and the views.
 """

@@ -28,7 +28,7 @@ Point = tuple[float, float]
 def make_code_sketch(code: str, dialect: Dialect = Dialect.OMNITURN) -> Sketch | None:
     """Return the sketch of a lathe code, or None if the code has no sketch.
 
-    In the sketch, Z points to the right and the radius points up.
+    In the sketch, Z points to the right and the radius axis points up.
     """
     return _CODE_SKETCHES.get(dialect, {}).get(code)
 
@@ -63,8 +63,8 @@ def _make_arrow(a: Point, b: Point) -> Outline:
 def _make_roughing_sketch(deep: str, left: str, *points: str) -> Sketch:
     """Return the sketch of a roughing cycle.
 
-    ``deep`` and ``left`` are the words for the depth of cut and the allowance. ``points`` are the words for
-    the start and end points.
+    ``deep`` and ``left`` are the address words for the depth of cut and the allowance. ``points`` are the
+    words for the start and end points.
     """
     profile = ((0, 3), (-6, 3), (-9, 6), (-14, 6), (-14, 9))
     passes = [
@@ -80,7 +80,7 @@ def _make_roughing_sketch(deep: str, left: str, *points: str) -> Sketch:
 
 
 def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch:
-    """Return the sketch of a threading cycle, labeled with the words for lead, start, last pass and end."""
+    """Return the sketch of a threading cycle. The address words label lead, start, last pass and end."""
     teeth = [(-float(k), 7.0 if k % 2 else 5.6) for k in range(13)]
     depths = [
         make_cut_outline((3, 7.0 - 0.7 * math.sqrt(k)), (-12, 7.0 - 0.7 * math.sqrt(k))) for k in (1, 2, 3, 4)
@@ -96,7 +96,7 @@ def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch
 
 
 def _make_side_sketch(*, outside: bool) -> Sketch:
-    """Return the sketch of a tool nose that follows the outside or inside contour toward the chuck."""
+    """Return the sketch of a tool nose that moves along the outside or inside contour to the chuck."""
     solid = make_part_outline((0, 0), (0, 5), (-8, 5), (-12, 8), (-18, 8), (-18, 0))
     off = 1.2 if outside else -1.2
     path = make_cut_outline((2, 5 + off), (-8, 5 + off), (-12, 8 + off), (-18, 8 + off))
@@ -149,7 +149,7 @@ SKETCH_HEIGHT = 17.0  # units: height of a sketch
 
 
 class CodeStrip(Panel):
-    """Strip that shows one code with its syntax and meaning; a press opens the list of codes."""
+    """Strip that shows a code with its syntax and meaning. A touch opens the list of codes."""
 
     background_color = "panel"
     entry: RedrawingAttribute[CodeBookEntry | None] = RedrawingAttribute(None)
@@ -203,7 +203,7 @@ class CodeList(CodeChoiceList):
         return self._codes.current_entry
 
     def open_choices(self) -> bool:
-        """Open the list for the code at the cursor and return whether it opened.
+        """Open the list for the code at the cursor, and return whether the list opened.
 
         The list cannot open before a text has been proved.
         """
@@ -242,7 +242,7 @@ class CodeList(CodeChoiceList):
             )
 
     def _find_foot_height(self) -> float:
-        """Return the height of the area for the example and the sketch in pixels."""
+        """Return the height in pixels of the area for the example and the sketch."""
         return super()._find_foot_height() + self._find_sketch_height()
 
     def _find_sketch_height(self) -> float:

@@ -1,4 +1,4 @@
-"""Document of the editor: its file, the functions that save it, and the draft that protects unsaved text."""
+"""Document in the editor: its file, the functions that save it, and the draft of unsaved text."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Document:
     """Program that is being edited.
 
     ``text`` contains line feeds only, and ``line_ending`` is the line ending of the file. ``is_read_only``
-    marks a sample, which must be saved under another name. ``is_new`` marks a document that is not on the
-    disk yet.
+    marks a sample, which must be saved under another name. ``is_new`` marks a document that has no file
+    yet.
     """
 
     path: Path
@@ -55,9 +55,9 @@ class Document:
 
 
 def end_last_line(text: str) -> str:
-    """Return the text with a final line feed.
+    """Return the text with a final line feed, or an empty string for an empty text.
 
-    TurnDesk saves and proves texts in this form. An empty text remains empty.
+    TurnDesk saves and proves texts in this form.
     """
     return text if text.endswith("\n") or not text else text + "\n"
 
@@ -84,7 +84,7 @@ def open_document(path: Path, samples_folder: Path) -> Document:
 
 
 def _read_text(path: Path) -> str:
-    """Return the text of a file, which can be empty."""
+    """Return the text of a file, or an empty string for an empty file."""
     try:
         return load_source(path).text
     except SourceError as error:
@@ -142,9 +142,9 @@ CHANGED_EXTERNALLY = "changed by another program"
 def save_document(document: Document, text: str, archive: VersionArchive, may_overwrite: bool) -> str:
     """Write ``text`` to the file of ``document`` and archive it as a version.
 
-    Returns an empty string on success, or the reason why no version was archived. If the file on the disk
-    differs from the text that was opened, and ``may_overwrite`` is not set, nothing is written and the
-    result is ``CHANGED_EXTERNALLY``. Raises FileOperationError.
+    Returns an empty string on success, or the reason why no version was archived. If another program has
+    changed the file and ``may_overwrite`` is False, nothing is written and the result is
+    ``CHANGED_EXTERNALLY``. Raises FileOperationError if the file cannot be written.
     """
     there = read_if_exists(document.path)
     foreign = there is not None and not _matches_opened(document, there)
@@ -161,16 +161,16 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
 
 
 def _matches_opened(document: Document, data: bytes) -> bool:
-    """Return whether the file data still equal the text that was opened or last saved."""
+    """Return whether the file data are equal to the text that was opened or last saved."""
     if document.is_new:
         return False
     return data == document.encode_text(document.text) or _matches_text(document, data)
 
 
 def _matches_text(document: Document, data: bytes) -> bool:
-    """Return whether file data from DOS decode to the text of the document.
+    """Return whether a file written under DOS decodes to the text of the document.
 
-    Such data can have another character set, a byte order mark or an end-of-file character.
+    Such a file can have another character set, a byte order mark or an end-of-file character.
     """
     for code in ("utf-8-sig", "cp437", "latin-1"):
         try:
@@ -195,9 +195,9 @@ WHY = "unsaved draft"
 
 @dataclass(slots=True)
 class DraftStore:
-    """Store of draft files, one for each document with unsaved text.
+    """Store of draft files, with one file for each document that has unsaved text.
 
-    A worker writes the latest unsaved text.
+    A worker writes the latest text of each document.
     """
 
     folder: Path
@@ -207,7 +207,7 @@ class DraftStore:
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-drafts"))
 
     def set_text(self, document: Document, text: str) -> None:
-        """Store the present text of the editor as the draft of the document."""
+        """Store the current text of the editor as the draft of the document."""
         self._wanted[document.name] = None if text == document.text else text
         self._go_on()
 
@@ -217,7 +217,7 @@ class DraftStore:
         self._go_on()
 
     def recover_draft(self, document: Document, show_message: Callable[[str], None]) -> None:
-        """Move a draft from an earlier session to the version history before a new draft is written.
+        """Archive a draft from an earlier session as a version, so that a new draft cannot overwrite it.
 
         ``show_message`` is called with the result for the operator.
         """

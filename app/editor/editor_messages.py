@@ -1,6 +1,6 @@
 """Messages of the editor.
 
-The first two are texts of the original control.
+The first two messages are texts of the original control.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Model of the editor without Qt: opening, creating, saving and closing programs, with version history.
+"""Model of the editor, independent of Qt: opens, creates, saves and closes programs.
 
-No method blocks. Each request of the operator starts at once and ends in a later call of
-``EditorModel.poll``, which is made once per frame. The text field of the page contains the text and passes
-it with each request.
+No method blocks. A request of the operator starts work, which a later call of ``EditorModel.poll``
+completes. ``EditorModel.poll`` is called once per frame. The page owns the text and passes it with each
+request.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class EditorStage(StrEnum):
 class ClosedProgram:
     """Program that was closed in the editor.
 
-    ``is_changed`` means that the program was saved with changes, and ``should_load`` that it is to be
-    loaded.
+    ``is_changed`` means that changes to the program were saved. ``should_load`` means that TurnDesk must
+    load the program.
     """
 
     path: Path
@@ -64,7 +64,7 @@ class ClosedProgram:
 class EditorModel:
     """Model of an editor for one document at a time.
 
-    ``on_closed`` is called with the program that was closed. ``loading_steps`` prove a text without storing
+    ``on_closed`` is called with each closed program. ``loading_steps`` prove a text without storing
     anything. ``programs_folder`` is the program folder of the operator.
     """
 
@@ -130,13 +130,13 @@ class EditorModel:
         )
 
     def offer_new(self, typed_name: str) -> None:
-        """Ask whether to create a new file with the typed name."""
+        """Ask the operator whether to create a new file with the typed name."""
         self.clear_message()
         self.stage, self._offered = EditorStage.OFFERED, typed_name
         self.message = messages.CREATE_FILE
 
     def create_document(self) -> None:
-        """Create the document that was offered (F1)."""
+        """Create the new document that the editor offered to create (F1)."""
         if self.stage is not EditorStage.OFFERED:
             return
         try:
@@ -151,7 +151,7 @@ class EditorModel:
         self._opened(document)
 
     def cancel_offer(self) -> None:
-        """Cancel the offer of a new document (Esc)."""
+        """Withdraw the offer to create a new document (Esc)."""
         if self.stage is EditorStage.OFFERED:
             self.clear_message()
             self._shut()
@@ -182,7 +182,7 @@ class EditorModel:
 
     @property
     def name(self) -> str:
-        """Return the name of the document or of the new file that is offered."""
+        """Return the name of the document, or of the new file that the editor offers to create."""
         return self.document.name if self.document else self._offered
 
     def update_text(self, text: str) -> None:
@@ -192,7 +192,7 @@ class EditorModel:
             self.draft_store.set_text(self.document, text)
 
     def preview_text(self, text: str) -> None:
-        """Prove the text that a form would produce, without storing it."""
+        """Prove the text that a form would produce, without storing that text."""
         self.live_proof.submit_text(self.name, end_last_line(text), self.has_block_delete)
 
     def is_dirty(self, text: str) -> bool:
@@ -201,7 +201,7 @@ class EditorModel:
         return document is not None and text != document.text
 
     def restore_version(self, text: str, version_number: int) -> None:
-        """Replace the text with that of an older version, so that one undo reverses the change."""
+        """Replace the text with the text of an older version, as one step of the undo history."""
         self._put(text, restored=True)
         self.message = messages.VERSION_RESTORED.format(version_number)
 
@@ -258,8 +258,8 @@ class EditorModel:
     def save_and_leave(self, text: str, *, should_load: bool = False) -> None:
         """Save changes and close the editor.
 
-        An empty new file is discarded. If ``should_load`` is set, the program is then loaded (F3).
-        Otherwise the loaded program stays loaded (F1).
+        An empty new file is discarded. If ``should_load`` is True (F3), the saved program is then loaded.
+        Otherwise (F1), the loaded program does not change.
         """
         document, self._to_desk = self.document, should_load
         if document is None or self.stage is not EditorStage.OPEN:
@@ -274,7 +274,7 @@ class EditorModel:
     def discard_and_leave(self, text: str) -> None:
         """Close the editor without saving.
 
-        If the text has unsaved changes, the operator must first confirm with another key.
+        If the text has unsaved changes, the operator must first confirm this.
         """
         if self.stage is not EditorStage.OPEN:
             return
@@ -335,8 +335,8 @@ class EditorModel:
 def open_editor(desk: Desk, editor: EditorModel) -> bool:
     """Open the editor with the program whose name was typed, or else with the loaded program.
 
-    An unknown name is offered as a new file. Returns False if the editor cannot open; TurnDesk then shows
-    the reason.
+    For an unknown name, the editor offers to create a new file. Returns False if the editor cannot open;
+    TurnDesk then shows the reason.
     """
     name, now = editor.pending_name.strip(), desk.program_loader.loaded_program
     editor.pending_name = ""
@@ -354,7 +354,7 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
 
 
 def find_load_label(desk: Desk, editor: EditorModel, *, is_dirty: bool) -> str:
-    """Return the label of F3, which loads saved changes or a text that is not loaded."""
+    """Return the label of F3: SAV+LOAD, LOAD or LEAVE, depending on what F3 would do now."""
     if is_dirty:
         return "SAV+LOAD"
     document, now = editor.document, desk.program_loader.loaded_program
@@ -363,7 +363,7 @@ def find_load_label(desk: Desk, editor: EditorModel, *, is_dirty: bool) -> str:
 
 
 def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
-    """Load the closed program if F3 requires this, or else report which program remains loaded."""
+    """Load the closed program if F3 requested it. Otherwise, report which program is still loaded."""
     path, now = closed.path, desk.program_loader.loaded_program
     if closed.is_changed:
         desk.storage_state.recheck_file()

@@ -42,10 +42,10 @@ if TYPE_CHECKING:
 
 
 class EditorPathView(PathView):
-    """Path of the edited text.
+    """View of the path of the edited text.
 
-    A view that the operator adjusted does not change while the text changes. When a path is touched, the
-    line is passed to the ``jump_to_line`` function of the constructor.
+    While the text changes, the view keeps the zoom and pan that the operator set. When the operator touches
+    a path, the constructor's ``jump_to_line`` function receives the source line.
     """
 
     title = "PATH TO THE CURSOR"
@@ -64,11 +64,11 @@ class EditorPathView(PathView):
 
     @property
     def tip_position(self) -> TipPosition:
-        """Return the position of the tool tip at the end of the cursor line."""
+        """Return the position of the tool tip at the end of the cursor line's motion."""
         return self._tip or TipPosition()
 
     def follow_line(self, line: int) -> None:
-        """Move the tool tip to the end of a source line.
+        """Move the tool tip to the end of a source line's motion.
 
         If the line contains no motion, the tip moves to the end of the nearest earlier line with motion.
         """
@@ -84,7 +84,7 @@ class EditorPathView(PathView):
         self.mark(picture.find_blocks_for_line(line))
 
     def jump_to_path_line(self) -> str:
-        """Move the cursor to the source line of the path at the crosshair.
+        """Move the cursor to the source line of the path element at the crosshair.
 
         Returns a message if the crosshair is not on the path, or else an empty string.
         """
@@ -111,7 +111,7 @@ class EditorPathView(PathView):
         return {key: partial(self.pan_view, *step) for key, step in steps.items()}
 
     def _set_measured_point(self) -> None:
-        """Set a point of the measurement at the crosshair."""
+        """Set one point of a measurement to the position of the crosshair."""
         if self.measurement is not None:
             self.measurement.set_point()
             self.update()
@@ -129,9 +129,9 @@ FINDING_ROW_HEIGHT = 5.2  # units: two lines of text, at least a fingertip high
 
 
 class FindingList(RowPanel):
-    """List of findings in the order of the lines.
+    """List of findings, sorted by line.
 
-    The finding of the cursor line is marked and stays visible.
+    The finding in the cursor line is marked and always visible.
     """
 
     scroll_step = 1
@@ -152,7 +152,7 @@ class FindingList(RowPanel):
 
     @property
     def words(self) -> str:
-        """Return the title line of the list."""
+        """Return the title of the list."""
         found = self.findings
         if found.error_text:
             return found.error_text
@@ -168,9 +168,9 @@ class FindingList(RowPanel):
         )
 
     def find_next_error(self, line: int) -> Diagnostic | None:
-        """Return the next error after a line, or None if no finding has a line.
+        """Return the first error after a line, or None if no finding has a line number.
 
-        After the last line, the search continues at the start of the list. If there are no errors, the next
+        After the last line, the search continues at the first line. If there are no errors, the next
         warning or note is returned.
         """
         placed = [d for d in self.findings.diagnostics if d.line]
@@ -220,7 +220,7 @@ HEAD_KEY_WIDTH = 14.0  # units: width of the key that shows the keyboard and of 
 class EditorHeading(NamedTuple):
     """Content of the head line.
 
-    ``mark`` is CHANGED, SAMPLE or NEW, or empty for an unchanged file.
+    ``mark`` is CHANGED, SAMPLE or NEW. It is an empty string for an unchanged file.
     """
 
     name: str = ""
@@ -229,7 +229,7 @@ class EditorHeading(NamedTuple):
 
 
 class EditorHeadLine(Panel):
-    """Head line with the edited program, which can differ from the loaded program in the title line."""
+    """Head line with the edited program. The title line shows the loaded program instead."""
 
     background_color = "panel"
     heading = RedrawingAttribute(EditorHeading())
@@ -328,7 +328,7 @@ def make_editor_layout(
 
 
 class EditorParts(Page):
-    """Editor page with its parts, which ``EditorPage`` creates.
+    """Editor page with its parts and their layout, the base class of ``EditorPage``.
 
     ``mode`` determines which parts are visible.
     """
@@ -350,7 +350,7 @@ class EditorParts(Page):
     _with_letters = False
 
     def show_text(self) -> None:
-        """Update the heading, the findings and the picture for the present text."""
+        """Update the heading, the findings and the picture for the current text."""
         editor = self.editor
         line, column, count = (
             self.text_field.cursor_line,
@@ -371,7 +371,7 @@ class EditorParts(Page):
         self._show_path(findings.picture, line)
 
     def _show_path(self, picture: ProgramPicture | None, line: int) -> None:
-        """Show the path up to the cursor line, or on a mill the working plane of that line in 3D."""
+        """Show the path up to the cursor line. On a mill, show the working plane of that line in 3D."""
         scene = picture.scene if picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(
@@ -386,7 +386,7 @@ class EditorParts(Page):
         self.path_view.draw_slice()
 
     def show_mode(self) -> None:
-        """Show the parts that belong to the present mode."""
+        """Show the parts that belong to the current mode."""
         self.path_view.set_measuring(is_on=self.mode is EditorMode.PATH)
         self.version_list.setVisible(self.mode is EditorMode.HISTORY)
         self.code_list.setVisible(self.mode is EditorMode.CODES)
@@ -448,7 +448,7 @@ class EditorParts(Page):
             part.update()
 
     def apply_theme(self) -> None:
-        """Apply the present colors and font sizes to all parts."""
+        """Apply the current colors and font sizes to all parts."""
         self.text_field.apply_theme()
         self.question_line.apply_theme()
         self.path_view.redraw()

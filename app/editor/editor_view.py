@@ -47,7 +47,7 @@ KeyActionMap = dict[int, Callable[[], None]]
 
 
 class EditorPage(EditorParts):
-    """Editor page, which opens with the loaded program or with a program whose name was typed.
+    """Editor page for the loaded program or for a program whose name was typed.
 
     The method ``eventFilter`` receives the keys of the question line.
     """
@@ -81,19 +81,19 @@ class EditorPage(EditorParts):
     # --- calls of the main window --------------------------------------------------------------------
 
     def can_open(self) -> bool:
-        """Return whether the editor can open.
+        """Return whether the editor can open; if possible, open it.
 
         The editor cannot open while a program runs or the spindle turns.
         """
         return self.editor.stage is not EditorStage.CLOSED or open_editor(self.desk, self.editor)
 
     def on_open(self) -> None:
-        """Reset the page while the program is being read."""
+        """Reset the page when it opens, while the program is still being read."""
         self._target = page_table.AUTOMATIC
         self.enter_mode(EditorMode.TEXT)
 
     def try_leave(self) -> bool:
-        """Start saving and return whether the page can close now.
+        """Start saving the text, and return whether the page can close now.
 
         If the result is False, the page closes after the file is saved.
         """
@@ -105,12 +105,12 @@ class EditorPage(EditorParts):
         return self.editor.stage is EditorStage.CLOSED
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the present function keys."""
+        """Return the labels of the current function keys."""
         now = self._find_mode_keys()
         return tuple(now[n].label if n in now else "" for n in range(1, 11))
 
     def make_key_actions(self) -> KeyActions:
-        """Return the actions of the present function keys."""
+        """Return the actions of the current function keys."""
         found = {f"F{number}": key.action for number, key in self._find_mode_keys().items()}
         found["Codes"] = self.complete_code
         found |= {name: partial(self.open_panel, name) for name in self.editor_panel.KEYS}
@@ -128,10 +128,10 @@ class EditorPage(EditorParts):
         return not self.editor.message and self.editor.stage is not EditorStage.OFFERED
 
     def handle_escape(self) -> bool:
-        """Cancel the question, mode or message, or else close the editor.
+        """Cancel the question, mode or message. If there is none, close the editor.
 
-        The editor does not close if the text has unsaved changes. During motion, Esc starts a feed hold
-        instead, unless a question is pending. Returns False if the window must handle Esc.
+        If the text has unsaved changes, the editor does not close. While an axis moves and no question is
+        pending, Esc starts a feed hold instead. Returns False if the window must handle Esc.
         """
         if self._moving and self.is_esc_stop_key():
             self.desk.start_feed_hold()  # Esc must do the safe action on every page.
@@ -156,7 +156,7 @@ class EditorPage(EditorParts):
         return self.editor.message if self.editor.pending_action else ""
 
     def prompt_text(self) -> str:
-        """Return the last message, or else the finding of the cursor line."""
+        """Return the last message, or the finding of the cursor line if there is no message."""
         if self.editor.message:
             return self.editor.message
         if self._moving:
@@ -174,7 +174,7 @@ class EditorPage(EditorParts):
         return messages.SAVE_HINT
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Process finished work, prove the typed text and update the page."""
+        """Process finished work, submit typed text for proof, and update the page."""
         editor = self.editor
         self._moving = snapshot.state in MOVING_STATES
         editor.poll()
@@ -192,7 +192,7 @@ class EditorPage(EditorParts):
         self.code_list.refresh()
 
     def _update_stage(self) -> None:
-        """Change the mode when the editor waits for a name or offers a new file."""
+        """Change the mode if the editor is waiting for a name or offers to create a new file."""
         stage = self.editor.stage
         if stage is EditorStage.NAMING and self.mode is not EditorMode.NAME:
             self.enter_mode(EditorMode.NAME)
@@ -210,7 +210,7 @@ class EditorPage(EditorParts):
     # --- the function keys ---------------------------------------------------------------------------
 
     def _find_mode_keys(self) -> ModeKeys:
-        """Return the function keys of the present mode."""
+        """Return the function keys of the current mode."""
         word = "SAV+MENU" if self.mode is EditorMode.TEXT and self.text_synchronizer.is_dirty else "MENU"
         menu, back = (
             FunctionKey(word, partial(self.save_and_open_page, page_table.MENU)),
@@ -294,7 +294,7 @@ class EditorPage(EditorParts):
     def _show_finding(self, found: Diagnostic) -> None:
         """Move the cursor to a finding.
 
-        For a finding about the part, the picture shows the part after that line.
+        If the finding is about the machined part, the picture shows the part after that line.
         """
         self.move_cursor_to(found.line, found.column)
         if found.block_number:
@@ -334,7 +334,7 @@ class EditorPage(EditorParts):
             self.enter_mode(EditorMode.TEXT)
 
     def complete_code(self) -> None:
-        """Complete the typed code, or show the code at the cursor in the list of codes."""
+        """Complete the typed code. If nothing is typed, show the code at the cursor in the list of codes."""
         if self.editor.stage is not EditorStage.OPEN or self.mode not in {EditorMode.TEXT, EditorMode.CODES}:
             return
         if self.code_list.open_choices():
@@ -343,14 +343,14 @@ class EditorPage(EditorParts):
             self.editor.message = messages.PROOF_PENDING
 
     def focus_path(self) -> None:
-        """Move the keyboard focus to the path, to measure it or to find the line of a move."""
+        """Move the keyboard focus to the path, so that the operator can measure it or find a source line."""
         if self.path_view.has_path:
             self.enter_mode(EditorMode.PATH)
         else:
             self.editor.message = messages.NO_PATH
 
     def open_panel(self, key_name: str = "") -> None:
-        """Open the panel of an optional feature by its key.
+        """Open the panel of an optional feature, which is identified by its key.
 
         If a panel is already open, return to the text.
         """
@@ -365,7 +365,7 @@ class EditorPage(EditorParts):
             self.enter_mode(EditorMode.PANEL)
 
     def _make_from_file(self, file: Path) -> None:
-        """Open the form for the drawing file from which this program is generated."""
+        """Open the form for the drawing file from which the edited program was generated."""
         self.editor.source_drawing = None
         self.open_panel()
         if self.mode is EditorMode.PANEL:
@@ -384,7 +384,7 @@ class EditorPage(EditorParts):
         return self.mode is EditorMode.PANEL
 
     def _jump_to_line(self) -> None:
-        """Move the cursor to the line that programs the path at the crosshair."""
+        """Move the cursor to the program line that produces the path at the crosshair."""
         self.editor.message = self.path_view.jump_to_path_line()
 
     # --- question line ---------------------------------------------------------------------------------
@@ -416,7 +416,7 @@ class EditorPage(EditorParts):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Handle the keys of the question line.
 
-        The field that receives the focus also receives the keys of the drawn keyboard.
+        Keys of the drawn keyboard go to the field with the focus.
         """
         if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
             self.letter_pad.set_target_field(watched)
@@ -436,7 +436,7 @@ class EditorPage(EditorParts):
         return action is not None
 
     def _find_action(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """Return the action of a key that is neither text nor a function key, or None."""
+        """Return the action of a key that is neither text nor a function key, or None without an action."""
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
             return self._make_chord_actions().get(key)

@@ -1,6 +1,6 @@
-"""Proof of the program while the operator types.
+"""Live proof of the program while the operator types.
 
-The proof runs on a worker, for the latest text only, and does not delay the keys.
+A worker proves only the latest text, so that typing is never delayed.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _SEVERITY_WEIGHTS = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 
 @dataclass(frozen=True, slots=True)
 class ProofFindings:
-    """Result of proving the text with the number ``number``.
+    """Result of proving the text that has the number ``number``.
 
-    ``picture`` can belong to an older text.
+    ``picture`` can show an older text.
     """
 
     number: int = 0
@@ -44,7 +44,7 @@ class ProofFindings:
 
     @property
     def error_count(self) -> int:
-        """Return the number of errors, which prevent a run."""
+        """Return the number of errors. A program with errors cannot run."""
         return sum(d.severity is Severity.ERROR for d in self.diagnostics)
 
     @property
@@ -54,7 +54,7 @@ class ProofFindings:
 
 
 def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
-    """Return the most severe finding of each line.
+    """Return the most severe finding of each line, by line number.
 
     If several findings of a line have the same severity, the first one is returned. Line 0 represents the
     whole file.
@@ -69,9 +69,9 @@ def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
 
 @dataclass(slots=True)
 class LiveProof:
-    """Proof of the latest text.
+    """Live proof of the latest text.
 
-    ``submit_text`` and ``current_findings`` never block, and older texts are skipped.
+    ``submit_text`` and ``current_findings`` never block. Only the latest text is proved.
     """
 
     loading_steps: LoadingSteps
@@ -94,23 +94,23 @@ class LiveProof:
 
     @property
     def is_outdated(self) -> bool:
-        """Return whether a text newer than that of ``current_findings`` is waiting or being proved."""
+        """Return whether a text newer than the one in ``current_findings`` still has to be proved."""
         return self.worker.is_busy
 
     def submit_text(self, name: str, text: str, block_delete: bool = False) -> int:
-        """Submit the present text for proving, and return its number."""
+        """Submit the current text for proving, and return its number."""
         self._number += 1
         work = partial(self._prove_text, self._number, ProgramSource(name, text), block_delete)
         self.worker.request_work(work, self._show, self._failed)
         return self._number
 
     def clear_findings(self) -> None:
-        """Clear the findings because another document opens."""
+        """Clear the findings before another document opens."""
         self._number += 1
         self._now = ProofFindings(self._number)
 
     def close(self) -> None:
-        """Cancel the present proof and stop the worker."""
+        """Cancel the current proof and stop the worker."""
         self.worker.close()
 
     def _prove_text(
@@ -118,7 +118,7 @@ class LiveProof:
     ) -> ProofFindings:
         """Prove a text on the worker.
 
-        The findings are published before the picture is drawn. The findings about the part follow last.
+        The findings of the proof are published first. The picture and the findings about the part follow.
         """
         job = self.loading_steps.make_job(source, block_delete)
         proved = self.loading_steps.prove_job(job, request)
@@ -147,5 +147,5 @@ class LiveProof:
 
 
 def describe_finding(finding: Diagnostic, line: int) -> str:
-    """Return the prompt for a finding of a line."""
+    """Return the prompt text that describes a finding in a line."""
     return Message("LINE {line}: {value} {hint}", line=line, value=finding.text, hint=finding.hint).strip()

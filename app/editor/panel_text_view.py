@@ -1,4 +1,4 @@
-"""The text of the editor's panel, whose form is proved as a preview and then written into the text field."""
+"""Text of the editor's panel, which is proved as a preview and then copied into the text field."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.screen.page_base import EditorPanel
 
 
 class PanelSynchronizer:
-    """Synchronization between the panel of an optional feature and the text field."""
+    """Synchronizer that copies text between the text field and the panel of an optional feature."""
 
     def __init__(
         self,
@@ -23,7 +23,7 @@ class PanelSynchronizer:
         self._shown = (0, 0)
 
     def open_panel(self, key_name: str) -> bool:
-        """Open the panel for the present text by its key, and return whether it is open now.
+        """Open the panel with the given key for the current text, and return whether the panel is open.
 
         If it cannot open, the editor shows the reason.
         """

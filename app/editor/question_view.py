@@ -23,10 +23,10 @@ from core.message import Message
 
 @dataclass(frozen=True, slots=True)
 class TextSearch:
-    """Search for ``search_text`` that ignores case.
+    """Case-insensitive search for ``search_text``.
 
-    ``matches_whole_words`` excludes matches inside longer words and numbers. F100 is then not found in
-    F1000 or F100.5, so replacing F100 does not change those words.
+    ``matches_whole_words`` excludes matches inside longer words and numbers. A search for F100 then skips
+    F1000 and F100.5, and replacing F100 does not change them.
     """
 
     search_text: str
@@ -61,7 +61,7 @@ class TextSearch:
         )
 
     def words(self, text: str) -> str:
-        """Return a display text with the number of matches."""
+        """Return a text for the operator with the number of matches."""
         count = len(self.find_matches(text))
         found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
         if not self.matches_whole_words:
@@ -97,7 +97,7 @@ MESSAGE_WIDTH = 34.0  # units: width of the message
 
 
 class QuestionLine(Panel):
-    """Line with one or two labeled fields, and a message about the entry on the right."""
+    """Line with one or two labeled fields. A message about the entry is on the right."""
 
     background_color = "panel"
     message_text = RedrawingAttribute("")  # message about the entry
@@ -167,7 +167,7 @@ class QuestionLine(Panel):
 
 
 class TextFinder:
-    """Finder that searches the program for the text typed in the question line.
+    """Finder for the text that the operator types in the question line.
 
     The cursor moves to the next match.
     """
@@ -180,7 +180,7 @@ class TextFinder:
     def find_initial_text(self) -> str:
         """Return the initial search text.
 
-        This is the selection if it is within one line, or else the previous search text.
+        This is the selected text if it is within one line, or else the previous search text.
         """
         marked = self._field.textCursor().selectedText()
         return marked if marked and "\u2029" not in marked else self._ask.first_field.text()
@@ -217,7 +217,7 @@ class TextFinder:
             self.select_match(1)
 
     def replace_all_matches(self) -> None:
-        """Replace all matches, so that one undo reverses the change."""
+        """Replace all matches as one step of the undo history."""
         places = self._places()
         if places:
             self._field.replace_ranges(places, len(self._search.search_text), self._ask.second_field.text())
@@ -253,7 +253,7 @@ class TextFinder:
 def show_mode_question(
     question_line: QuestionLine, text_finder: TextFinder, mode: EditorMode, cursor_line: int, file_name: str
 ) -> None:
-    """Show the question of a mode of the editor, or hide the question line if the mode has none."""
+    """Show the question of an editor mode, or hide the question line if the mode has no question."""
     if mode is EditorMode.FIND:
         question_line.show_question("FIND", "REPLACE WITH", initial_text=text_finder.find_initial_text())
         text_finder.count_matches()

@@ -73,7 +73,7 @@ class SyntaxHighlighter(QSyntaxHighlighter):
             self.rehighlight()
 
     def apply_theme(self) -> None:
-        """Apply the present colors.
+        """Apply the current colors.
 
         The text is highlighted again only if the colors have changed.
         """
@@ -83,9 +83,9 @@ class SyntaxHighlighter(QSyntaxHighlighter):
             self.rehighlight()
 
     def highlightBlock(self, text: str) -> None:
-        """Highlight a line.
+        """Highlight one line.
 
-        Qt calls this method after a change of the line or of its start state.
+        Qt calls this method when the text of the line or the state of the preceding line changes.
         """
         found, state = color_program_line(self._dialect, text, max(self.previousBlockState(), PLAIN_STATE))
         self.setCurrentBlockState(state)
@@ -151,7 +151,7 @@ class ProgramTextField(QPlainTextEdit):
         self.setTextCursor(cursor)
 
     def move_cursor_to(self, line: int, column: int = 0) -> None:
-        """Move the cursor to a line and column, and scroll so that the line is in the middle."""
+        """Move the cursor to a line and column, and scroll so that the line is vertically centered."""
         block = self.document().findBlockByNumber(max(0, min(self.blockCount(), line) - 1))
         cursor = QTextCursor(block)
         cursor.setPosition(block.position() + max(0, min(column - 1, block.length() - 1)))
@@ -185,9 +185,9 @@ class ProgramTextField(QPlainTextEdit):
         self.setTextCursor(cursor)
 
     def replace_ranges(self, positions: tuple[int, ...], length: int, replacement: str) -> None:
-        """Replace the ranges with ``replacement``, so that one undo reverses the change.
+        """Replace several ranges with ``replacement``, as one step of the undo history.
 
-        The ranges have the start positions ``positions`` and the same ``length``.
+        The ranges start at ``positions`` and have the same ``length``.
         """
         cursor = QTextCursor(self.document())
         cursor.beginEditBlock()
@@ -198,14 +198,14 @@ class ProgramTextField(QPlainTextEdit):
         cursor.endEditBlock()
 
     def show_findings(self, line_findings: Mapping[int, Diagnostic]) -> None:
-        """Show the findings in their lines."""
+        """Show the findings next to their lines."""
         if line_findings != self._found:
             self._found = line_findings
             self.line_margin.update()
             self.viewport().update()
 
     def find_finding(self, line: int) -> Diagnostic | None:
-        """Return the finding in a line, or None."""
+        """Return the finding in a line, or None if the line has no finding."""
         return self._found.get(line)
 
     def apply_theme(self) -> None:
@@ -244,7 +244,7 @@ class ProgramTextField(QPlainTextEdit):
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Clear the selection before a mouse press is handled.
 
-        Dragging selected text would block all keys, including the stop keys.
+        Dragging selected text with the mouse would block all keys, including the stop keys.
         """
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self.textCursor().hasSelection() and event.button() is Qt.MouseButton.LeftButton and not shift:
@@ -317,7 +317,7 @@ class LineMargin(QWidget):
 
     @property
     def width_px(self) -> int:
-        """Return the width in pixels that the present number of digits needs."""
+        """Return the width of the margin in pixels, which depends on the number of digits."""
         digits = max(3, len(str(self._field.blockCount())))
         return round((3.4 + 1.35 * digits) * self._field.theme.unit_px)
 
@@ -357,7 +357,7 @@ _CHORD_KEYS = frozenset(
 
 
 class TextSynchronizer:
-    """Synchronization between the text field and the editor model, at most once per frame."""
+    """Synchronizer between the text field and the editor model, which acts at most once per frame."""
 
     def __init__(self, text_field: ProgramTextField, editor_model: EditorModel) -> None:
         self._field, self._editor = text_field, editor_model
@@ -376,14 +376,14 @@ class TextSynchronizer:
             self._editor.clear_message()  # Typing clears the message and cancels a question.
 
     def read_text(self) -> str:
-        """Return the present text of the field."""
+        """Return the current text of the field."""
         return self._field.toPlainText()
 
     @property
     def is_dirty(self) -> bool:
         """Return whether the text has unsaved changes.
 
-        The text is compared again only after a change.
+        The comparison is cached until the text changes.
         """
         seen = (self._field.document().revision(), self._editor.document)
         if seen != self._seen:
@@ -411,9 +411,9 @@ class TextSynchronizer:
         field.setReadOnly(editor.stage is not EditorStage.OPEN)
 
     def _update_dialect(self) -> None:
-        """Set the language that the file name indicates.
+        """Set the programming language that the file name indicates.
 
-        New colors do not count as a change of the text.
+        The resulting change of colors does not count as a change of the text.
         """
         document = self._editor.document
         if document is not None:
@@ -423,7 +423,7 @@ class TextSynchronizer:
 
     @property
     def mark(self) -> str:
-        """Return the word for the state of the text compared with its file."""
+        """Return the word for the save state of the text: whether it differs from its file."""
         document = self._editor.document
         if document is None:
             return ""

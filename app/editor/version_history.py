@@ -63,7 +63,7 @@ MAX_COMPARED_LINES = 20_000  # number of lines above which only the first and la
 
 @dataclass(frozen=True, slots=True)
 class DifferenceRow:
-    """Line of a comparison.
+    """One line of a comparison.
 
     ``sign`` is + for a new line, - for an old line, a blank for a line in both texts, and … for omitted
     lines.
@@ -116,9 +116,9 @@ def _rows(
 
 @dataclass(slots=True)
 class VersionHistory:
-    """Versions of a program, one of which is selected and compared with the present text.
+    """Version history of a program. The selected version is compared with the current text.
 
-    ``changes`` are the differences between the selected version and the present text.
+    ``changes`` are the differences between the selected version and the current text.
     """
 
     archive: VersionArchive
@@ -141,7 +141,7 @@ class VersionHistory:
         self.worker.enqueue_work(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
 
     def mark(self, index: int) -> None:
-        """Select a version and compare its text with the present text."""
+        """Select a version and compare its text with the current text."""
         if not self.rows:
             return
         self.marked = max(0, min(len(self.rows) - 1, index))
@@ -155,7 +155,7 @@ class VersionHistory:
         self.worker.request_work(compare, self._compared, self._failed)
 
     def order_texts(self, selected: str, current: str) -> tuple[str, str]:
-        """Return the texts of the comparison, the old text first."""
+        """Return the two texts to compare, the older text first."""
         return selected, current
 
     def heading(self) -> str:
@@ -168,7 +168,7 @@ class VersionHistory:
         return self.rows[self.marked].number if self.rows else 0
 
     def words(self) -> str:
-        """Return the status of the selected version as text."""
+        """Return a text that describes the status of the selected version."""
         if self.error_text:
             return self.error_text
         if not self.rows:

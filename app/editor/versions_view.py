@@ -33,8 +33,8 @@ SIGN_COLORS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
 class VersionList(RowPanel):
     """List of versions with the comparison of the selected version.
 
-    The history stores the selection. The comparison scrolls, and the selected version is in the middle of
-    the list.
+    The history stores which version is selected. The comparison scrolls, and the selected version is in the
+    middle of the list.
     """
 
     title = "HISTORY"

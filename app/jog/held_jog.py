@@ -1,9 +1,8 @@
-"""Jog while one key or touch is held down, with its steps, speeds and directions.
+"""Jog with a key or touch that is held down: steps, speeds and directions.
 
 The motion ends when the key is released, when the window loses the keyboard focus, when another key or
-touch is pressed, when the step changes, when the screen stalls, or when the key stops repeating. If the
-motion ends for another reason than a release, nothing moves until all keys are released and one key is
-pressed again.
+touch is pressed, when the step changes, when the screen stalls, or when the key stops repeating. Unless the
+motion ended by a release, no axis moves again until all keys are released and a key is pressed.
 """
 
 from __future__ import annotations
@@ -36,10 +35,10 @@ CONTINUOUS_STEP_INDEX = -1
 
 @dataclass(slots=True)
 class JogSpeeds:
-    """Selected step and speed.
+    """Selected step and speed of the jog.
 
-    ``step_index`` is CONTINUOUS_STEP_INDEX or the index of one of four lengths. ``speed_index`` is the index
-    of one of four speeds.
+    ``step_index`` is CONTINUOUS_STEP_INDEX or the index of one of four step lengths. ``speed_index`` is the
+    index of one of four speeds.
     """
 
     machine: Machine
@@ -63,10 +62,10 @@ class JogSpeeds:
         return self.machine.find_axis(axis).is_rotary
 
     def find_step_length(self, axis: str, value_mode: ValueMode, step_index: int | None = None) -> float:
-        """Return the length of a step in mm or degrees.
+        """Return the travel of the axis in one step, in mm or degrees.
 
-        If X is displayed as a diameter, a step in X changes the displayed diameter by the length of the
-        step. The axis then moves half of this length, which is the returned value.
+        If X is displayed as a diameter, the displayed diameter changes by the selected length, so the
+        result for X is half of the selected length.
         """
         step_index = self.step_index if step_index is None else step_index
         if self._turns(axis):
@@ -75,7 +74,7 @@ class JogSpeeds:
         return length / 2 if axis == "X" and value_mode.is_diameter else length
 
     def format_step(self, axis: str, value_mode: ValueMode, step_index: int) -> str:
-        """Return the length of a step of an axis as text."""
+        """Return the length of a step as text, for one axis."""
         return (
             _short(DEGREE_STEPS[step_index])
             if self._turns(axis)
@@ -83,7 +82,7 @@ class JogSpeeds:
         )
 
     def find_step_speed(self, axis: str) -> float:
-        """Return the speed of a step in mm/s or degrees/s."""
+        """Return the speed of a jog step in mm/s or degrees/s."""
         if self._turns(axis):
             return min(ROTARY_STEP_SPEED_DEG_S, self.machine.find_axis(axis).max_speed)
         return min(STEP_SPEED_MM_S, self.machine.limits.manual_rapid)
@@ -140,7 +139,7 @@ _NO_ARROW: ArrowPoint = (0, 0)
 class JogDirection:
     """Jog direction with its axis and sign, its cell in the cross of arrows, and its key.
 
-    ``key_name`` is the name of the key in Qt, and ``label`` is the text of the key.
+    ``key_name`` is the Qt name of the key, and ``label`` is the text on the key.
     """
 
     axis: str
@@ -183,7 +182,7 @@ _ROTARY_DIRECTIONS = (
 def make_jog_directions(machine: Machine) -> tuple[JogDirection, ...]:
     """Return all jog directions of a machine.
 
-    A lathe has directions of C only if its spindle can be positioned.
+    A lathe has C directions only if its spindle can be positioned.
     """
     if machine.kind != "mill":
         turning = tuple(
@@ -206,7 +205,7 @@ RENEWALS_PER_LEASE = 4  # Renewals per lease.
 
 @dataclass(slots=True)
 class ActiveJog:
-    """Continuous jog that is active while its key or touch is held down."""
+    """Continuous jog that remains active while its key or touch is held down."""
 
     key_source: str
     axis: str
@@ -222,11 +221,11 @@ class ActiveJog:
 
 @dataclass(slots=True)
 class HeldJog:
-    """Jog by one key or touch that is held down.
+    """Jog with a key or touch that is held down.
 
-    ``lease_s`` is the time in seconds after which the motion ends unless it is renewed. ``find_refusal``
-    returns the reason why jogging is not possible now, or an empty string. ``read_clock`` returns a monotonic
-    time in seconds.
+    ``lease_s`` is the time in seconds after which the motion ends unless the lease is renewed.
+    ``find_refusal`` returns the reason why jogging is not possible now, or an empty string. ``read_clock``
+    returns a monotonic time in seconds.
     """
 
     starting_action: ClassVar[StartingAction] = StartingAction.JOG
@@ -253,8 +252,8 @@ class HeldJog:
     ) -> None:
         """Handle a press on a direction.
 
-        ``source`` identifies the key or touch. ``button_name`` is the input name of a button on the machine,
-        or empty.
+        ``source`` identifies the key or touch. ``button_name`` is the input name of a button on the
+        machine, or an empty string for other keys.
         """
         others, self._ended = self.pressed_keys - {key_source}, ""
         self.is_rapid_armed = False
@@ -272,7 +271,7 @@ class HeldJog:
     def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         """Start a step or a continuous jog.
 
-        A subclass can start another motion.
+        A subclass can start another type of motion.
         """
         if self.jog_speeds.step_index != CONTINUOUS_STEP_INDEX:
             self._start_step(axis, sign, rapid)
@@ -308,7 +307,7 @@ class HeldJog:
         self.post_command(command)
 
     def record_repeat(self, key_source: str) -> None:
-        """Store the time of a key repeat, which shows that the key is still held down."""
+        """Store the time of a key repeat. A repeat shows that the key is still held down."""
         if self.active_jog is not None and self.active_jog.key_source == key_source:
             self.active_jog.repeat_time_s = self.read_clock()
 
@@ -321,7 +320,7 @@ class HeldJog:
     def stop_for_other_key(self) -> None:
         """Stop the jog because another key was pressed.
 
-        The operator may then no longer be watching the axis.
+        An operator who presses another key may no longer be watching the axis.
         """
         if self.active_jog is not None:
             self.stop_jog(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
@@ -332,7 +331,7 @@ class HeldJog:
             self.stop_jog(tr("SHIFT RELEASED. RAPID STOPPED"))
 
     def release_all(self, reason: str = "") -> None:
-        """Mark all keys as released and stop the jog, because no release event will arrive."""
+        """Treat all keys as released and stop the jog, because release events may not arrive."""
         self.pressed_keys.clear()
         if self.active_jog is not None:
             self.stop_jog(reason)
@@ -340,7 +339,7 @@ class HeldJog:
     def stop_jog(self, reason: str) -> None:
         """Stop the jog.
 
-        Nothing moves until all keys are released.
+        No axis moves again until all keys are released.
         """
         if self.active_jog is not None:
             self.active_jog = None
@@ -350,7 +349,7 @@ class HeldJog:
             self.show_message(reason)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the lease of the jog, or stop the jog after a fault.
+        """Renew the lease of the jog, or stop the jog if it must not continue.
 
         This method is called once per frame.
         """
@@ -376,7 +375,7 @@ class HeldJog:
             self.post_command(StopJog())
 
     def _repeat_reason(self, snapshot: Snapshot) -> None:
-        """Show the reason for the stop again, because a change of state has cleared the first message."""
+        """Show the reason for the stop again if a change of the machine state has cleared it."""
         if self._ended and snapshot.state is not MachineState.JOG:
             self.show_message(self._ended)
             self._ended = ""

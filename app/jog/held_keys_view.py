@@ -1,4 +1,4 @@
-"""Page with keys and touch targets that move an axis while they are held down."""
+"""Page with keys and touch targets that move an axis only while they are held down."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TouchHandler = Callable[[str, str, int], None]  # Arguments: source, axis, sign.
 
 
 def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], color: str) -> None:
-    """Draw an arrow in its touch target, on the side to which the arrow points."""
+    """Draw an arrow in its touch target, at the edge toward which the arrow points."""
     size = 0.16 * min(box.width(), box.height())
     centre = box.center() + QPointF(direction[0] * 0.30 * box.width(), direction[1] * 0.28 * box.height())
     forward, side = (
@@ -33,7 +33,7 @@ def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], 
 
 
 def draw_jog_mode(painter: ThemedPainter, box: QRectF, mode_labels: tuple[str, str, str]) -> None:
-    """Draw the present jog mode in the middle of the cross.
+    """Draw the current jog mode in the middle of the cross.
 
     ``mode_labels`` are the type of the mode, its value and its unit.
     """
@@ -49,7 +49,7 @@ def draw_jog_mode(painter: ThemedPainter, box: QRectF, mode_labels: tuple[str, s
 class JogCross(TouchPanel):
     """Cross of touch targets.
 
-    An axis moves while one of its targets is touched.
+    An axis moves while its target is touched.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class JogCross(TouchPanel):
         self.axis_suffix = ""  # Mark that follows X, Y and Z in a tilted plane.
 
     def draw_cross(self, painter: ThemedPainter, area: QRectF) -> QRectF:
-        """Draw the touch targets in a rectangle and return the area in the middle of the cross."""
+        """Draw the touch targets in a rectangle, and return the free area in the middle of the cross."""
         u = self.theme.unit_px
         columns = 1 + max(2, *(each.cell_column for each in self._directions))
         wide, high = area.width() / columns, area.height() / 3
@@ -126,7 +126,7 @@ CHORD_MODIFIERS = (
 
 
 class HeldKeysModel(PageModel, Protocol):
-    """Interface of the model of the page.
+    """Interface of the model of a page with held keys.
 
     ``is_active`` is True while a key is held down or the handwheel is selected.
     """
@@ -147,7 +147,7 @@ class HeldKeysModel(PageModel, Protocol):
         ...
 
     def release_all(self) -> None:
-        """Stop the motion, because the page no longer receives key releases."""
+        """Stop the motion, because the page will not receive the key releases."""
         ...
 
 
@@ -202,7 +202,7 @@ class HeldKeysPage(ModelPage):
     def handle_key_release(self, event: QKeyEvent) -> None:
         """Handle the release of a direction key or of Shift.
 
-        Release events of a key that is repeating are ignored.
+        Release events that belong to key repeat are ignored.
         """
         if event.isAutoRepeat():
             return
@@ -222,10 +222,10 @@ class HeldKeysPage(ModelPage):
         self.model.release_all()
 
     def _has_keyboard(self) -> bool:
-        """Return whether keys reach this page and not a dialog, a menu or another window.
+        """Return whether this page receives keys, and not a dialog, a menu or another window.
 
-        Without a window manager, the window is never active. In this case, only the loss of an active state
-        is detected.
+        Without a window manager, the window is never active. Only a change from active to inactive then
+        counts as lost focus.
         """
         active = self.window().isActiveWindow()
         if not self.model.is_active:
@@ -236,7 +236,7 @@ class HeldKeysPage(ModelPage):
     def release_if_active(self) -> None:
         """Stop the motion if a key is held down or the handwheel is selected.
 
-        Otherwise, another window would receive the release event.
+        Another window could receive the release event, and the motion would not stop.
         """
         if self.model.is_active:
             self.release_all()

@@ -1,8 +1,7 @@
 """Handwheel of the Jog page, and jog buttons on the machine.
 
-The axis of the handwheel is selected by a key, by touch or by switches of the operator station. After the
-handwheel was turned off, the key can select its axis again. A switch must first be turned to another
-position.
+A key, a touch or switches of the operator station select the axis of the handwheel. After the handwheel was
+turned off, the key can select the axis again. A switch must first be turned to another position.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ WheelChoice = tuple[str, int]  # Axis and step index.
 class JogHandwheel:
     """Handwheel of the Jog page.
 
-    ``wheel_choice`` contains the axis that the handwheel moves and its step, or is None.
+    ``wheel_choice`` is the axis and the step of the handwheel, or None if no axis is selected.
     """
 
     machine: Machine
@@ -68,7 +67,7 @@ class JogHandwheel:
 
     @property
     def has_axis_switch(self) -> bool:
-        """Return whether switches of the operator station select the axis of the handwheel."""
+        """Return whether the operator station has switches that select the axis of the handwheel."""
         return any(get_axis_selector_input(name) in self.machine.inputs for name in self.axis_names)
 
     @property
@@ -80,13 +79,13 @@ class JogHandwheel:
         return self.held_jog.post_command
 
     def select_next_axis(self) -> None:
-        """Select the next axis, or no axis after the last axis."""
+        """Select the next axis, or turn the handwheel off after the last axis."""
         self.select_axis(following(("", *self.axis_names), self.wheel_choice[0] if self.wheel_choice else ""))
 
     def select_next_step(self) -> None:
-        """Select the next step per click.
+        """Select the next distance per click.
 
-        A button of the handwheel calls this function.
+        A button of the handwheel also calls this method.
         """
         if any(name in self.machine.inputs for name in STEP_FACTORS):
             return
@@ -98,7 +97,7 @@ class JogHandwheel:
     def select_axis(self, axis: str) -> None:
         """Select the axis of the handwheel by key or touch.
 
-        An empty name turns the handwheel off.
+        An empty axis name turns the handwheel off.
         """
         self._left = None
         if not self.is_available:
@@ -150,7 +149,7 @@ class JogHandwheel:
             self._renew(wanted, now)
 
     def _find_wanted_choice(self, snapshot: Snapshot) -> WheelChoice | None:
-        """Return the axis and step that are selected by key, touch or switches, or None.
+        """Return the axis and step that key, touch or switches select, or None if no axis is selected.
 
         If no switch selects the step, the step of the page applies.
         """

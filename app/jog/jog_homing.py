@@ -1,4 +1,4 @@
-"""Homing from the Jog page, with the homing state of each axis and a question before an axis moves."""
+"""Homing from the Jog page: the homing state of each axis, and a question before an axis moves."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class HomingState(StrEnum):
 class HomingQuestion:
     """Question that asks which axes to home.
 
-    Enter homes all axes in order. The letter of an axis homes that axis.
+    Enter homes all axes in order. Pressing the letter of an axis homes only that axis.
     """
 
     machine: Machine
@@ -75,7 +75,7 @@ class HomingQuestion:
         return known
 
     def find_unhomed_axes(self, snapshot: Snapshot) -> list[str]:
-        """Return the names of the axes that must be homed, in homing order."""
+        """Return the names of the axes that are not homed yet, in homing order."""
         known = self.find_states(snapshot)
         order = sorted(self.homing_axes, key=lambda axis: axis.home_order)
         return [
@@ -83,9 +83,9 @@ class HomingQuestion:
         ]
 
     def handle_home_key(self, snapshot: Snapshot, refusal: str) -> None:
-        """Handle the home key by asking which axes to home.
+        """Handle the home key: ask which axes to home.
 
-        If ``refusal`` is not empty, it is shown instead.
+        If ``refusal`` is not empty, it is shown instead of the question.
         """
         lost = self.find_unhomed_axes(snapshot)
         if refusal:
@@ -100,7 +100,7 @@ class HomingQuestion:
             self._asked = True
 
     def handle_axis_key(self, key: str, snapshot: Snapshot) -> bool:
-        """Handle a key while the question is open, and return whether it was the letter of an axis.
+        """Handle a key of the open question, and return whether the key was the letter of an axis.
 
         The letter of an axis starts homing that axis. Any other key cancels the question.
         """
@@ -119,7 +119,7 @@ class HomingQuestion:
     def handle_axis_touch(self, name: str, snapshot: Snapshot, refusal: str) -> None:
         """Handle a touch on one axis.
 
-        The first touch asks a question, and the second touch homes the axis.
+        The first touch asks for confirmation, and the second touch homes the axis.
         """
         if self.is_open and not refusal:
             self.handle_axis_key(name, snapshot)
@@ -132,7 +132,7 @@ class HomingQuestion:
         self.desk.post(HomeAxes(axis))
 
     def cancel(self) -> bool:
-        """Cancel the question and return whether it was open."""
+        """Cancel the question, and return whether the question was open."""
         was, self._asked = self.is_open, False
         if was:
             self.desk.clear_prompt_line()

@@ -1,4 +1,4 @@
-"""Model of the Jog page, with the functions of its keys and the conditions for manual motion."""
+"""Model of the Jog page: the functions of its keys and the conditions for manual motion."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class JogModel:
     def find_jog_refusal(self) -> str:
         """Return the reason why axes cannot be jogged now, or an empty string.
 
-        An open homing question is canceled.
+        This method cancels an open homing question.
         """
         state = self.desk.read_snapshot().state
         if self.desk.window_state.is_stop_held():
@@ -111,7 +111,7 @@ class JogModel:
     def _find_wheel_refusal(self) -> str:
         """Return the reason why the handwheel cannot move an axis now, or an empty string.
 
-        An open question is not canceled.
+        This method does not cancel an open question.
         """
         if self.tilted_jog.is_on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
@@ -139,7 +139,7 @@ class JogModel:
             self.manual_functions.cancel_selection()
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt that applies on the page now."""
+        """Return the prompt that applies on the Jog page now."""
         if self.tool_setting.is_setter_result:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool_setting.question_name:
@@ -147,7 +147,7 @@ class JogModel:
         return self._make_work_prompt(snapshot) or self._prompt_of_jog(snapshot)
 
     def _make_work_prompt(self, snapshot: Snapshot) -> str:
-        """Return the prompt for work other than jogging, or an empty string if there is no such work."""
+        """Return the prompt for an activity other than jogging, or an empty string."""
         hand = self.manual_functions
         if hand.is_asking_speed or hand.selected_function or hand.is_line_running(snapshot):
             return hand.prompt_text(snapshot)
@@ -180,7 +180,7 @@ class JogModel:
         self.jog_speeds.select_next_step()
 
     def select_step(self, step_index: int) -> None:
-        """Select a touched step and stop the jog."""
+        """Select the touched step and stop the jog."""
         self._another_step()
         self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step_index, False
 
@@ -190,14 +190,14 @@ class JogModel:
         self.jog_speeds.select_next_speed()
 
     def select_speed(self, speed_index: int) -> None:
-        """Select a touched speed and stop the jog."""
+        """Select the touched speed and stop the jog."""
         self._another_speed()
         self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed_index, False
 
     def toggle_rapid(self) -> None:
-        """Turn rapid on or off for the next jog by touch.
+        """Turn rapid on or off for the next touch jog.
 
-        Any other jog turns rapid off.
+        A jog by other means turns rapid off.
         """
         self._another_speed()
         self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
@@ -215,7 +215,7 @@ class JogModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def ask_tool_value(self, quantity: str) -> None:
-        """Ask for a value of the tool and stop the jog."""
+        """Ask for a value of the selected tool and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.cancel_selection()
         self.skim_cut.cancel()
@@ -230,7 +230,7 @@ class JogModel:
         return self.machine.kind == "mill"
 
     def toggle_tilt(self) -> None:
-        """Turn 3D-ROT on or off, and turn the handwheel off."""
+        """Turn 3D-ROT on or off. In both cases, turn the handwheel off."""
         self.handwheel.turn_off("")
         self.tilted_jog.toggle_tilted_frame(find_jog_refusal(self.desk.read_snapshot().state))
 
@@ -253,12 +253,12 @@ class JogModel:
         self.manual_functions.toggle_panel()
 
     def ask_master(self) -> None:
-        """Ask whether the selected tool becomes the master tool, and stop the jog."""
+        """Ask whether to make the selected tool the master tool, and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.tool_setting.ask_master()
 
     def start_setter_touch(self) -> None:
-        """Start a touch-off at the tool setter, stop the jog, and turn the handwheel off."""
+        """Arm or cancel a touch-off at the tool setter, stop the jog, and turn the handwheel off."""
         self.held_jog.stop_for_other_key()
         self.handwheel.turn_off("")
         self.homing_question.cancel()
@@ -268,7 +268,7 @@ class JogModel:
     def is_wheel_shown(self) -> bool:
         """Return whether the handwheel on the screen can move an axis now.
 
-        This handwheel exists only with a simulated operator station.
+        The handwheel is on the screen only if the operator station is simulated.
         """
         return self.handwheel.wheel_choice is not None and self.desk.station_controls.station is not None
 
@@ -283,7 +283,7 @@ class JogModel:
             station.turn_handwheel(clicks * self.handwheel.counts_per_click)
 
     def handle_home_key(self) -> None:
-        """Handle the home key by asking which axes to home."""
+        """Handle the home key: ask which axes to home."""
         self.held_jog.release_all()
         self.handwheel.turn_off("")
         self.homing_question.handle_home_key(self.desk.read_snapshot(), self._no_homing())
@@ -291,7 +291,7 @@ class JogModel:
     def handle_home_touch(self, axis: str) -> None:
         """Handle a touch on the homing target of one axis.
 
-        The first touch asks a question, and the second touch homes the axis.
+        The first touch asks for confirmation, and the second touch homes the axis.
         """
         self.held_jog.release_all()
         self.handwheel.turn_off("")
@@ -306,13 +306,13 @@ class JogModel:
     def on_open(self) -> None:
         """Prepare the model when the page opens.
 
-        Earlier offset changes are then ignored, and Cycle Start runs the lines of manual functions.
+        Offset changes made before are then ignored, and Cycle Start runs the lines of manual functions.
         """
         self.tool_setting.offset_history.on_open()
         self.manual_functions.on_open()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the window must handle it."""
+        """Handle a key, and return False if the window must handle the key."""
         if self.is_entry_open:
             return (
                 self.manual_functions.handle_key(key)
@@ -372,7 +372,7 @@ class JogModel:
         return self.held_jog.active_jog is not None or self.handwheel.wheel_choice is not None
 
     def release_all(self) -> None:
-        """Stop the jog and turn the handwheel off because the page no longer receives key events."""
+        """Stop the jog and turn the handwheel off, because the page will not receive key releases."""
         self.held_jog.release_all(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.handwheel.turn_off(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.is_rapid_armed = False
@@ -385,7 +385,7 @@ class JogModel:
     def try_leave(self) -> bool:
         """Return whether the page can close.
 
-        If the page can close, all motion, questions and entries are ended.
+        If it can close, all motion, questions and entries end.
         """
         self.held_jog.release_all()
         if not self.manual_functions.try_leave():
@@ -403,7 +403,7 @@ class JogModel:
 
 
 def find_jog_refusal(state: MachineState) -> str:
-    """Return the reason why manual motion is not possible in a machine state, or an empty string."""
+    """Return the reason why the machine state prevents manual motion, or an empty string."""
     words = {
         MachineState.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
         MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
@@ -420,8 +420,8 @@ def find_jog_refusal(state: MachineState) -> str:
 def make_jog_prompt(state: MachineState, unhomed_axes: list[str], wheel_axis: str, step_index: int) -> str:
     """Return the prompt for manual motion.
 
-    ``unhomed_axes`` are the axes that are not homed. ``wheel_axis`` is the axis of the handwheel, or empty.
-    ``step_index`` is the index of the selected step.
+    ``unhomed_axes`` are the axes that are not homed. ``wheel_axis`` is the axis of the handwheel, or an
+    empty string. ``step_index`` is the index of the selected step.
     """
     why = find_jog_refusal(state)
     if why:

@@ -1,4 +1,4 @@
-"""Jog pad with directions that move an axis while they are touched, and with steps, speeds and homing."""
+"""Jog pad with directions that move an axis while touched, and with steps, speeds and homing."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:
 
 
 def _draw_tile(painter: ThemedPainter, box: QRectF, word: str, tiles: TileRow, number: int) -> None:
-    """Draw one tile, filled if it is selected, and in a warning or alarm color if necessary."""
+    """Draw one tile. A selected tile is filled, if necessary in the warning or alarm color."""
     ink, ground, line = "text", "key", "frame"
     if number in tiles.alarmed_indices:
         ink = line = "alarm"
@@ -100,8 +100,7 @@ _SPOKE_COUNT = 24
 class HandwheelDial:
     """Handwheel on the screen.
 
-    The ``turn_handwheel`` parameter is called with the number of clicks, which is positive for clockwise
-    rotation.
+    The ``turn_handwheel`` parameter is called with the number of clicks. Clockwise rotation is positive.
     """
 
     def __init__(self, turn_handwheel: Callable[[int], None]) -> None:
@@ -135,7 +134,7 @@ class HandwheelDial:
         self._turn(DEGREES_PER_CLICK * delta / _WHEEL_NOTCH)
 
     def draw(self, painter: ThemedPainter, box: QRectF, click_text: str) -> None:
-        """Draw the handwheel at its present angle, with the text of the distance per click."""
+        """Draw the handwheel at its current angle, with the distance per click as text."""
         size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.theme.unit_px
         painter.setPen(painter.theme.make_pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
@@ -162,7 +161,7 @@ DrawTileRow = Callable[[ThemedPainter, QRectF], None]
 
 
 class JogPad(JogCross):
-    """Jog pad with all its touch targets, which are as large as the available area permits."""
+    """Jog pad. Its touch targets are as large as the available area permits."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _known: RedrawingAttribute[Mapping[str, HomingState]] = RedrawingAttribute({})
@@ -214,7 +213,7 @@ class JogPad(JogCross):
     def _make_row_drawers(self, area: QRectF) -> list[DrawTileRow]:
         """Return the functions that draw the rows above the cross.
 
-        Steps and speeds share one row if the height is small.
+        If the height is small, steps and speeds share one row.
         """
         wheel: list[DrawTileRow] = [self._draw_wheel] if self._model.handwheel.is_available else []
         both: list[DrawTileRow] = [self._steps, self._speeds]
@@ -227,7 +226,7 @@ class JogPad(JogCross):
     def _tile_height(self, area: QRectF, rows: int) -> float:
         """Return the height of a tile row in pixels.
 
-        The row is as high as a fingertip if this leaves enough height for the jog targets.
+        A row is at least as high as a fingertip if this leaves enough height for the jog targets.
         """
         u = self.theme.unit_px
         finger = self.theme.find_row_height(ROW, 9.0, is_touchable=True)
@@ -297,9 +296,9 @@ class JogPad(JogCross):
 
     @property
     def _active_rotary_axis(self) -> str:
-        """Return the rotary axis that a jog or the handwheel moves, or an empty string.
+        """Return the rotary axis that is jogged or on the handwheel, or an empty string.
 
-        A rotary axis has its own units.
+        The steps and speeds of a rotary axis are in degrees.
         """
         held, wheel = self._model.held_jog.active_jog, self._model.handwheel.wheel_choice
         axis = held.axis if held else wheel[0] if wheel else ""
@@ -356,7 +355,7 @@ class JogPad(JogCross):
             self.controls.append(make_press_control(box, press))
 
     def _draw_middle(self, painter: ThemedPainter, box: QRectF) -> None:
-        """Draw the present jog mode with its values in the middle of the cross."""
+        """Draw the current jog mode with its values in the middle of the cross."""
         model = self._model
         mode: ValueMode = model.held_jog.value_mode
         step = model.jog_speeds.step_index

@@ -1,6 +1,6 @@
 """Jog page with the jog pad on the left, and tool setting or manual functions on the right.
 
-The entry line is below them.
+The entry line is below tool setting or the manual functions.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ def draw_function_key(
 class ManualPanel(TouchPanel):
     """Panel of the manual functions.
 
-    A touch selects a function, and the start buttons run the function. STOP takes effect immediately, even
-    if the press arrives late.
+    A touch selects a function, and the start buttons run it. STOP takes effect immediately, even if the
+    press arrives late.
     """
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
@@ -65,7 +65,7 @@ class ManualPanel(TouchPanel):
         self._model = model
 
     def show_functions(self, snapshot: Snapshot) -> None:
-        """Show which functions are selected, prepared or on."""
+        """Show for each function whether it is selected, prepared or on."""
         hand = self._model.manual_functions
         self._shown = (
             hand.selected_function,
@@ -78,7 +78,7 @@ class ManualPanel(TouchPanel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the keys for spindle, coolant and collet, and set their touch targets.
 
-        The keys for coolant and collet are drawn only if the machine has these functions.
+        The coolant and collet keys are drawn only if the machine has these functions.
         """
         self.controls.clear()
         self.frame(painter, tr("MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START"))
@@ -148,7 +148,7 @@ class ManualPanel(TouchPanel):
 
 
 def find_strip_key_height(theme: ScreenTheme) -> float:
-    """Return the height of the strip keys in pixels, which is at least the height of a fingertip."""
+    """Return the height of the strip keys in pixels, which is at least that of a fingertip."""
     return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.unit_px)
 
 
@@ -166,13 +166,13 @@ class ManualStrip(TouchPanel):
         self._model = model
 
     def show_keys(self, snapshot: Snapshot, change_text: str, footer_text: str) -> None:
-        """Show the available keys, the last change, and the hint about other keys."""
+        """Show the available keys, the last offset change, and the hint about other keys."""
         skim, hand = self._model.skim_cut, self._model.manual_functions
         self.change_text, self.footer_text = change_text, footer_text
         self._shown = (skim.cut_step, skim.measured_axis, hand.is_shown, hand.is_spindle_turning(snapshot))
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the keys for manual functions and skim cut, with the change text or the footer above them."""
+        """Draw the keys for manual functions and skim cut. The change text or the footer is above them."""
         self.controls.clear()
         u = self.theme.unit_px
         painter.fill_rect(self.find_full_area(), "ground")
@@ -222,7 +222,7 @@ WIDE, ASKED, WORDS = 0.46, 12.0, 2.6
 class JogPage(HeldKeysPage):
     """Jog page.
 
-    ``refresh`` renews the jog. If the screen stalls, the motion therefore stops.
+    ``refresh`` renews the lease of the jog. If the screen stalls, the motion therefore stops.
     """
 
     NAME = page_table.JOG
@@ -270,7 +270,7 @@ class JogPage(HeldKeysPage):
         return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.is_mill else labels
 
     def handle_other_key(self, event: QKeyEvent) -> bool:
-        """Handle the Home key, which asks which axes to home, and return whether the key was used."""
+        """Handle the Home key by asking which axes to home, and return whether the key was used."""
         if event.key() != Qt.Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORD_MODIFIERS:
             return False
         self.model.handle_home_key()
@@ -292,7 +292,7 @@ class JogPage(HeldKeysPage):
         return {**common, **touch, "F4": model.tool_setting.ask_undo}
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the keys of touch-off, undo and tilted plane that are disabled now."""
+        """Return the touch-off, undo and tilted plane keys that are disabled now."""
         model, snapshot = self.model, self.desk.read_snapshot()
         if model.is_mill:
             return frozenset() if model.tilted_jog.is_available(snapshot) else frozenset({"F5"})
@@ -370,7 +370,7 @@ class JogPage(HeldKeysPage):
         self.manual_strip.show_keys(snapshot, tool.offset_history.last_change_text, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the pad on the left, and the tool above the entry line on the right."""
+        """Arrange the pad on the left, and on the right the tool panel above the entry line."""
         u, gap = self.theme.unit_px, max(4, round(0.7 * self.theme.unit_px))
         left = round(WIDE * self.width())
         for part in (self.jog_cross, self.number_pad):

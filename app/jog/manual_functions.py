@@ -1,7 +1,7 @@
 """Manual functions of the Jog page: spindle, coolant and collet.
 
-Each function is an MDI line that the operator starts with the start buttons. The line is proved and checked
-like a typed MDI line, and has the same interlocks. The start buttons are not needed to turn a function off.
+Each function is an MDI line that the operator runs with the start buttons. The line is proved and checked
+like a typed MDI line, and has the same interlocks. Functions can be turned off without the start buttons.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ SPEED_KEY = "9"  # The key that asks for the spindle speed.
 class Words(NamedTuple):
     """Codes of the functions in a programming language.
 
-    ``speed_line`` is a separate line for the speed in languages that do not permit S in the line with M3.
+    ``speed_line`` sets the speed in a separate line, for languages that do not permit S with M3.
     """
 
     forward_line: str
@@ -60,7 +60,7 @@ CODES_BY_LANGUAGE = {
 
 @dataclass(slots=True)
 class ManualFunctions:
-    """Manual functions, one of which can be selected, prepared or running.
+    """Manual functions. At most one function is selected, prepared or running.
 
     ``is_open`` is True while the Jog page is open. ``is_shown`` is True while the panel of the functions is
     visible.
@@ -103,7 +103,7 @@ class ManualFunctions:
     def on_open(self) -> None:
         """Prepare the functions when the Jog page opens.
 
-        Cycle Start then runs a selected function and no program.
+        Cycle Start then runs a selected function instead of a program.
         """
         self.is_open = True
         self._arm(self.desk.read_snapshot())
@@ -162,7 +162,7 @@ class ManualFunctions:
     def start_speed_rpm(self) -> float:
         """Return the speed in rpm for FORWARD and REVERSE, or 0 if no speed is known.
 
-        The speed is the active S. If the line of the function contains S, an entered speed is used first.
+        This is the active S. If the line of the function contains S, an entered speed has priority.
         """
         modal = self.desk.read_snapshot().modal
         typed = 0.0 if self.function_codes.speed_line else self.entered_rpm
@@ -198,7 +198,7 @@ class ManualFunctions:
     def _find_refusal(self, snapshot: Snapshot) -> str:
         """Return the reason why no function can be selected now, or an empty string.
 
-        At the start, the executor makes the same checks and additional checks.
+        When the line starts, the executor repeats these checks and makes more checks.
         """
         if snapshot.state is MachineState.IDLE:
             return ""
@@ -214,7 +214,7 @@ class ManualFunctions:
     def stop_spindle(self) -> None:
         """Stop the spindle immediately, without the start buttons.
 
-        A running line of a manual function is canceled.
+        If a line of a manual function is running, it is canceled.
         """
         snapshot = self.desk.read_snapshot()
         self.cancel_selection()
@@ -238,7 +238,7 @@ class ManualFunctions:
         self.is_asking_speed, self.text = True, ""
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the page must handle it."""
+        """Handle a key, and return False if the page must handle the key."""
         if self.is_asking_speed:
             if key == "Enter":
                 self._enter()
@@ -259,7 +259,7 @@ class ManualFunctions:
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered for the speed."""
+        """Return whether a character can be entered as part of the speed."""
         return self.is_asking_speed and key in EXPRESSION_CHARACTERS
 
     def _enter(self) -> None:
@@ -292,7 +292,7 @@ class ManualFunctions:
     # --- cancel --------------------------------------------------------------------------------------
 
     def cancel_selection(self) -> bool:
-        """Cancel the selected function or the speed question, and return whether there was one to cancel."""
+        """Cancel the selected function or the speed question, and return whether anything was canceled."""
         was = bool(self.selected_function or self.is_asking_speed)
         if self._armed and self.selected_function and not self.is_line_running(self.desk.read_snapshot()):
             self.prepared_line.cancel_line()
@@ -336,7 +336,7 @@ class ManualFunctions:
     def update(self, snapshot: Snapshot) -> None:
         """Process the proof of a line.
 
-        A prepared line is canceled if the axes have moved. This method is called once per frame.
+        If the axes have moved, a prepared line is canceled. This method is called once per frame.
         """
         self._arm(snapshot)
         if self._armed:
@@ -352,13 +352,13 @@ class ManualFunctions:
 
     @staticmethod
     def _is_gripping(snapshot: Snapshot) -> bool:
-        """Return whether the collet clamps a part that is turning or that a switch could start to turn."""
+        """Return whether the collet must stay clamped because the spindle is turning or could be started."""
         return ManualFunctions.is_spindle_turning(snapshot) or snapshot.requested_rpm != 0.0
 
     def barred(self) -> str:
-        """Return the reason why the start buttons have no effect now.
+        """Return the reason why the start buttons have no effect now, or an empty string.
 
-        The result is an empty string if the start buttons can start a line.
+        The result is empty if the start buttons can start a line.
         """
         snapshot = self.desk.read_snapshot()
         if snapshot.state in CYCLE_STATES:
@@ -370,7 +370,7 @@ class ManualFunctions:
         return tr("NOTHING SELECTED. PICK 1–6, THEN CYCLE START")
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt for manual functions, or an empty string if the prompt for jogging applies."""
+        """Return the prompt for manual functions, or an empty string if another prompt applies."""
         if self.is_asking_speed:
             return tr("TYPE THE RPM AND PRESS ENTER. ESC: CANCEL")
         if self.is_line_running(snapshot):

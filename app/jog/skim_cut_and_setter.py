@@ -1,9 +1,9 @@
 """Touch-off of a tool by a skim cut or at the tool setter.
 
-A skim cut has these steps: cut, retract, stop the spindle, measure, and enter the size. After the cut of a
-diameter, X must not move until the size is entered. After the cut of a face, Z must not move. The tool
-retracts along the other axis. The offset is calculated from the axis position during the cut. If this axis
-moves after the cut, the position could belong to another cut, so it is discarded.
+A skim cut has these steps: cut, retract, stop the spindle, measure, and enter the size. The measured axis,
+X for a diameter and Z for a face, must not move between the cut and the entry. The tool retracts along the
+other axis. The offset is calculated from the position of the measured axis during the cut. If this axis
+moves after the cut, the position is discarded because it could belong to another cut.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class SkimCut:
 
     @property
     def measured_axis(self) -> str:
-        """Return the axis that is measured, which must not move after the cut."""
+        """Return the axis that is measured. This axis must not move after the cut."""
         return TOUCH_FIELDS[self.measured_quantity].upper() if self.measured_quantity else ""
 
     @property
@@ -92,7 +92,7 @@ class SkimCut:
         self.cut_step = SkimCutStep.CHOOSE_AXIS
 
     def select_cut(self, quantity: str) -> None:
-        """Select whether a diameter or a face is cut."""
+        """Select the type of cut, a diameter or a face."""
         why = self.tool_setting.find_refusal(quantity, self.desk.read_snapshot())
         if why:
             self.desk.say(why)
@@ -117,7 +117,7 @@ class SkimCut:
         )
 
     def _find_cut_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why there is no cut to measure yet, or an empty string."""
+        """Return the reason why the cut cannot be finished yet, or an empty string."""
         if snapshot.state is not MachineState.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
         if self.cut_length_mm >= MIN_CUT_MM:
@@ -133,7 +133,7 @@ class SkimCut:
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the page must handle it."""
+        """Handle a key, and return False if the page must handle the key."""
         if self.cut_step is SkimCutStep.CHOOSE_AXIS and key.lower() in {"x", "z"}:
             self.select_cut(TOUCH_X if key.lower() == "x" else TOUCH_Z)
         elif self.cut_step is SkimCutStep.CUTTING and key == "Enter":
@@ -145,7 +145,7 @@ class SkimCut:
         return True
 
     def handle_escape(self) -> bool:
-        """Cancel the skim cut when Esc is pressed, and return whether one was in progress."""
+        """Cancel the skim cut when Esc is pressed, and return whether a skim cut was in progress."""
         was = self.is_open
         if was:
             self.cancel()
@@ -202,7 +202,7 @@ class SkimCut:
     def _follow_cut(self, snapshot: Snapshot) -> None:
         """Update the length of the cut.
 
-        This is the travel along the other axis with the spindle turning, since the last move of the
+        The length is the travel along the other axis with the spindle turning, since the last move of the
         measured axis.
         """
         if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVE_TOLERANCE_MM:
@@ -216,7 +216,7 @@ class SkimCut:
         self.cut_length_mm, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
 
     def _handle_moved(self, snapshot: Snapshot) -> None:
-        """Discard the stored position because the measured axis moved after the cut."""
+        """Discard the stored position, because the measured axis has moved after the cut."""
         mode = self.tool_setting.offset_history.value_mode
         away = self._place(snapshot) - self.commanded_position_mm
         shown = format_length(
@@ -230,7 +230,7 @@ class SkimCut:
         self.failure_reason = tr(Message(words, axis=self.measured_axis, away=shown))
 
     def _measure_cut(self, snapshot: Snapshot) -> None:
-        """Ask for the measured size when the spindle and the axes are stopped."""
+        """Ask for the measured size as soon as the spindle and the axes are stopped."""
         if snapshot.state is MachineState.IDLE and not self._turns(snapshot):
             self.cut_step = SkimCutStep.MEASURING
             self.tool_setting.ask_cut_size(self.measured_quantity, self.cut_position_mm)
@@ -306,7 +306,7 @@ def find_zero_position(
 
 
 def format_direction(direction: TouchDirection) -> str:
-    """Return a direction as text, such as X−."""
+    """Return a direction as text, for example X−."""
     return f"{direction[0]}{'+' if direction[1] > 0 else '−'}"
 
 
@@ -314,8 +314,8 @@ def format_direction(direction: TouchDirection) -> str:
 class SetterTouchOff:
     """Touch-off at the tool setter.
 
-    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the direction
-    keys.
+    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the
+    directions of those keys.
     """
 
     desk: Desk
@@ -329,7 +329,7 @@ class SetterTouchOff:
 
     @property
     def tool_setter(self) -> SetterModel | None:
-        """Return the tool setter of the machine, or None if the machine has no tool setter with an input."""
+        """Return the tool setter of the machine, or None if there is no tool setter with an input."""
         return (
             self.machine.hardware.find_driver_table(SetterModel)
             if PROBE_INPUT in self.machine.inputs
@@ -337,7 +337,7 @@ class SetterTouchOff:
         )
 
     def toggle_armed(self) -> None:
-        """Arm or cancel the touch-off of the selected tool (P)."""
+        """Arm the touch-off of the selected tool, or cancel the armed touch-off (P)."""
         if self.is_armed:
             self.cancel()
         elif why := self._barred():
@@ -347,7 +347,7 @@ class SetterTouchOff:
             self.desk.clear_prompt_line()
 
     def cancel(self) -> None:
-        """Cancel the touch-off that is armed."""
+        """Cancel the armed touch-off."""
         self.is_armed = False
 
     def _barred(self) -> str:
@@ -365,7 +365,7 @@ class SetterTouchOff:
         return ""
 
     def make_command(self, axis: str, direction_sign: int, button_name: str) -> Command | str:
-        """Return the touch-off command for a direction, or the reason as text if it is not possible."""
+        """Return the touch-off command for a direction, or a text with the reason if it is not possible."""
         ways = find_touch_directions(self.tool_setting.tool_row)
         if (axis, direction_sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
@@ -434,7 +434,7 @@ class SetterTouchOff:
 
 @dataclass(slots=True)
 class HeldTouchOff(HeldJog):
-    """Jog by a key that is held down, or a touch-off by that key if ``setter_touch`` is armed."""
+    """Held jog whose key starts a touch-off instead of a jog while ``setter_touch`` is armed."""
 
     setter_touch: SetterTouchOff | None = None
     _asked: Command | None = field(default=None)

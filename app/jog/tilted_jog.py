@@ -21,7 +21,7 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 
 @dataclass(frozen=True, slots=True)
 class JogFrame:
-    """Frame with the jog directions X, Y and Z.
+    """Coordinate frame with the jog directions X, Y and Z.
 
     The columns of ``axes`` are the directions in machine coordinates. ``frame_name`` is the name of the
     frame.
@@ -31,9 +31,9 @@ class JogFrame:
     frame_name: str
 
     def find_direction(self, axis: str) -> Direction | None:
-        """Return the direction of a linear axis in machine coordinates.
+        """Return the direction of a linear axis in machine coordinates, or None for a rotary axis.
 
-        The result is None for a rotary axis, because its jog does not depend on the frame.
+        The jog of a rotary axis does not depend on the frame.
         """
         if axis not in LINEAR_AXES:
             return None
@@ -42,7 +42,7 @@ class JogFrame:
 
 
 def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
-    """Return the frame for jogging, or the reason as text if there is no such frame.
+    """Return the frame for jogging. If there is no such frame, return the reason as text.
 
     If a plane is active, its frame is used, but only if the rotary axes are at the angles of the plane. If
     no plane is active, the frame of a tilted head is used.
@@ -72,7 +72,7 @@ def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFram
 
 
 def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> bool:
-    """Return whether a rotary axis is not at the angle of the plane."""
+    """Return whether a rotary axis is not at the angle that the plane requires."""
     target = system.target_angles[_ROTARY.index(axis.name)]
     return (
         abs(axis.find_travel(target, system.kinematics.get_displayed_angle(axis, angle)))
@@ -82,7 +82,7 @@ def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> 
 
 @dataclass(slots=True)
 class TiltedJog:
-    """Jog in a tilted frame, which is turned off if the frame is lost.
+    """Jog in a tilted frame. It is turned off if the frame is no longer available.
 
     ``release_keys`` stops the jog, and ``show_message`` shows the reason.
     """
@@ -114,7 +114,7 @@ class TiltedJog:
         self.is_on = False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the frame for jogging.
+        """Update the tilted frame.
 
         This method is called once per frame of the screen.
         """
@@ -127,5 +127,5 @@ class TiltedJog:
             self.show_message(why)
 
     def find_direction(self, axis: str) -> Direction | None:
-        """Return the direction of a jog in machine coordinates, or None if the machine axis is jogged."""
+        """Return the jog direction in machine coordinates, or None to jog the machine axis itself."""
         return self.jog_frame.find_direction(axis) if self.is_on and self.jog_frame is not None else None

@@ -1,4 +1,4 @@
-"""Tool setting on the Jog page: selecting a tool, touching off, and entering the other fields of the tool."""
+"""Tool setting on the Jog page: selecting a tool, touching it off, and entering its other fields."""
 
 from __future__ import annotations
 
@@ -70,14 +70,14 @@ class ToolSetting:
 
     @property
     def is_setter_result(self) -> bool:
-        """Return whether the question is about a measurement of the tool setter."""
+        """Return whether the open question is about a measurement of the tool setter."""
         return self.question_name in TOUCH_FIELDS and self.touch_off.measured_position_mm is not None
 
     def ask_setter_result(self, quantity: str, position_mm: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
         ``position_mm`` is the machine position in mm with the tool tip at part zero. If the value is
-        suspicious, only the question about suspicious changes is asked.
+        suspicious, the question about suspicious changes is asked instead.
         """
         self.question_name, self.text = quantity, ""
         self.touch_off.set_measurement(quantity, position_mm, reason)
@@ -97,9 +97,9 @@ class ToolSetting:
 
     @property
     def offset_change_mm(self) -> float | None:
-        """Return the measured position minus the present offset including wear, in mm.
+        """Return the measured position minus the current offset including wear, in mm.
 
-        Returns None if there is no measurement of the tool setter or no present offset.
+        Returns None if there is no measurement of the tool setter or no current offset.
         """
         if not self.is_setter_result or self.tool_row is None or self.touch_off.measured_position_mm is None:
             return None
@@ -150,7 +150,7 @@ class ToolSetting:
         return ""
 
     def describe_change(self) -> str:
-        """Return a description of the change that the entry would make, or else of the last change."""
+        """Return a description of the change that the entry would make, or of the last change if none."""
         if not self.question_name or self.question_name == TOOL_QUESTION:
             return self.offset_history.last_change_text
         mode, name, row = (
@@ -177,7 +177,7 @@ class ToolSetting:
             return f"{title}  {was}  →  …"  # An incomplete expression is not an error yet.
 
     def _format_difference(self, name: str, mode: ValueMode) -> str:
-        """Return the difference between the measured offset and the present offset as text."""
+        """Return the measured offset minus the current offset, as text."""
         if self.offset_change_mm is None:
             return ""
         shown = 2 * self.offset_change_mm if name == "x" and mode.is_diameter else self.offset_change_mm
@@ -191,7 +191,7 @@ class ToolSetting:
         return snapshot.tip[0] - x, snapshot.tip[1] - z
 
     def find_master_difference(self) -> Pair | None:
-        """Return the offset of this tool minus the offset of the master tool in mm.
+        """Return the offset of this tool minus the offset of the master tool, in mm.
 
         Returns None unless both tools are set.
         """
@@ -204,9 +204,9 @@ class ToolSetting:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Select the active tool when it changes.
+        """Select the tool that becomes active, and discard the entry if the unit changes.
 
-        A change of the unit discards the entry. This method is called once per frame.
+        This method is called once per frame.
         """
         before = self.offset_history.value_mode
         self.offset_history.update(snapshot)
@@ -273,7 +273,7 @@ class ToolSetting:
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key while a question is open, and return False if the key has no function in an entry."""
+        """Handle a key of the open question, and return False if the key has no function in an entry."""
         if key == "Enter":
             self._enter()
         elif key in {"Back", "Delete"} or (len(key) == 1 and self.accepts_key(key)):
@@ -298,7 +298,7 @@ class ToolSetting:
     def _save_answer(self) -> str:
         """Process the answer, and return the reason if it is rejected, or an empty string.
 
-        Raises EntryError.
+        Raises EntryError if the entered text is invalid.
         """
         if self.question_name == TOOL_QUESTION:
             return self._tool()
@@ -338,7 +338,7 @@ class ToolSetting:
     def ask_master(self) -> None:
         """Ask whether to make the selected tool the master tool.
 
-        If the selected tool is already the master tool, ask whether to have no master tool.
+        If the selected tool already is the master tool, the question is whether to have no master tool.
         """
         why = self.find_refusal("master", self.desk.read_snapshot())
         self.close_question()
@@ -362,7 +362,7 @@ class ToolSetting:
     def handle_escape(self) -> bool:
         """Close the question and discard an incomplete new tool.
 
-        Returns False if there was neither a question nor a new tool.
+        Returns False if there was neither an open question nor an incomplete tool.
         """
         was = bool(self.question_name or self.tool_fields.incomplete_tool.tool_number)
         if was and self.tool_number:
@@ -376,9 +376,9 @@ def _which_tool() -> str:
 
 
 def _describe_reset_wear(row: ToolRow | None, name: str, mode: ValueMode) -> str:
-    """Return a text about the wear that a touch-off sets to zero, or an empty string.
+    """Return a text about the wear that a touch-off resets to zero, or an empty string.
 
-    The wear is set to zero because the new geometry includes it.
+    The touch-off resets the wear because the new geometry includes it.
     """
     if row is None or not getattr(row, name):
         return ""

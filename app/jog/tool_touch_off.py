@@ -1,4 +1,4 @@
-"""Touch-off of one axis of a tool on the Jog page, by hand, on a skim cut or by the tool setter."""
+"""Touch-off of one axis of a tool on the Jog page, by hand, by a skim cut or by the tool setter."""
 
 from __future__ import annotations
 
@@ -39,10 +39,9 @@ def find_axis_position(quantity: str, snapshot: Snapshot) -> float:
 class TouchOff:
     """Touch-off of one axis.
 
-    ``touch_position_mm`` is the machine position in mm at the touch. ``measured_position_mm`` is the machine
-    position in mm with the tool tip at part zero, as measured with the tool setter, and ``reason``
-    describes the measurement. A measured value requires no entry, and the axis may move after the
-    measurement.
+    ``touch_position_mm`` is the machine position in mm at the touch. ``measured_position_mm`` is the
+    machine position in mm with the tool tip at part zero, as measured with the tool setter, and ``reason``
+    describes the measurement. After such a measurement, no entry is necessary and the axis may move.
     """
 
     measured_quantity: str = ""
@@ -58,7 +57,7 @@ class TouchOff:
         return TOUCH_FIELDS[self.measured_quantity]
 
     def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
-        """Store the present position of the axis as the touch position."""
+        """Store the current position of the axis as the touch position."""
         self.measured_quantity, self.touch_position_mm, self.skips_followers = (
             quantity,
             find_axis_position(quantity, snapshot),
@@ -74,7 +73,7 @@ class TouchOff:
     def set_measurement(self, quantity: str, position_mm: float, reason: str) -> None:
         """Store a measurement of the tool setter.
 
-        Other tools do not follow the master tool after such a measurement.
+        If the tool is the master tool, the other tools do not follow this measurement.
         """
         (
             self.measured_quantity,
@@ -93,7 +92,7 @@ class TouchOff:
     def find_zero_position(self, text: str, value_mode: ValueMode) -> float:
         """Return the machine position in mm with the tool tip at part zero, with X as a radius.
 
-        Raises EntryError.
+        Raises EntryError if the text is invalid or the position is out of range.
         """
         if self.measured_position_mm is not None:
             return self._within(self.measured_position_mm)
@@ -117,7 +116,7 @@ class TouchOff:
     ) -> str:
         """Save the touch-off, and return the reason if it is rejected, or an empty string.
 
-        X and Z of a new tool are saved together. Raises EntryError for an invalid entry.
+        X and Z of a new tool are saved together. Raises EntryError if the entry is invalid.
         """
         place, book, ask = (
             self.find_zero_position(text, history.value_mode),
@@ -149,7 +148,7 @@ class TouchOff:
     def make_touch_position(self, zero_position_mm: float) -> TouchPosition:
         """Return the touch position of this axis for the offset table.
 
-        ``place`` is the machine position in mm with the tool tip at part zero.
+        ``zero_position_mm`` is the machine position in mm with the tool tip at part zero.
         """
         return (
             TouchPosition(zero_position_mm, None, self.skips_followers)
@@ -179,7 +178,7 @@ class TouchOff:
         )
 
     def _make_reason(self, text: str, mode: ValueMode) -> str:
-        """Return the text that describes the touch-off in the history."""
+        """Return the text that describes the touch-off in the offset history."""
         if self.change_reason:
             return f"{self.change_reason}{tr(', this tool only') if self.skips_followers else ''}"
         unit = "MM " if mode.is_metric else ""

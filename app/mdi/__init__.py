@@ -1,1 +1,1 @@
-"""MDI page for the entry of one line at a time, which is proved before it runs."""
+"""MDI page, on which the operator enters one line at a time. Each line is proved before it runs."""

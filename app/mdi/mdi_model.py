@@ -1,4 +1,4 @@
-"""Model of the MDI page without Qt: entry, completion, proof and preparation of one line."""
+"""Model of the MDI page, independent of Qt: entry, completion, proof and preparation of one line."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class MdiInput:
         self.reload_history()
 
     def reload_history(self) -> None:
-        """Read the stored history and ignore invalid entries."""
+        """Read the stored history. Invalid entries are ignored."""
         try:
             kept = self.persistence.read_setting(HISTORY_SETTING)
         except StoreError:
@@ -81,14 +81,14 @@ class MdiInput:
         return True
 
     def set_text(self, text: str, cursor_index: int | None = None) -> None:
-        """Set the text, and move the cursor to the index ``cursor_index`` or to the end of the text."""
+        """Set the text, and move the cursor to ``cursor_index`` or to the end of the text."""
         self.text = text
         self.cursor_index = len(text) if cursor_index is None else cursor_index
 
     def recall_line(self, index: int) -> None:
         """Recall a line of the history.
 
-        ``index`` counts from 1 for the newest line. An index of 0 restores the typed text.
+        ``index`` counts from 1 for the newest line. The index 0 restores the typed text.
         """
         if not 0 <= index <= len(self.history_lines):
             return
@@ -98,16 +98,16 @@ class MdiInput:
         self.set_text(self.history_lines[-index] if index else self._draft)
 
     def finish_line(self) -> None:
-        """Add the line that was started to the history, and begin an empty line."""
+        """Add the line that has started running to the history, and begin an empty line."""
         self.error_columns.pop(self.text, None)
         self._remember()
         self.set_text("")
         self.recall_index, self._draft = 0, ""
 
     def add_rejected_line(self, column: int) -> None:
-        """Add a rejected line to the history with the column of its error.
+        """Add a rejected line to the history, with the column of its error.
 
-        The text remains in the input line.
+        The text also remains in the input line.
         """
         self._remember()
         self.error_columns[self.text] = column
@@ -152,9 +152,9 @@ class LineCompletion:
             self.code_help.open_choices()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the input line must handle it.
+        """Handle a key, and return False if the input line must handle the key.
 
-        Tab opens the choices. While they are open, arrow keys select a choice, and any key without a
+        Tab opens the choices. While they are open, the arrow keys select a choice. Any key without a
         function closes the choices.
         """
         if not self.is_open:
@@ -173,7 +173,7 @@ class LineCompletion:
         return self.is_open or key in ("Enter", "Tab")
 
     def insert_code(self) -> None:
-        """Replace the typed part of the code with the selected code."""
+        """Replace the typed part of a code with the selected code."""
         self.is_open, chosen = False, self.code_help.selected_entry
         if chosen is None:
             return
@@ -188,7 +188,7 @@ def _fit_entry(entry: CodeBookEntry, max_length: int) -> str:
     """Return the text that completion inserts, with continuation lines joined into one line.
 
     If this text is longer than ``max_length``, only the code is returned. If the code is also too long, the
-    result is empty.
+    result is an empty string.
     """
     lines = entry.written.splitlines()
     joined = len(lines) == 1 or all(line.rstrip().endswith(CONTINUATION_SIGN) for line in lines[:-1])
@@ -222,7 +222,7 @@ class MdiModel:
     # --- page ----------------------------------------------------------------------------------------
 
     def can_open(self) -> bool:
-        """Return whether MDI can open now, and show the reason if it cannot."""
+        """Return whether MDI can open now. If it cannot, show the reason."""
         if why := find_mdi_refusal(self.read_snapshot()):
             self.show_message(why)
         return not why
@@ -230,7 +230,7 @@ class MdiModel:
     def on_open(self) -> None:
         """Prepare the model when the page opens.
 
-        Cycle Start then runs entered lines and no program.
+        Cycle Start then runs entered lines instead of a program.
         """
         self.is_open = True
         self.mdi_input.reload_history()
@@ -266,7 +266,7 @@ class MdiModel:
     def accepts_input(self) -> bool:
         """Return whether the input line accepts keys.
 
-        The input line accepts keys while the drives are off, but not while a line is running.
+        It accepts keys even while the drives are off, but not while a line is running.
         """
         return self.read_snapshot().state in {
             MachineState.IDLE,
@@ -276,7 +276,7 @@ class MdiModel:
         }
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the window must handle it."""
+        """Handle a key, and return False if the window must handle the key."""
         if not self.accepts_input:
             return False
         before = self.mdi_input.text
@@ -291,7 +291,7 @@ class MdiModel:
         return taken
 
     def prove_entered_line(self) -> None:
-        """Prove the entered line from the present machine state, or show why it cannot be proved."""
+        """Prove the entered line from the current machine state, or show why it cannot be proved."""
         snapshot = self.read_snapshot()
         self.clear_message()
         if snapshot.state is not MachineState.IDLE:
@@ -341,14 +341,14 @@ class MdiModel:
         return True
 
     def stop_spindle(self) -> None:
-        """Stop the spindle, which an earlier line may have started."""
+        """Stop the spindle, which may have been started by an earlier line."""
         self.clear_message()
         self.post_command(StopSpindle())
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process the proof of the line, and add a started line to the history.
+        """Process the proof of the line. When the line starts, add it to the history.
 
         This method is called once per frame.
         """
@@ -360,7 +360,7 @@ class MdiModel:
     def prompt_text(self, snapshot: Snapshot, start_instruction: str) -> str:
         """Return the prompt of the page.
 
-        ``start_instruction`` is the instruction for starting a cycle.
+        ``start_instruction`` explains how to start a cycle.
         """
         if snapshot.state is MachineState.DISABLED:
             return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE")
@@ -371,7 +371,7 @@ class MdiModel:
         return self._make_line_prompt(start_instruction)
 
     def _make_line_prompt(self, start: str) -> str:
-        """Return the prompt for the present state of the line."""
+        """Return the prompt for the current state of the line."""
         if self.prepared_line.is_proving:
             return tr("CHECKING THE LINE FOR ERRORS")
         if self.prepared_line.blocking_errors:
@@ -381,9 +381,9 @@ class MdiModel:
         return tr("TYPE A LINE   ENTER: PROVE   F1: EXIT, SPINDLE UNCHANGED")
 
     def barred(self) -> str:
-        """Return the reason why the start buttons have no effect now.
+        """Return the reason why the start buttons have no effect now, or an empty string.
 
-        The result is an empty string if the start buttons can start a line.
+        The result is empty if the start buttons can start a line.
         """
         if self.read_snapshot().state is MachineState.IDLE and self.prepared_line.ready_job is None:
             return tr("NO LINE IS READY. TYPE A LINE AND PRESS ENTER")

@@ -34,7 +34,7 @@ from core.language.diagnostics import Diagnostic, Severity
 
 
 class MdiLinePanel(Panel):
-    """Panel with the input line, its cursor, the findings of its proof, and a mark if the line is prepared.
+    """Panel with the input line, its cursor, its proof findings, and a mark if the line is prepared.
 
     A touch shows or hides the letter keyboard.
     """
@@ -49,7 +49,7 @@ class MdiLinePanel(Panel):
 
     @property
     def finding_text(self) -> str:
-        """Return the text of the first finding, with errors before warnings, or an empty string."""
+        """Return the text of the most important finding, errors before warnings, or an empty string."""
         return f"{self._first.message} {self._first.hint}".strip() if self._first else ""
 
     @property
@@ -60,7 +60,7 @@ class MdiLinePanel(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the input line with its cursor and its first finding.
 
-        The frame is highlighted if the line is ready for Cycle Start.
+        If the line is ready for Cycle Start, its frame is highlighted.
         """
         look, u = self.theme, self.theme.unit_px
         title = tr("LINE  ·  READY FOR CYCLE START") if self.is_ready else tr("LINE")
@@ -102,7 +102,7 @@ ROW_HEIGHT = 3.4  # Units.
 
 
 class MdiHistoryPanel(RowPanel):
-    """Panel with the history of lines.
+    """Panel with the line history.
 
     ``recall_index`` is the position of the recalled line, counted from 1, or 0 if no line is recalled.
     """
@@ -143,7 +143,7 @@ class MdiHistoryPanel(RowPanel):
             painter.draw_text_line(empty, tr("No lines run yet."), 2.0, "soft", bold=False)
 
     def _draw_rejected(self, painter: ThemedPainter, row: QRectF, text: str, column: int) -> None:
-        """Underline the rejected word of a line and write REJECTED on the right."""
+        """Underline the rejected word of a line, and draw the text REJECTED on the right."""
         u = self.theme.unit_px
         metrics = QFontMetricsF(self.theme.make_font(2.2))
         start = max(0, column - 1)
@@ -161,7 +161,7 @@ LABEL_WIDTH_RATIO = 0.4  # Fraction of a row for its label.
 
 
 class ModalPanel(Panel):
-    """Panel with all rows of the modal state, which are as large as the available area permits."""
+    """Panel with all rows of the modal state. The rows are as large as the available area permits."""
 
     rows: RedrawingAttribute[tuple[ModalRow, ...]] = RedrawingAttribute(())
 
@@ -221,7 +221,7 @@ class MdiPage(ModelPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the DRIVES and RESET keys if they have no function in the present state."""
+        """Return DRIVES and RESET if these keys have no function in the current state."""
         state = self.desk.read_snapshot().state
         found = {"F5": state in {MachineState.ESTOP, MachineState.FAULT}, "F6": state in MOVING_STATES}
         return frozenset(key for key, refused in found.items() if refused)
@@ -236,7 +236,7 @@ class MdiPage(ModelPage):
         self.letter_pad.raise_()
 
     def has_text_field(self) -> bool:
-        """Return whether the input line accepts text, which is the case while no line is running."""
+        """Return whether the input line accepts text. It accepts text while no line is running."""
         return self.model.accepts_input
 
     def prompt_text(self) -> str:
@@ -258,7 +258,7 @@ class MdiPage(ModelPage):
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the present line, its findings and the present modal state."""
+        """Show the current line, its findings and the current modal state."""
         model, typing = self.model, self.model.mdi_input
         model.update(snapshot)
         running = snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
@@ -279,7 +279,7 @@ class MdiPage(ModelPage):
         self.modal_panel.rows = make_modal_rows(point, self.desk.machine.program_language)
 
     def _show_first_move(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Draw the first move of a prepared line over the path of the program, instead of the history."""
+        """Draw the first move of a prepared line over the program path. The picture hides the history."""
         legs = make_drawn_legs(self.model.prepared_line.first_move_result)
         if legs:
             self.path_view.show_picture(loaded.picture)
@@ -289,7 +289,7 @@ class MdiPage(ModelPage):
         self.path_view.setVisible(bool(legs))
 
     def apply_theme(self) -> None:
-        """Draw the path again with the present colors."""
+        """Draw the path again with the current colors."""
         self.path_view.redraw()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

@@ -45,15 +45,15 @@ def make_tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
 
 
 def make_secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
-    """Return X, Z and nose radius of the secondary offsets by number."""
+    """Return the secondary offsets by number, each with X, Z and nose radius."""
     return {n: SecondaryOffset(*row) for n, row in rows.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class MillOffsets:
-    """The offset tables of a mill by number, with the number of the active preset.
+    """The tool table and the preset table of a mill, and the number of the active preset.
 
-    Preset 0 is the preset of the machine file.
+    Both tables are mappings by number. Preset 0 is the preset of the machine file.
     """
 
     tools: Mapping[int, MillRow] = field(default_factory=dict)
@@ -65,7 +65,7 @@ def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
     """Return the job setup with the offset tables of a mill.
 
     The setup of a lathe is returned unchanged. Only tools of the mill's table are used. Lathe tool offsets
-    in the same store are ignored. ``job_setup.kinematics`` must be as in the machine file.
+    in the same store are ignored. ``job_setup.kinematics`` must be unchanged from the machine file.
     """
     machine = job_setup.kinematics
     if machine is None:
@@ -95,7 +95,7 @@ def make_mill_rows(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
 
 
 def make_datum_preset(row: PresetRow) -> DatumPreset:
-    """Return a row of the preset table as a datum preset for calculations."""
+    """Return a row of the preset table in the form that the calculations use."""
     from core.geometry.rotary_axes import DatumPreset
 
     return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(find_rotary_zeros(row).items()))
@@ -107,7 +107,7 @@ def find_rotary_zeros(row: PresetRow) -> dict[str, float]:
 
 
 def _make_tool_offset(row: MillRow) -> ToolOffset:
-    """Return the tool's length and radius, including its oversizes."""
+    """Return the tool's length and radius, each increased by its oversize."""
     return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
 
 

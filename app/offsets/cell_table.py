@@ -90,7 +90,7 @@ class CellTable(OffsetTable):
 
     @property
     def selected_number(self) -> int | None:
-        """Return the number of the selected row, to which undo applies."""
+        """Return the number of the selected row. Undo applies to this row."""
         return self.number
 
     @property
@@ -130,7 +130,7 @@ class CellTable(OffsetTable):
 
     @property
     def change_text(self) -> str:
-        """Return the change that is being entered, or else the last change."""
+        """Return the text of the change being entered, or of the last change if nothing is entered."""
         if not self.text.strip():
             return self.offset_history.last_change_text
         try:
@@ -163,8 +163,8 @@ class CellTable(OffsetTable):
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered.
 
-        Accepted characters are those of numbers, C if it clears the table, and any character while a text
-        is open.
+        Number characters are accepted, and also C if it clears the table. While a text cell is open, any
+        character is accepted.
         """
         return (
             (self.is_text_open and len(key) == 1)
@@ -173,7 +173,7 @@ class CellTable(OffsetTable):
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and add every character to the text while a text is open."""
+        """Handle a key. While a text cell is open, every character is added to its text."""
         return self.handle_entry_key(key) if self.is_text_open else super().handle_key(key)
 
     def handle_entry_key(self, key: str) -> bool:
@@ -224,7 +224,7 @@ class CellTable(OffsetTable):
             self._toggle_flag()
 
     def cancel_entry(self) -> bool:
-        """Discard the entered text, and return whether there was any."""
+        """Discard the entered text. Return False if nothing was entered."""
         typed = bool(self.text) or self.is_text_open
         self.discard_entry()
         return typed
@@ -234,7 +234,7 @@ class CellTable(OffsetTable):
         self.text, self.is_text_open = "", False
 
     def handle_enter(self) -> None:
-        """Handle Enter: save the entered value, open a text, toggle a flag, or select the next cell."""
+        """Handle Enter: save the entry, open a text cell, toggle a flag, or else select the next cell."""
         if self.is_text_open:
             self.save_cell(self.text.strip, "")
         elif self.selected_field.field_type is FieldType.TEXT:
@@ -294,7 +294,7 @@ class CellTable(OffsetTable):
     ) -> bool:
         """Save the selected cell, and return whether this succeeded.
 
-        A rejected text remains for correction. ``entered_text`` is recorded in the history.
+        A rejected text remains in the cell for correction. ``entered_text`` is recorded in the history.
         ``find_dependent_values`` returns the other fields of the row that depend on the new value.
         """
         if why := self.find_refusal(self.desk.read_snapshot()):

@@ -81,8 +81,8 @@ class CellPanel(RowPanel):
     def _find_visible_columns(self, available_width: float) -> range:
         """Return the indices of the visible columns.
 
-        The first column is visible if the selected column also fits. Otherwise the selected column is the
-        last one shown. ``available_width`` is in the units of the column widths.
+        The columns start at the first if the selected column then fits. Otherwise the selected column is
+        the last one shown. ``available_width`` is in the units of the column widths.
         """
         first, end, used = 0, 0, 0.0
         while end < len(self._wide) and (
@@ -140,7 +140,7 @@ _ROW_LETTERS = {ZeroOffsetTable.kind: "G", MillToolTable.kind: "T", PresetTable.
 class CellTablePage(OffsetPage):
     """Base class of the three pages whose tables are edited cell by cell.
 
-    F2 touches off. These pages do not draw the effect of a change.
+    F2 sets the selected field by touch-off. These pages do not show the effect of a change on the path.
     """
 
     model: CellTable
@@ -154,7 +154,7 @@ class CellTablePage(OffsetPage):
             self.number_pad.page_key = ("Tab", "→")
 
     def make_key_actions(self) -> KeyActions:
-        """Return the actions of the page's keys, which do not include F6 and F10."""
+        """Return the key actions of an offset page, without F6 and F10."""
         return {key: act for key, act in super().make_key_actions().items() if key not in {"F6", "F10"}}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
@@ -179,17 +179,17 @@ class ZeroOffsetsPage(CellTablePage):
         super().__init__(host, parent, ZeroOffsetTable(host.desk))
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the key labels, without secondary offsets on a SINUMERIK lathe."""
+        """Return the key labels. A SINUMERIK lathe has no key for secondary offsets."""
         return (
             (*self.LABELS[:8], "", "") if self.desk.machine.program_language == "sinumerik" else self.LABELS
         )
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why keys are disabled, including F2, which sets the position."""
+        """Return why each key is disabled, including F2 (set from position)."""
         return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
 
     def make_key_actions(self) -> KeyActions:
-        """Return the key actions, including F2, which sets the position."""
+        """Return the key actions, including F2 (set from position)."""
         return {**super().make_key_actions(), "F2": self.model.set_from_position}
 
 
@@ -204,16 +204,16 @@ class MillToolsPage(CellTablePage):
         super().__init__(host, parent, MillToolTable(host.desk))
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why keys are disabled, including F2, which touches off the length."""
+        """Return why each key is disabled, including F2 (touch off the length)."""
         return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
 
     def make_key_actions(self) -> KeyActions:
-        """Return the key actions, including F2, which touches off the length."""
+        """Return the key actions, including F2 (touch off the length)."""
         rest = {key: act for key, act in super().make_key_actions().items() if key not in {"F8", "F9"}}
         return {**rest, "F2": self.model.set_from_position, "F9": partial(self._go, page_table.PRESETS)}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Update the table and the tool life, which changes while the page is open."""
+        """Update the table, including the tool life, which changes while the page is open."""
         super().refresh(snapshot, status, loaded)
         self.table_panel.tool_lives = self.model.mill_lives.read_lives()
 
@@ -229,7 +229,7 @@ class PresetsPage(CellTablePage):
         super().__init__(host, parent, PresetTable(host.desk))
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why keys are disabled, including F2 (touch off) and F3 (activate)."""
+        """Return why each key is disabled, including F2 (touch off) and F3 (activate)."""
         model = self.model
         return {
             **super().find_key_refusals(),

@@ -1,10 +1,10 @@
-"""Rules for changes of offsets, used by the screen and the command line.
+"""Rules for changes to offsets, used by the screen and the command line.
 
 The rules define which changes are suspicious, and which access right each change needs. A rule compares the
 new value with the value in use. The limits are larger than the usual size correction between two parts, and
 smaller than most errors of a digit, a sign or a decimal point. Zero offsets and presets are not checked,
-because a new setup can move them by any distance. The proof checks the resulting path against the axis
-travel.
+because a new setup can move them by any distance. Instead, the proof of the program checks the resulting
+path against the axis travel.
 """
 
 from __future__ import annotations
@@ -60,8 +60,8 @@ class Suspicion(NamedTuple):
 def find_travel_limits(machine: Machine | None) -> TravelLimits:
     """Return the travel limits of X and Z of a lathe in mm.
 
-    Return an empty mapping for a mill or without a machine. The tool length of a mill is not a machine
-    position and is not compared with the travel.
+    Return an empty mapping for a mill or if no machine is specified. The tool length of a mill is not a
+    machine position and is not compared with the travel.
     """
     if machine is None or machine.kind != "lathe":
         return {}
@@ -166,7 +166,7 @@ def _check_corrections(
 ) -> Iterator[Suspicion]:
     """Yield the suspicious corrections.
 
-    ``doubled`` is the field that is entered as a diameter.
+    ``doubled`` is the name of the field that the operator enters as a diameter.
     """
     for name in names:
         limit = LARGE_CORRECTION_MM / (2.0 if name == doubled else 1.0)
@@ -183,7 +183,7 @@ def _moved(
 
 
 def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]) -> Iterator[Suspicion]:
-    """Yield the rows that become the master while the table contains tools that follow the master."""
+    """Yield a suspicion for each tool that becomes the master while other tools follow the master."""
     for number, row in new.items():
         old = table.get(number)
         was = isinstance(old, ToolRow) and old.master
@@ -209,7 +209,7 @@ def find_followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
 def find_follower_suspicions(
     tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: TravelLimits
 ) -> tuple[Suspicion, ...]:
-    """Return the following tools that a touch-off of the master would move outside the travel."""
+    """Return a suspicion for each following tool that this touch-off would move outside the travel."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
     found: list[Suspicion] = []
@@ -256,7 +256,7 @@ _RIGHTS_BY_KIND = {
 def find_required_right(kind: OffsetKind, fields: Collection[str] = ()) -> ProtectedChange:
     """Return the access right that is needed to change these fields.
 
-    Without fields, return the right to clear the table or undo a change.
+    If no fields are given, return the right that is needed to clear the table or undo a change.
     """
     only = CORRECTION_FIELDS.get(kind, frozenset())
     return ProtectedChange.WEAR if fields and only.issuperset(fields) else _RIGHTS_BY_KIND[kind]

@@ -34,12 +34,12 @@ class MillToolTable(CellTable):
 
     @property
     def mill_lives(self) -> MillToolLives:
-        """Return the access to the tool life of the mill's tools."""
+        """Return the object that reads and sets the tool life of the mill's tools."""
         return MillToolLives.find_for(self.desk)
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Return the field names of the columns, with the cutting time after the tool life limit."""
+        """Return the field names of the columns. The cutting time follows the tool life limit."""
         *fields, stops = super().columns
         return (*fields, CUTTING_TIME_FIELD, stops)
 
@@ -111,9 +111,9 @@ class MillToolTable(CellTable):
         return nose if isinstance(nose, str) else self.find_refusal(self.desk.read_snapshot())
 
     def set_from_position(self) -> None:
-        """Handle F2: set the tool length so that the tip is at the entered height, or at 0.
+        """Handle F2: set the tool length so that the tip is at the entered height.
 
-        The height is relative to the active preset.
+        The height is relative to the active preset. Without an entry, it is 0.
         """
         nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
         if isinstance(nose, str) or self.find_position_refusal():

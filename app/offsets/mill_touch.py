@@ -23,7 +23,7 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 class MillTouchCalculator:
     """A calculator of positions on a mill.
 
-    ``kinematics`` is the kinematics from the machine file, or None.
+    ``kinematics`` comes from the machine file. It is None if the machine file defines no kinematics.
     """
 
     desk: Desk

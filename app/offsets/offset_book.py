@@ -35,7 +35,7 @@ SAVE_IN_PROGRESS = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 
 
 class OffsetRows(NamedTuple):
-    """All offsets of a store at one moment."""
+    """All offsets that a store contains at one moment."""
 
     tool_offsets: dict[int, ToolRow]
     secondary_offsets: dict[int, SecondaryRow]
@@ -68,9 +68,9 @@ def read_store_rows(store: Store) -> OffsetRows:
 class OffsetBook:
     """Offsets and tool shapes by number, in mm and degrees, with X as a radius.
 
-    A change that the access level permits is posted to the store's writer. The new value is shown when it
-    is on the disk. ``poll_saving`` is called once a frame. Without ``store``, nothing can be changed, and
-    ``lock_reason`` gives the reason.
+    A change that the access level permits is posted to the store's writer. The new value is shown after it
+    has been written to the disk. ``poll_saving`` is called once a frame. Without ``store``, nothing can be
+    changed, and ``lock_reason`` gives the reason.
     """
 
     store: Store | None = None
@@ -121,13 +121,13 @@ class OffsetBook:
     def read_store(self) -> None:
         """Read the values of the store.
 
-        This does not wait, even while the store is being written.
+        This call does not block, even while the store is being written.
         """
         if self.store is not None:
             self.show_rows(read_store_rows(self.store))
 
     def show_rows(self, rows: OffsetRows) -> None:
-        """Use these values.
+        """Replace the shown values with these offsets.
 
         Without a store, the values can be shown but not changed.
         """
@@ -224,7 +224,7 @@ class OffsetBook:
         return () if self.store is None else self.store.offsets.get_table(kind).find_undoable_changes(number)
 
     def undo_step(self, kind: OffsetKind, number: int | None, step_number: int) -> str:
-        """Undo this step, and no other step."""
+        """Undo this step only. Other steps remain unchanged."""
         return self._post(
             find_required_right(kind),
             lambda store, who: store.offsets.get_table(kind).undo_step(number, step_number, author=who),

@@ -1,7 +1,7 @@
-"""Changes of offsets, with confirmation of suspicious changes, history and undo.
+"""Changes to offsets, with confirmation of suspicious changes, history and undo.
 
-Every page changes offsets through these classes. A question shows the old and the new value. Y changes the
-offset. N and Esc leave it unchanged.
+Every page changes offsets through these classes. To confirm a change, the operator sees the old and the new
+value. Y changes the offset. N and Esc leave it unchanged.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
 
 
 def describe_effective_time(snapshot: Snapshot) -> str:
-    """Return when a change entered now takes effect, or an empty string between cycles."""
+    """Return when a change entered now takes effect, or an empty string if no cycle is running."""
     if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
@@ -89,7 +89,7 @@ def _describe_applied_next(snapshot: Snapshot) -> str:
 
 @dataclass(slots=True)
 class OffsetHistory:
-    """The history of the table ``kind``.
+    """The history of changes to the table ``kind``.
 
     Every page that changes the table calls ``update`` once a frame.
     """
@@ -116,12 +116,12 @@ class OffsetHistory:
         return self.desk.offset_book
 
     def on_open(self) -> None:
-        """Ignore changes that were made before the page opened."""
+        """Do not report changes that were made before the page opened."""
         self._seen, self.last_changes = self.offset_book.changes, ()
         self._newest = max((change.id for change in self._read(1)), default=0)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control, and report newly saved changes.
+        """Read the unit of the control, and report newly saved changes.
 
         This is called once a frame.
         """
@@ -217,7 +217,7 @@ _MAX_NAMES = 6  # Followers that a question lists by name.
 
 @dataclass(frozen=True, slots=True)
 class ConfirmedOffsetChanges:
-    """Changes of offsets that the operator confirms if they are suspicious.
+    """Changes to offsets, which the operator must confirm if they are suspicious.
 
     Each method returns why the change was rejected, or an empty string.
     """
@@ -304,7 +304,7 @@ class ConfirmedOffsetChanges:
         unchanged: Callable[[], bool],
         others: str = "",
     ) -> str:
-        """Save at once, or after the operator confirms with Y if there are suspicions.
+        """Save at once, or ask first and save after Y if there are suspicions.
 
         The change is rejected if the offsets have changed since the question was asked.
         """
@@ -342,7 +342,7 @@ class ConfirmedOffsetChanges:
     # --- the master ----------------------------------------------------------------------------------
 
     def ask_master(self, tool_number: int) -> str:
-        """Ask whether to make this tool the master, or to have no master if it is the master now.
+        """Ask whether to make this tool the master, or to remove the master if this tool is the master.
 
         The question names the tools that follow.
         """
@@ -386,7 +386,7 @@ class ConfirmedOffsetChanges:
     def ask_undo(self, kind: OffsetKind, number: int | None, on_done: str = "") -> str:
         """Ask whether to undo the last change of this row, or of the table if ``number`` is None.
 
-        ``on_done`` is the message after Y, for a page that does not watch the table.
+        ``on_done`` is the message after the undo. It is for pages that do not report changes to the table.
         """
         book = self.offset_history.offset_book
         if why := book.barred(find_required_right(kind)):
@@ -452,6 +452,6 @@ def format_followers(tools: Mapping[int, ToolRow], master: int) -> str:
 
 
 def _shorten_names(names: list[str]) -> list[str]:
-    """Return the first names, and the number of the remaining names."""
+    """Return the first names, followed by the number of names that are left out."""
     more = len(names) - _MAX_NAMES
     return names if more <= 0 else [*names[:_MAX_NAMES], tr(Message("{count} MORE", count=more))]

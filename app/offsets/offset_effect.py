@@ -1,7 +1,7 @@
-"""Effect of a change of offsets on the path: the loaded program drawn with the old and new offsets.
+"""Effect of an offset change on the path: the loaded program drawn with the old and new offsets.
 
 A changed tool offset moves the real tip. Both paths are therefore drawn in the frame of the old offsets, so
-their distance equals the distance that the tip will move.
+that the distance between them equals the distance that the tip will move.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ DrawPaths = Callable[[Job, Mapping[int, ToolOffset], ProgressCallback], "Program
 
 @dataclass(frozen=True, slots=True)
 class ComparedPaths:
-    """The paths with the old and the new offsets, in one frame."""
+    """The path with the old offsets and the path with the new offsets, in one frame."""
 
     picture_before: ProgramPicture
     picture_after: ProgramPicture
@@ -62,7 +62,7 @@ class ComparedPaths:
 
 
 def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
-    """Return the paths of both pictures with their largest distance in mm."""
+    """Return the paths of both pictures and the largest distance between them in mm."""
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return ComparedPaths(before, after, float("inf"))
     if not len(before.z):
@@ -152,7 +152,7 @@ def _with(job: Job, tables: OffsetTables) -> Job:
 class EffectDisplay:
     """The views of the effect of a change.
 
-    They follow each other in this order: whole path, close-up of the largest change, part features, table.
+    F6 shows them in this order: whole path, close-up of the largest change, part features, table.
     """
 
     offset_table: OffsetTable
@@ -272,7 +272,7 @@ class EffectDisplay:
 
     @property
     def words(self) -> str:
-        """Return the text of the prompt line that describes the view."""
+        """Return the prompt text that describes the view."""
         effect = self.offset_effect
         return (
             self._words_of_part(effect)

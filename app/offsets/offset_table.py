@@ -68,14 +68,14 @@ class OffsetTable(ABC):
 
     @property
     def selected_number(self) -> int | None:
-        """Return the number of the selected row, to which undo applies, or None if no row is selected."""
+        """Return the number of the selected row, on which undo acts, or None if no row is selected."""
         return None
 
     # --- members that each table defines -------------------------------------------------------------
 
     @property
     def heading(self) -> str:
-        """Return the name of the offset that is being entered, if the question does not contain this name."""
+        """Return the name of the offset being entered, or an empty string if the question contains it."""
         return ""
 
     @property
@@ -96,7 +96,7 @@ class OffsetTable(ABC):
     @property
     @abstractmethod
     def change_text(self) -> str:
-        """Return the change that is being entered, or else the last change."""
+        """Return the text of the change being entered, or of the last change if nothing is entered."""
 
     @property
     @abstractmethod
@@ -105,7 +105,7 @@ class OffsetTable(ABC):
 
     @abstractmethod
     def make_hint(self, snapshot: Snapshot) -> str:
-        """Return the hint of the prompt line: how to enter a value, or when it takes effect."""
+        """Return the hint for the prompt line: how to enter a value, or when the value takes effect."""
 
     @abstractmethod
     def accepts_key(self, key: str) -> bool:
@@ -130,7 +130,7 @@ class OffsetTable(ABC):
         """Discard the entry without a message."""
 
     def make_proposed_offsets(self) -> ProposedOffsets:
-        """Return the tool and secondary offsets as they would be with the present entry."""
+        """Return the tool and secondary offsets as they would be with the current entry."""
         return self.offset_book.tool_offsets, self.offset_book.secondary_offsets
 
     # --- conditions: each returns the reason for a refusal, or an empty text --------------------------
@@ -159,7 +159,7 @@ class OffsetTable(ABC):
         return self.make_hint(snapshot)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control, and report saved changes.
+        """Read the unit of the control, and report saved changes.
 
         This is called once a frame.
         """
@@ -182,7 +182,7 @@ class OffsetTable(ABC):
     def handle_undo(self) -> None:
         """Discard the entry, or ask whether to undo the last change if there is no entry.
 
-        The last change is that of the selected row.
+        This is the last change of the selected row.
         """
         why = self.find_undo_refusal()
         if why or not self.cancel_entry():
@@ -215,7 +215,7 @@ class OffsetTable(ABC):
         return True
 
     def on_open(self) -> None:
-        """Ignore changes that were made before the page opened."""
+        """Do not report changes that were made before the page opened."""
         self.offset_history.on_open()
 
     def on_close(self) -> None:
@@ -238,7 +238,7 @@ class IncompleteTool:
     tip_x_mm: float | None = None  # X of the tip relative to part zero at the touch-off in mm.
 
     def add_value(self, tool_number: int, field_name: str, value: FieldValue) -> dict[str, FieldValue]:
-        """Add X or Z, and return the values that are known."""
+        """Add X or Z, and return the values entered so far."""
         if tool_number != self.tool_number:
             self.discard_values()
         self.known_values = {**self.known_values, field_name: value}
@@ -257,7 +257,7 @@ class IncompleteTool:
 
 @dataclass(slots=True)
 class ToolFieldEditor:
-    """An editor that saves single fields of tools, for F8 and the Jog page.
+    """An editor that saves single fields of tools. F8 and the Jog page use it.
 
     Each method returns why the change was rejected, or an empty string.
     """
@@ -266,7 +266,7 @@ class ToolFieldEditor:
     incomplete_tool: IncompleteTool = field(default_factory=IncompleteTool)
 
     def describe_unset_tool(self, tool_number: int) -> str:
-        """Return the message that this tool has not been set."""
+        """Return the message that this tool has no offset yet."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
         return tr(Message(text, number=format_edge_suffix(tool_number)))
 
@@ -304,7 +304,7 @@ class ToolFieldEditor:
         )
 
     def _save_first_value(self, number: int, name: str, value: FieldValue) -> str:
-        """Save X and Z of a new tool when both are known."""
+        """Save the first X and Z of a new tool after both have been entered."""
         if name not in {"x", "z"}:
             return self.describe_unset_tool(number)
         values = self.incomplete_tool.add_value(number, name, value)
@@ -328,7 +328,7 @@ class ToolFieldEditor:
         return why
 
     def ask_master(self, tool_number: int) -> str:
-        """Ask whether to make this tool the master, or to have no master if it is the master now."""
+        """Ask whether to make this tool the master, or to remove the master if this tool is the master."""
         if tool_number not in self.offset_history.offset_book.tool_offsets:
             return self.describe_unset_tool(tool_number)
         return ConfirmedOffsetChanges(self.offset_history).ask_master(tool_number)
@@ -350,7 +350,7 @@ class ToolFieldTable(OffsetTable):
 
     @property
     def selected_number(self) -> int | None:
-        """Return the number of the selected tool, to which undo applies."""
+        """Return the number of the selected tool. Undo applies to this tool."""
         return self.tool_number
 
     @property
@@ -397,12 +397,12 @@ class ToolFieldTable(OffsetTable):
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered.
 
-        Accepted are number characters, and any character while a text is open.
+        Number characters are accepted. While a text field is open, any character is accepted.
         """
         return self.is_text_open or key in EXPRESSION_CHARACTERS
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle Enter and text keys.
+        """Handle Enter and the keys that edit the text.
 
         Subclasses handle the keys that move the cursor.
         """
@@ -437,7 +437,7 @@ class ToolFieldTable(OffsetTable):
     def save_field(self, save_value: Callable[[], str]) -> bool:
         """Save the field with ``save_value``, and return whether this succeeded.
 
-        If it is rejected, show the reason and leave the text for correction.
+        If the value is rejected, show the reason and leave the text in the field for correction.
         """
         barred = self.find_cell_refusal()
         try:

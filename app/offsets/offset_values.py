@@ -37,19 +37,19 @@ ZERO_OFFSET_DECIMALS = 3
 
 @dataclass(frozen=True, slots=True)
 class ValueMode:
-    """The control's unit, and whether X is a diameter, taken from one snapshot."""
+    """The control's unit, and whether X is a diameter, as read from one snapshot."""
 
     is_metric: bool = False
     is_diameter: bool = False
 
     @property
     def unit_mm(self) -> float:
-        """Return the number of millimeters in one unit of an entry."""
+        """Return the length of the entry unit in millimeters."""
         return 1.0 if self.is_metric else MM_PER_INCH
 
     @property
     def name(self) -> str:
-        """Return the name of the unit in messages."""
+        """Return the name of the unit, as used in messages."""
         return "mm" if self.is_metric else "in"
 
 
@@ -79,7 +79,7 @@ def format_zero_offset(value: float) -> str:
 def convert_to_mm(value: float, is_metric: bool) -> float:
     """Return an entered length in mm.
 
-    The length is first rounded in its own unit, so that it is displayed as it was entered.
+    The length is first rounded in the unit of the entry, so that it is later displayed as it was entered.
     """
     return round(value, 10) * (1.0 if is_metric else MM_PER_INCH)
 
@@ -129,7 +129,7 @@ def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
 
 
 def format_set_fields(row: MillRow | PresetRow) -> str:
-    """Return the fields of a mill's tool or preset that have values, with the control's field names."""
+    """Return the fields of a mill's tool or preset that are set, with the control's field names."""
     fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillRow) else OffsetKind.PRESET]
     values: tuple[FieldValue, ...] = tuple(row)
     field_texts = [
@@ -159,7 +159,7 @@ def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
 
 
 def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
-    """Return the text of a tool's other fields that are set."""
+    """Return the text of a tool's remaining fields, if they are set."""
     parts = [f"  R {formats.format_length(tool.nose_radius, mode.is_metric)}"]
     if tool.wear_x or tool.wear_z:
         parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.is_metric, True)}")
@@ -181,9 +181,9 @@ def _format_shape(shape: ShapeRow, mode: ValueMode) -> str:
 
 
 def format_change(old: OffsetRow | None, new: OffsetRow | None, mode: ValueMode) -> str:
-    """Return the text of an offset before and after a change.
+    """Return the old and the new offset as text.
 
-    For a tool that is set before and after, the text contains only the changed fields.
+    For a tool that was already set, the text contains only the changed fields.
     """
     if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
         return f"{format_offset(old, mode)}  →  {format_offset(new, mode)}"
@@ -222,7 +222,7 @@ def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
 
 
 def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMode) -> FieldValue:
-    """Return the length in mm after an entered value is added to it.
+    """Return the field's length in mm, increased by the entered value.
 
     Raise EntryError with the reason if the text is invalid.
     """

@@ -140,7 +140,7 @@ def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
 
 
 class _ToolTables(NamedTuple):
-    """The tools of a file: all offsets, the offsets whose position is specified, and the shapes."""
+    """The tools of a file: all offsets, the offsets with a specified position, and the shapes."""
 
     rows: dict[int, ToolRow]
     placed_rows: dict[int, ToolRow]

@@ -48,7 +48,7 @@ class EffectView(PathView):
         self.hide()
 
     def update_effect(self) -> None:
-        """Show the paths that are ready, and continue drawing."""
+        """Show the finished paths, and continue to draw the view."""
         pair = self._model.compared_paths
         self.show_compared(pair.picture_before if pair else None, pair.picture_after if pair else None)
         if pair is not None and self._model.is_close_up != self._near:
@@ -160,7 +160,7 @@ class OffsetPage(ModelPage):
         return frozenset(key for key, why in self.find_key_refusals().items() if why)
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why each key is disabled.
+        """Return the reason why each key is disabled.
 
         The reason is empty if the key is enabled.
         """

@@ -1,4 +1,4 @@
-"""Effect of a change of offsets on the part, with each diameter and shoulder before and after."""
+"""Effect of an offset change on the part, with the old and new size of each diameter and shoulder."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The model of the secondary offsets (F9 SECCMP), which prompts for a number and then for X, Z and R.
+"""Model of the secondary offsets (F9 SECCMP). It prompts for a number, and then for X, Z and R.
 
-The prompts are those of the original control. X is a diameter correction, which is halved and added. Z is
-added. R replaces the value. Enter without a value leaves the present value unchanged.
+The prompts are those of the original control. X is a diameter correction: half of it is added to the
+offset. Z is added. R replaces the value. Enter without a value leaves the current value unchanged.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def apply_correction(
 ) -> float:
     """Return the new value in mm for an entry.
 
-    X is halved and added, Z is added, and R replaces the value.
+    For X, half of the entry is added. For Z, the entry is added. For R, it replaces the value.
     """
     if step is SecondaryOffsetStep.R:
         return convert_to_mm(entered_value, mode.is_metric)
@@ -96,9 +96,9 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def selected_number(self) -> int | None:
-        """Return the entered number, or None if there is no number.
+        """Return the entered number, or None if no number has been entered.
 
-        With None, undo applies to the last change of the table.
+        With None, undo applies to the last change of the whole table.
         """
         return self.offset_number or None
 
@@ -121,7 +121,7 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def change_text(self) -> str:
-        """Return the change that is being entered, or else the last change."""
+        """Return the text of the change being entered, or of the last change if nothing is entered."""
         if self.entry_step is SecondaryOffsetStep.NUMBER:
             return self.offset_history.last_change_text
         was, new = (format_offset(side, self.value_mode) for side in (self.present_row, self.preview_row))
@@ -142,16 +142,16 @@ class SecondaryOffsetEntry(OffsetTable):
         )
 
     def make_proposed_offsets(self) -> ProposedOffsets:
-        """Return the offsets as they would be with the present entry."""
+        """Return the offsets as they would be with the current entry."""
         tools, secondary = super().make_proposed_offsets()
         preview = self.preview_row
         return tools, {**secondary, **({self.offset_number: preview} if preview else {})}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control, and discard the entry if the unit changes.
+        """Read the unit of the control, and discard the entry if the unit has changed.
 
         This is called once a frame. X is always a diameter correction. A change of the control's diameter
-        mode therefore has no effect.
+        mode therefore does not discard the entry.
         """
         before = self.value_mode
         super().update(snapshot)
@@ -167,12 +167,12 @@ class SecondaryOffsetEntry(OffsetTable):
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered.
 
-        Accepted are number characters, and C to clear the table.
+        Number characters are accepted, and also C, which clears the table.
         """
         return key in EXPRESSION_CHARACTERS or key == "C"
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a text key, or handle Enter to answer the question."""
+        """Handle a key: edit the text, or answer the question with Enter."""
         if key not in _ENTRY_KEYS:
             return False
         self.desk.clear_prompt_line()

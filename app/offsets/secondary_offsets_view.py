@@ -118,7 +118,7 @@ class SecondaryOffsetTable(Panel):
     def _draw_row(self, painter: ThemedPainter, box: QRectF, number: int, size: float) -> None:
         """Draw one row.
 
-        ``size`` scales the letters. It is 1 in the full table.
+        ``size`` is the scale of the text, which is 1 in the full table.
         """
         u = self.theme.unit_px
         here = number == self._number

@@ -46,7 +46,7 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def tool_numbers(self) -> tuple[int, ...]:
-        """Return the row numbers of the table: every tool, followed by its additional cutting edges."""
+        """Return the row numbers of the table: each tool, followed by its additional cutting edges."""
         edges = sorted(
             {
                 key
@@ -137,10 +137,10 @@ class ToolOffsetTable(ToolFieldTable):
         return super().find_cell_refusal()
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control, and discard the entry if the unit changes.
+        """Read the unit of the control, and discard the entry if the unit has changed.
 
-        This is called once a frame. An entry of X or Z is also discarded if the diameter mode changes. Wear
-        is always a diameter.
+        This is called once a frame. An entry of X or Z is also discarded if the diameter mode changes. An
+        entry of wear is not, because wear is always a diameter.
         """
         before = self.value_mode
         super().update(snapshot)
@@ -197,7 +197,7 @@ class ToolOffsetTable(ToolFieldTable):
         return ""
 
     def toggle_relative_display(self) -> None:
-        """Handle F3: switch X and Z between distances from home and distances from the master."""
+        """Handle F3: show X and Z relative to the master, or relative to home again."""
         if why := self.find_relative_refusal():
             self.desk.say(why)
             return
@@ -253,7 +253,7 @@ class ToolOffsetTable(ToolFieldTable):
             self.discard_entry()
 
     def handle_enter(self) -> None:
-        """Handle Enter: save the entered value, choose the master, open a remark, or go to the next cell."""
+        """Handle Enter: save the entry, choose the master, open a remark, or else go to the next cell."""
         if self.name == "master":
             self.offset_history.show_refusal(
                 self.find_cell_refusal() or self.tool_fields.ask_master(self.tool_number)

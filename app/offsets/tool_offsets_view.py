@@ -70,8 +70,8 @@ class ToolOffsetPanel(RowPanel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the column heads and the visible rows of the tool offsets.
 
-        The title shows the unit, whether X is a diameter or a radius, and the master tool of relative
-        values.
+        The title shows the unit, and whether X is a diameter or a radius. If values are relative, it also
+        shows the master tool.
         """
         u, model = self.theme.unit_px, self._model
         mode = model.value_mode
@@ -154,7 +154,7 @@ class ToolOffsetPanel(RowPanel):
             )
 
     def _find_scale(self, row: QRectF) -> float:
-        """Return the scale of the letters for the height of the row."""
+        """Return the text scale that suits the height of a row."""
         return min(1.0, row.height() / (4.2 * self.theme.unit_px))
 
     def _cell(self, painter: ThemedPainter, cell: QRectF, number: int, name: str) -> None:
@@ -191,7 +191,7 @@ class ToolOffsetsPage(OffsetPage):
         self.table_panel = ToolOffsetPanel(self.theme, self.model, self)
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why keys are disabled, including F2 (add) and F3 (relative to master)."""
+        """Return why each key is disabled, including F2 (add) and F3 (relative to master)."""
         model = self.model
         return {
             **super().find_key_refusals(),
@@ -317,11 +317,11 @@ class ToolShapePage(OffsetPage):
         self.table_panel = ToolShapePanel(self.theme, self.model, self)
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why keys are disabled, including F3, which deletes the shape."""
+        """Return why each key is disabled, including F3 (delete the shape)."""
         return {**super().find_key_refusals(), "F3": self.model.find_delete_refusal()}
 
     def make_key_actions(self) -> KeyActions:
-        """Return the key actions, including F3, which deletes the shape.
+        """Return the key actions, including F3 (delete the shape).
 
         This page does not show the effect on the path.
         """

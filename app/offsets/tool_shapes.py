@@ -226,7 +226,7 @@ class ToolShapeTable(ToolFieldTable):
     def _save_field(self, name: str, value: FieldValue) -> str:
         """Save a field.
 
-        Raise EntryError if the value is a mistake in this field.
+        Raise EntryError if the value is not valid for this field.
         """
         of_offset = name in ToolRow._fields
         if of_offset and self.tool_row is None:
@@ -241,7 +241,7 @@ class ToolShapeTable(ToolFieldTable):
         )
 
     def _check_shape(self, name: str, value: FieldValue) -> None:
-        """Raise EntryError if the value is a mistake in this field.
+        """Raise EntryError if the value is not valid for this field.
 
         Mistakes in other fields are only shown.
         """

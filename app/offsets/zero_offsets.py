@@ -36,7 +36,7 @@ class PresetTable(CellTable):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Return the field names of the columns, which include only the rotary axes of this machine."""
+        """Return the field names of the columns, with only the rotary axes that this machine has."""
         absent = {
             name
             for name, axis in _ROTARY_AXES.items()
@@ -50,7 +50,7 @@ class PresetTable(CellTable):
         return tr("PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES")
 
     def find_active_row(self, _snapshot: Snapshot) -> int:
-        """Return the number of the preset in force."""
+        """Return the number of the active preset."""
         return self.offset_book.active_preset
 
     @property
@@ -123,7 +123,7 @@ class PresetTable(CellTable):
     def _touch_rotary_axis(self) -> None:
         """Set a rotary axis so that it reads the entered value.
 
-        The workpiece zero remains on the same point of the part.
+        The workpiece zero remains at the same point of the part.
         """
         at, reads = MillTouchCalculator.find_for(self.desk).find_angle(_ROTARY_AXES[self.name]), self._reads
         if isinstance(at, str):
@@ -136,7 +136,7 @@ class PresetTable(CellTable):
         )
 
     def _find_linear_offsets(self, zero: FieldValue) -> Mapping[str, FieldValue]:
-        """Return X, Y and Z of the same workpiece point for another zero of the selected rotary axis."""
+        """Return new X, Y and Z that retain the workpiece zero when a rotary axis gets this zero."""
         row = self.selected_preset
         if self.stored_row is None:
             return {}
@@ -163,7 +163,7 @@ class PresetTable(CellTable):
             self.first_edge_point = None
 
     def _find_rotation(self, first: Vector, last: Vector, reads: float) -> float:
-        """Return the basic rotation in degrees that makes the edge read ``reads`` degrees from X.
+        """Return the basic rotation in degrees that puts the edge at ``reads`` degrees from X.
 
         An edge has no direction, so half revolutions are ignored. Raise EntryError if the points are too
         close.
@@ -282,7 +282,7 @@ class ZeroOffsetTable(CellTable):
         self.save_cell(lambda: self._find_offset(snapshot.actual[place], evaluate_expression(reads)), words)
 
     def _find_offset(self, at: float, reads: float) -> float:
-        """Return the offset that makes machine position ``at`` read ``reads``.
+        """Return the offset with which machine position ``at`` is displayed as ``reads``.
 
         Full revolutions of C are ignored.
         """

@@ -42,8 +42,8 @@ class PartSection(StrEnum):
 class PartModel:
     """Model of the PART page.
 
-    ``check_codes`` are the checks that can be turned off. ``machine_disabled_checks`` are the checks that the
-    machine file turns off. ``show_location`` is called with a finding whose location the page must show.
+    ``check_codes`` are the checks that can be turned off. ``machine_disabled_checks`` are the checks that
+    the machine file turns off. ``show_location`` is called with a finding to show its location.
     """
 
     desk: Desk
@@ -66,7 +66,7 @@ class PartModel:
     _seen: tuple[str, int] = ("", -1)  # program name and load count of the stored data
 
     def close(self) -> None:
-        """Stop the worker after pending writes are finished."""
+        """Finish pending writes, and stop the worker."""
         self.worker.close()
 
     # --- displayed values ----------------------------------------------------------------------------
@@ -172,7 +172,7 @@ class PartModel:
 
     @property
     def is_entering_text(self) -> bool:
-        """Return whether every typed character is added to a text."""
+        """Return whether a text is being entered, to which every typed character is added."""
         return bool(self.check_to_disable) or self.is_entering_file_name
 
     def accepts_key(self, key: str) -> bool:
@@ -322,7 +322,7 @@ class PartModel:
         self.selected_rows[PartSection.STOCK] = 0
 
     def delete_stock(self) -> None:
-        """Delete the stock and the stick-out of the program."""
+        """Delete the stock and the stick-out that are stored for the program."""
         self.cancel_entry()
         if self._is_refused():
             return
@@ -467,7 +467,7 @@ class PartModel:
 
 
 def _find_most_important(found: tuple[Diagnostic, ...]) -> int:
-    """Return the index of the first error, or of the first finding in the part if there is no error."""
+    """Return the index of the first error, or else of the first finding about the part."""
     errors = [place for place, each in enumerate(found) if each.severity is Severity.ERROR]
     of_part = [place for place, each in enumerate(found) if each.block_number and not each.downgrade_reason]
     return next(iter((*errors, *of_part)), 0)

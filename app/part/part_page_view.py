@@ -28,7 +28,7 @@ SHARE, PAD, LETTERS = 0.5, 28.4, 24.0
 
 
 class PartPathView(PathView):
-    """View of the part after the block of the selected finding, or at the time of the timeline."""
+    """View of the part after the block of the selected finding, or at the time on the timeline."""
 
     title = "PART"
 
@@ -54,7 +54,7 @@ class PartPage(ListPage):
         return self.model.make_function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the key labels of the displayed table and of the page."""
+        """Return the labels of the keys that the displayed table and the page use."""
         return self.make_function_key_labels(
             {"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.make_function_keys()
         )
@@ -91,7 +91,7 @@ class PartPage(ListPage):
         self.path_view.redraw()
 
     def _show(self, found: Diagnostic) -> None:
-        """Show the part after the block of the finding."""
+        """Show the part after the block that caused the finding."""
         player = self.path_view.part_player
         assert player is not None
         self._shown = found

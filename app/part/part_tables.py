@@ -1,4 +1,4 @@
-"""Tables of the PART page: findings of a program, and its specified and assumed stock."""
+"""Tables of the PART page: findings of a program, and specified and assumed stock values."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _said(page: PartModel, name: StockField) -> str:
 
 
 def _format_assumed(page: PartModel, name: StockField) -> str:
-    """Return the text of the value that is assumed if no value is specified."""
+    """Return, as text, the value that is assumed if the operator specifies none."""
     if name is StockField.STICK_OUT:
         return format_length(page.assumed_stick_out_mm, page.is_metric) if page.assumed_stick_out_mm else ""
     part = page.loaded_program.part_proof

@@ -1,4 +1,4 @@
-"""Stock and stick-out of a program as entry fields and as the text in the store."""
+"""Entry of a program's stock and stick-out, with conversion from and to the text in the store."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ _STICK_LIMITS_MM = (0.0, 40.0 * MM_PER_INCH)
 class StockEntry:
     """Stock entry with lengths in mm.
 
-    A length of 0 is not specified. ``file`` is the file of a profile or of the preceding program.
+    A length of 0 means not specified. ``file`` is the file of a profile or of the preceding program.
     """
 
     kind: StockKind = StockKind.UNSPECIFIED
@@ -80,7 +80,7 @@ class StockEntry:
     def from_stored_part(cls, stored: StoredPart) -> StockEntry:
         """Return the entry for the stored data.
 
-        An invalid stock text is ignored, but the stick-out is used.
+        If the stock text is invalid, only the stick-out is used.
         """
         out = stored.stick_out_mm or 0.0
         try:
@@ -155,7 +155,7 @@ class StockEntry:
 def _format_length(mm: float) -> str:
     """Return a length as text.
 
-    The text is in inches if that is shorter, and otherwise in mm.
+    The text is in inches or in mm, whichever is shorter.
     """
     inches, metric = (f"{value:.6f}".rstrip("0").rstrip(".") for value in (mm / MM_PER_INCH, mm))
     exact = abs(float(inches) * MM_PER_INCH - mm) < 1e-6

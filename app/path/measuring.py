@@ -1,6 +1,6 @@
-"""Measuring in the path view: snap points, the nearest point, and the distance between two points.
+"""Measuring in the path view: snap points, the nearest point, and distances between points.
 
-Each function scans the points only once, so a key press remains fast with a million points.
+Each function scans the points only once, so that a key press is handled fast even with a million points.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ class SnapPoints:
 
 
 def _find_end_points(polyline: Polyline) -> FloatArray:
-    """Return the ends of blocks and the starts after jumps in path order, as an array of shape (n, 2)."""
+    """Return the block ends and the points after jumps, in path order, as an array of shape (n, 2)."""
     is_end_point = polyline.stroke == Stroke.JUMP
     is_end_point[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
     index = np.flatnonzero(is_end_point)
@@ -166,7 +166,7 @@ def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
 
 
 def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance_mm: float) -> int | None:
-    """Return the index of the end point of the chord nearest to a position.
+    """Return the index of the end point of the chord that is nearest to a position.
 
     Return None if no chord is within ``max_distance_mm`` millimeters.
     """
@@ -209,7 +209,7 @@ def measure_on_path(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[M
 def measure_on_face(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the face of the part.
 
-    The rows are in face X and Y, with Y up.
+    The rows are X and Y of the face, with Y up.
     """
     dx, dy = end.z - start.z, start.x - end.x
     return [

@@ -40,7 +40,7 @@ class Measurement:
     # --- keys and pointer ----------------------------------------------------------------------------
 
     def key(self, event: QKeyEvent) -> bool:
-        """Handle a key press, and return whether the key was used for measuring."""
+        """Handle a key press. Return False if measuring does not use the key."""
         key, held = Key(event.key()), event.modifiers()
         if held & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier):
             return False
@@ -59,7 +59,7 @@ class Measurement:
         return True
 
     def end_measuring(self) -> None:
-        """Show the whole path again if it was shown before measuring."""
+        """End measuring. Show the whole path again if it was shown before measuring."""
         if self._free:
             self.pane.fit_view()
 
@@ -118,7 +118,7 @@ class Measurement:
     # --- displayed values ----------------------------------------------------------------------------
 
     def make_rows(self, is_metric: bool) -> list[measuring.MeasurementRow]:
-        """Return the rows to display, with the cursor position and the differences from the first point."""
+        """Return the rows to display: the cursor position, and its differences from the first point."""
         start, end = self.first_point, self.second_point or self.cursor
         aspect, scale = self.pane.aspect, self.pane.polyline.mm_per_degree
         if aspect in {PathAspect.PATH, PathAspect.SECTION}:

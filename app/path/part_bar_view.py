@@ -40,7 +40,7 @@ class PartTimeline:
     def handle_touch(self, position: QPointF) -> bool:
         """Seek to the touched time, and return whether the touch was on the active timeline.
 
-        Return False while the player follows the run.
+        Return False while the part view follows the run.
         """
         u = self.theme.unit_px
         if self.part_player.follows_run or not self._track.adjusted(-u, -3 * u, u, 3 * u).contains(position):

@@ -84,7 +84,7 @@ class PartPane(PathPane):
     # --- projection ----------------------------------------------------------------------------------
 
     def make_full_projection(self) -> Projection:
-        """Return the projection that shows the stock outside the chuck, and room for the tool."""
+        """Return the projection that shows the stock outside the chuck, with room for the tool."""
         z0, z1, x0, x1 = self.polyline.bounds
         shown = self.part_player.result
         if shown is not None and (stock := shown.part_instant.stock) is not None:
@@ -108,7 +108,7 @@ class PartPane(PathPane):
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
-        """Set the projection, and request only the section from the player."""
+        """Set the projection, and request a section without a 3D image."""
         self.projection = projection
         self.part_player.set_solid_request(None)
 
@@ -118,7 +118,7 @@ class PartPane(PathPane):
         tip_position: PlanePosition | None,
         stop_position: PlanePosition | None = None,
     ) -> None:
-        """Let the player follow the run while a block is active.
+        """Make the player follow the run while a block is active.
 
         ``tip_position`` is the position of the tool. ``stop_position`` is the position where an interrupted
         block stopped.
@@ -143,7 +143,7 @@ class PartPane(PathPane):
         return new
 
     def show_polyline(self, polyline: Polyline, before: Polyline | None) -> None:
-        """Show another program or another version of the program, whose stock can differ."""
+        """Show another program or version of the program. Its stock may differ."""
         self._fitted = False
         super().show_polyline(polyline, before)
 
@@ -185,7 +185,7 @@ class PartPane(PathPane):
                 painter.drawPolyline(edge)
 
     def draw_run(self, painter: QPainter) -> None:
-        """Draw the tool, the scales, the travel limits and the outlines of collisions over the section."""
+        """Draw over the section: the tool, the scales, the travel limits and the outlines of collisions."""
         shown, projection = self.part_player.result, self.projection
         if shown is None or projection is None:
             return
@@ -228,7 +228,7 @@ class PartPane(PathPane):
             painter.drawPolygon(area)
 
     def _draw_reach(self, painter: QPainter, shown: PlayedInstant) -> None:
-        """Draw the travel limits of the tool tip."""
+        """Draw the travel limits as positions of the tool tip."""
         if shown.part_instant.tip_range is None:
             return
         (z0, x0), (z1, x1) = shown.part_instant.tip_range
@@ -331,7 +331,7 @@ _VIEW_RADIUS_RATIO = 1.25  # ratio to the radius of the stock
 
 
 class SolidPane(PartPane):
-    """Pane that shows the latest 3D image of the part, in the size of the pane."""
+    """Pane that shows the latest 3D image of the part, rendered at the size of the pane."""
 
     def __init__(
         self, theme: ScreenTheme, aspect: PathAspect, polyline: Polyline, player: PartPlayer
@@ -395,9 +395,9 @@ class SolidPane(PartPane):
         self._want()
 
     def magnify(self, factor: float, position: QPointF) -> None:
-        """Magnify the view around the column of ``position``.
+        """Magnify the view by a factor.
 
-        The axis remains in the middle.
+        The axis and the column of ``position`` do not move.
         """
         if self.projection is not None:
             self.is_adjusted = True

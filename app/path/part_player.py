@@ -1,7 +1,7 @@
-"""Player of the part view, which shows the part at a moment of the program.
+"""Player of the part view, which shows the part at a selected moment of the program.
 
-The moment follows the run or a timeline. A worker thread removes the material. The screen polls the result
-once a frame and never waits.
+The moment follows the run, or the operator selects it on a timeline. A worker thread removes the material.
+The screen polls the result once a frame and never waits.
 """
 
 from __future__ import annotations
@@ -133,7 +133,7 @@ class PartPlayer:
 
     @property
     def is_outdated(self) -> bool:
-        """Return whether the requested part differs from the displayed part."""
+        """Return whether the displayed part is not the requested part."""
         return self.worker.is_busy or (self._picture is not None and self._asked != self._wanted)
 
     # --- update once per frame -----------------------------------------------------------------------
@@ -181,7 +181,7 @@ class PartPlayer:
     # --- following the run ---------------------------------------------------------------------------
 
     def follow_run(self, block_number: int, end_offset_mm: ZRadius) -> None:
-        """Follow the run in a block.
+        """Show the part at the current position of the run.
 
         ``end_offset_mm`` is the offset (Z, radius) of the tool from the end of the block, in mm.
         """
@@ -361,7 +361,7 @@ class PartPlayer:
     def _publish_progress(
         self, history: PartHistory, request: WorkRequest, last_report_time: list[float]
     ) -> None:
-        """Continue or cancel a long calculation, and publish an intermediate result."""
+        """Cancel a long calculation if requested, and otherwise publish an intermediate result."""
         request()
         now = self.read_time_s()
         if now - last_report_time[0] > _IMAGE_INTERVAL_S:
@@ -390,7 +390,7 @@ class PartPlayers(list[PartPlayer]):
 
 
 def make_part_player(desk: Desk) -> PartPlayer:
-    """Return a new part player that closes together with ``desk``."""
+    """Return a new part player, which is closed together with ``desk``."""
     players = desk.page_registry.find_model(PartPlayers)
     if players is None:
         players = PartPlayers()

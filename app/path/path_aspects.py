@@ -1,4 +1,4 @@
-"""Aspects of the path view, the position of the tool tip, and the moves of an approach."""
+"""View directions of the path view, position of the tool tip, and moves of an approach."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class PathAspect(Enum):
-    """The directions from which a program can be viewed.
+    """The views of a program that the path view can show.
 
     ``PATH`` is from above (X+ down, Z+ right). ``FACE`` looks at the end of the part, and ``SIDE`` is its
     unrolled side (Z+ right, C+ up). ``SECTION`` is the part cut along its axis, ``SOLID`` is the part in
@@ -76,7 +76,7 @@ def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition
 
 
 def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyline | None:
-    """Return the polyline of a picture for an aspect, or None if there is nothing to show."""
+    """Return the polyline that shows a picture in this view, or None if there is nothing to show."""
     if picture is None or aspect is PathAspect.PATH or aspect in PART_ASPECTS:
         return picture
     return picture.face if aspect is PathAspect.FACE else picture.side
@@ -85,8 +85,8 @@ def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyl
 def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[AspectView]:
     """Return the views through which the view key steps.
 
-    The first views show the path together with a face or side that is machined with the C axis. The face
-    and side follow, each of them alone. If ``part`` is set, the views of the part follow.
+    The first views show the path next to a face or side that is machined with the C axis. After them, the
+    face and the side are shown alone. If ``part`` is set, the views of the part come last.
     """
     more = [
         aspect

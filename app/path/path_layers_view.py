@@ -134,7 +134,7 @@ class PathLayers:
     def request_blocks(self, block_count: int) -> None:
         """Request that the first ``block_count`` blocks are drawn as finished.
 
-        If this is fewer than before, drawing starts again from the image of the whole path.
+        If the number is smaller than before, drawing starts again from the image of the whole path.
         """
         wanted = self.polyline.count_finished_points(block_count)
         if wanted < self._wanted:
@@ -212,13 +212,13 @@ class PathLayers:
     def _mirror_sum(self) -> float:
         """Return twice the row of X0.
 
-        A row is mirrored by subtracting the row from this value.
+        This value minus a row is the mirrored row.
         """
         return 2 * float(self.projection.find_row(0.0))
 
 
 def make_polygon(columns: FloatArray, rows: FloatArray) -> QPolygonF:
-    """Return the points as a ``QPolygonF``, copied as one block of memory."""
+    """Return the points as a ``QPolygonF``, whose memory is filled in one copy."""
     count = len(columns)
     shape = QPolygonF()
     shape.resize(count)
@@ -251,7 +251,7 @@ def draw_pixels(image: QImage, projection: Projection, shape: Shape, colors: dic
 
 
 def view_pixels(image: QImage) -> npt.NDArray[np.uint32]:
-    """Return the memory of the image as an array (rows, columns) with 32 bits per pixel.
+    """Return an array (rows, columns) that shares the memory of the image, with 32 bits per pixel.
 
     The array is valid only as long as the image exists.
     """

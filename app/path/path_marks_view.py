@@ -46,7 +46,7 @@ LegendItem = tuple[str, QPen]
 def count_button_columns(theme: ScreenTheme, area: QRectF, button_count: int) -> int:
     """Return the number of button columns.
 
-    Several columns are needed if the area is low.
+    Several columns are needed if the area is not high enough for one.
     """
     _, high, gap = _button(theme)
     rows = max(1, int((area.height() - 3.2 * theme.unit_px + gap) / (high + gap)))
@@ -54,7 +54,7 @@ def count_button_columns(theme: ScreenTheme, area: QRectF, button_count: int) ->
 
 
 def find_columns_width(column_count: int, theme: ScreenTheme) -> float:
-    """Return the width in pixels of the button columns on the right of a view."""
+    """Return the total width in pixels of the button columns at the right edge of a view."""
     wide, _, gap = _button(theme)
     return column_count * (wide + gap)
 
@@ -111,7 +111,7 @@ def draw_footer(
     legend: Sequence[LegendItem],
     is_metric: bool,
 ) -> None:
-    """Draw the row below the panes, with the legend, and the scale of each pane below its right edge."""
+    """Draw the row below the panes, with the legend and the scale of each pane."""
     painter.fillRect(footer_area, theme.get_color("panel"))
     painter.setFont(theme.make_font(1.5))
     for room, projection in panes:
@@ -145,7 +145,7 @@ def _draw_scale(
 ) -> float:
     """Draw a scale bar with a round length in the current unit.
 
-    Return the left edge of the bar and its text.
+    Return the x coordinate of the left edge of its text.
     """
     u = look.unit_px
     mm, text = find_scale_length(min(14 * u, 0.2 * box.width()) / projection.pixels_per_mm, metric)
@@ -227,7 +227,7 @@ def clip_line(start: QPointF, end: QPointF, size: QSizeF) -> tuple[QPointF, QPoi
 
 
 def move_box_inside(box: QRectF, area: QRectF) -> QRectF:
-    """Return the box, moved only as far as necessary to be inside the room."""
+    """Return the box, moved only as far as necessary to be inside the area."""
     across = max(area.x() - box.x(), 0.0) + min(area.right() - box.right(), 0.0)
     down = max(area.y() - box.y(), 0.0) + min(area.bottom() - box.bottom(), 0.0)
     return box.translated(across, down)
@@ -298,7 +298,7 @@ def describe_difference(difference: LargestDistance, is_metric: bool) -> str:
 
 
 def find_pane_errors(pane: PathPane) -> list[Diagnostic]:
-    """Return the errors of the part that a pane shows, up to the displayed moment."""
+    """Return the errors of the part that occur up to the displayed moment of a pane."""
     shown = pane.part_player.result if pane.part_player is not None else None
     found = shown.part_instant.findings if shown is not None else ()
     return [each for each in found if is_serious(each)]
@@ -345,7 +345,7 @@ def draw_center_lines(
 ) -> None:
     """Draw the center lines, the C circle of a face, and the C lines of a side.
 
-    They are below all moving marks. The origin of the painter is the corner of the pane.
+    Marks that move are drawn over these lines. The origin of the painter is the corner of the pane.
     """
     if aspect in SPATIAL_ASPECTS:
         return
@@ -374,7 +374,7 @@ def _cross(painter: QPainter, look: ScreenTheme, projection: Projection) -> None
 
 
 def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection, polyline: Polyline) -> None:
-    """Draw the circle around all cuts, with the tool positions at C 0, 90, 180 and 270 degrees."""
+    """Draw a circle around all cuts, and mark where the tool is at C 0, 90, 180 and 270 degrees."""
     u = theme.unit_px
     reach = polyline.bounds[1]
     middle = QPointF(float(projection.find_column(0.0)), float(projection.find_row(0.0)))
@@ -395,7 +395,7 @@ def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection
 def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection, polyline: Polyline) -> None:
     """Draw lines along Z at equal angles, with their C values.
 
-    Full revolutions are drawn like center lines.
+    Lines at full revolutions have the style of center lines.
     """
     u, scale = theme.unit_px, polyline.mm_per_degree
     step = next(

@@ -42,7 +42,7 @@ class PathPane:
     """One pane of the path view.
 
     Positions are in widget pixels, and drawings are relative to the pane. z and x are the coordinates of
-    the viewed plane. ``part_player`` is the player of the part, in panes that show the part.
+    the viewed plane. ``part_player`` is the player of a pane that shows the part.
     """
 
     part_player: PartPlayer | None = None
@@ -88,7 +88,7 @@ class PathPane:
         return find_blank(picture) if wanted and isinstance(picture, ProgramPicture) else None
 
     def make_full_projection(self) -> Projection:
-        """Return the projection that shows the part, all cuts near it, and the path before a change.
+        """Return the projection that shows the part, all cuts near it, and any path before a change.
 
         The chuck is shown as far as the remaining width allows.
         """
@@ -254,7 +254,7 @@ class PathPane:
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the machine's tool tip in this pane.
 
-        In a face, the last position is retained while C turns as the spindle.
+        While C turns as the spindle, a face view retains the last position.
         """
         if self.aspect is PathAspect.PATH or self.aspect in PART_ASPECTS:
             return tip.z, tip.x
@@ -267,7 +267,7 @@ class PathPane:
     def mark(self, block_ranges: list[tuple[int, int]]) -> None:
         """Draw blocks as thick lines.
 
-        Each range is (first, last), inclusive and counted from 1.
+        Each range is (first block, last block), inclusive and counted from 1.
         """
         first = self.polyline.first
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in block_ranges]
@@ -358,9 +358,9 @@ MIN_LAYOUT_WIDTH_PX = 40  # pixels: minimum width of a layout
 
 
 class PaneSet:
-    """Panes of the shown picture and, in a comparison, of the picture before the change.
+    """Panes of the displayed picture and, in a comparison, of the picture before the change.
 
-    ``keeps_view`` retains adjusted projections when the picture changes. ``make_pane`` creates a pane.
+    ``keeps_view`` retains adjusted projections if the picture changes. ``make_pane`` creates a pane.
     """
 
     def __init__(self, keeps_view: bool, make_pane: MakePane, *, has_part: bool = False) -> None:

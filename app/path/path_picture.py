@@ -61,7 +61,7 @@ class FaceBuilder:
     def add_mill_move(self, move: PlaneMove, frame: FacePlane, points: list[MillPoint], stroke: int) -> None:
         """Add a move in a milling plane to the face.
 
-        The frame was turned by ``frame.heading_deg`` when it was entered.
+        ``frame.heading_deg`` is the direction of mill X on the part.
         """
         self.is_needed = True
         turn = -math.radians(frame.heading_deg)
@@ -157,7 +157,7 @@ class FaceAndSideBuilder:
     def add_move(self, block: Block, stroke: int, points: list[MillPoint]) -> None:
         """Add one move with C locked.
 
-        ``points`` contains the points of the mill after the start of a move in a plane.
+        For a move in a plane, ``points`` contains the points of the move without its start.
         """
         modal, plane = block.modal, block.plane
         dz = block.offset_z - modal.drawing_zero_z
@@ -171,7 +171,7 @@ class FaceAndSideBuilder:
             self._face.add_mill_move(plane, plane.frame, points, stroke)
 
     def end_block(self) -> None:
-        """End a block, whether or not the block is visible."""
+        """End a block. This is also necessary if the block is not visible."""
         self._face.polyline_builder.end_block()
         self._side.polyline_builder.end_block()
 
@@ -189,7 +189,7 @@ class FaceAndSideBuilder:
 
 
 def find_mill_points(block: Block) -> list[MillPoint]:
-    """Return the points of the mill after the start of a move in a plane."""
+    """Return the points of a move in a plane without its start, or an empty list for other moves."""
     return [] if block.plane is None else sample_mill_move(block.plane, block.c - block.c0)
 
 
@@ -219,10 +219,10 @@ class ProgramPicture(Polyline):
     no_part: str = ""  # reason why the part is not calculated
 
     def find_block_for_line(self, line_number: int) -> int:
-        """Return the block that ends the first execution of a source line.
+        """Return the number of the block that ends the first execution of a source line.
 
         If the line has no blocks, the nearest earlier line with blocks is used. Return 0 if no such line
-        exists. Numbers are counted from 1.
+        exists. Blocks and lines are counted from 1.
         """
         before = self.line[self.line <= line_number]
         if not len(before):
@@ -269,7 +269,7 @@ class ProgramPicture(Polyline):
 class PictureBuilder:
     """Builder that collects blocks into a picture.
 
-    ``is_metric`` is the unit of a picture without blocks.
+    ``is_metric`` sets the unit of a picture that has no blocks.
     """
 
     def __init__(self, is_metric: bool = False) -> None:
@@ -372,7 +372,7 @@ class PictureBuilder:
             self._pencil.add_point(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
 
     def _add_mill_move(self, block: Block, plane: PlaneMove, points: list[MillPoint], stroke: Stroke) -> None:
-        """Add the motion of the X and Z axes during a move of the mill in a plane."""
+        """Add the X and Z axis motion of a mill move in a plane."""
         modal = block.modal
         dx = block.offset_x - modal.drawing_zero_x + modal.secondary_x
         dz = block.offset_z - modal.drawing_zero_z + modal.secondary_z
@@ -406,7 +406,7 @@ def build_picture(
 
 
 def _find_chord(block: Block) -> float:
-    """Return the distance from start to end in the first two axes in mm, as used for the distance to go."""
+    """Return the distance in mm from start to end in the first two axes, like the distance to go."""
     if block.travel is not None:
         return math.dist(block.travel.start[:2], block.travel.end[:2])
     return math.hypot(block.x - block.x0, block.z - block.z0)

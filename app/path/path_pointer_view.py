@@ -1,4 +1,4 @@
-"""Mouse and touch input of the path view, with dragging, pinch zoom, and touching a line or a point."""
+"""Mouse and touch input of the path view: drag, pinch zoom, and selection of a line or point."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class PathPointer:
     def _handle_one_touch(self, kind: QEvent.Type, at: QPointF) -> None:
         """Handle a single touch like the mouse.
 
-        A touch that remains after a pinch has no effect.
+        After a pinch, the touch that remains has no effect.
         """
         if self._spread is not None:
             return

@@ -126,7 +126,7 @@ def _find_visible_points(
 ) -> npt.NDArray[np.bool_]:
     """Return a mask of the points to draw.
 
-    These points are on another pixel than the preceding point, or the stroke changes there.
+    A point is drawn if its pixel differs from that of the preceding point, or if the stroke changes there.
     """
     c, r = np.rint(columns * 2), np.rint(rows * 2)
     keep = np.ones(len(c), dtype=np.bool_)
@@ -135,7 +135,7 @@ def _find_visible_points(
 
 
 def _find_outside(columns: FloatArray, rows: FloatArray, projection: Projection) -> npt.NDArray[np.bool_]:
-    """Return a mask of the chords with both ends outside the same edge."""
+    """Return a mask of the chords that are completely outside one edge of the visible area."""
     out = np.zeros(max(0, len(columns) - 1), dtype=np.bool_)
     for beyond in (columns < 0, columns > projection.width_px, rows < 0, rows > projection.height_px):
         out |= beyond[1:] & beyond[:-1]
@@ -263,7 +263,7 @@ def project_section(half: SectionHalf, projection: Projection, *, is_upper: bool
 
 
 def project_collision(collision: MaterialHit, projection: Projection) -> list[PixelLine]:
-    """Return the areas of a collision on both sides of the axis."""
+    """Return the areas of a collision, both above and below the axis."""
     gaps = np.flatnonzero(np.diff(collision.z_positions) > 1.5 * collision.column_width_mm) + 1
     found = []
     for run in np.split(np.arange(len(collision.z_positions)), gaps):
@@ -295,7 +295,7 @@ def project_stock(stock: Stock, projection: Projection) -> list[PixelLine]:
 
 
 def project_stock_section(stock: Stock, projection: Projection) -> list[PixelLine]:
-    """Return the areas of the section of the stock on both sides of the axis."""
+    """Return the areas of the stock section, both above and below the axis."""
     z, r = np.array(stock.outside_profile).T
     inner_z, inner_r = np.array(stock.bore_profile or ((stock.back_z_mm, 0.0), (stock.front_z_mm, 0.0))).T
     return [
@@ -305,7 +305,7 @@ def project_stock_section(stock: Stock, projection: Projection) -> list[PixelLin
 
 
 def project_clamping(clamping: Clamping, stock: Stock, projection: Projection) -> list[PixelLine]:
-    """Return the areas of the chuck or collet on both sides, and of the tailstock center."""
+    """Return the areas of the chuck or collet above and below the axis, and of the tailstock center."""
     found: list[PixelLine] = []
     if clamping.diameter:
         held = clamping.make_chuck_around(stock)
@@ -359,7 +359,7 @@ def _ring(there: PixelLine, back: PixelLine) -> PixelLine:
 
 
 def _thin_line(line: PixelLine) -> PixelLine:
-    """Return the line without the inner points of level runs and without repeated points on a pixel."""
+    """Return the line without inner points of horizontal runs and without repeated points on a pixel."""
     c, r = np.rint(line.columns * 2.0), np.rint(line.rows * _ROWS_PER_PIXEL)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (r[1:-1] != r[:-2]) | (r[1:-1] != r[2:])

@@ -147,14 +147,14 @@ class PathView(Panel):
     def mark(self, block_ranges: list[tuple[int, int]]) -> None:
         """Draw blocks as thick lines.
 
-        Each range is (first, last), inclusive and counted from 1.
+        Each range is (first block, last block), inclusive and counted from 1.
         """
         for pane in self.panes:
             pane.mark(block_ranges)
         self.update()
 
     def draw_slice(self) -> None:
-        """Draw the missing parts for a few milliseconds at most.
+        """Continue drawing for a few milliseconds at most.
 
         This is called once a frame.
         """
@@ -201,7 +201,7 @@ class PathView(Panel):
         self.update()
 
     def _include_points(self) -> None:
-        """Include the whole approach in the visible area if the view shows the approach."""
+        """Make the visible area include the whole approach if the view shows the approach."""
         for pane in self.panes:
             if pane.aspect is PathAspect.PATH and self.shows_whole_approach:
                 pane.set_extra_points([(leg.z, leg.x) for leg in self.drawn_legs])
@@ -236,7 +236,7 @@ class PathView(Panel):
     def find_panes_area(self) -> QRectF:
         """Return the area inside the frame.
 
-        The panes use the area that the buttons do not cover.
+        The panes use the part of it that the buttons do not cover.
         """
         u = self.theme.unit_px
         bar = TIMELINE_HEIGHT if self.is_part_shown else FOOTER_HEIGHT
@@ -298,7 +298,7 @@ class PathView(Panel):
     def find_pane(self, position: QPointF | None) -> PathPane | None:
         """Return the pane at a position.
 
-        If there is none, return the pane of the measurement, or the first pane.
+        If there is no pane at this position, return the pane of the measurement, or the first pane.
         """
         found = self._set.at(position) if self._set is not None and position is not None else None
         if found is None:
@@ -310,7 +310,7 @@ class PathView(Panel):
     def set_measuring(self, *, is_on: bool | None = None) -> None:
         """Start or stop measuring in the last pane.
 
-        None toggles between the two.
+        With None, start measuring if it is off, and stop it if it is on.
         """
         if is_on is None:
             is_on = self.measurement is None
@@ -379,7 +379,7 @@ class PathView(Panel):
         return False
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Stop measuring when another widget gets the focus, but not when another window does."""
+        """Stop measuring when another widget gets the focus, but not when another window gets it."""
         if event.reason() is not Qt.FocusReason.ActiveWindowFocusReason:
             self.set_measuring(is_on=False)
 

@@ -21,7 +21,7 @@ SAME_POINT_MM = 1e-7  # mm
 
 
 class Stroke(IntEnum):
-    """The kinds of chord that end at a point.
+    """The kinds of chord, each assigned to the point at which the chord ends.
 
     ``TURN`` strokes cut on both sides of X0.
     """
@@ -78,7 +78,7 @@ class PolylineBuilder:
         self.centers = array("d")
 
     def move_to(self, z: float, x: float) -> None:
-        """Set the start point, and add a jump if the last point differs."""
+        """Set the start point, and add a jump if it differs from the last point."""
         if self.z and abs(self.z[-1] - z) < SAME_POINT_MM and abs(self.x[-1] - x) < SAME_POINT_MM:
             return
         self.add_point(z, x, Stroke.JUMP)
@@ -148,7 +148,7 @@ def count_turn_chords(degrees: float) -> int:
 
 
 def sample_mill_move(move: PlaneMove, c_rotation_deg: float) -> list[MillPoint]:
-    """Return the points of a mill move in the frame of the plane, from after the start to the end.
+    """Return the points of a mill move in the frame of the plane, without its start point.
 
     ``degrees`` is the rotation of C during the move.
     """

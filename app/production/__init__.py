@@ -1,1 +1,1 @@
-"""Production data, which consists of tool life, cycles and stops."""
+"""Production data: tool life, cycles and stops."""

@@ -74,7 +74,7 @@ class CycleRecorder:
                 self._begin_stop(event, BETWEEN_CYCLES, named=True)
 
     def resume_part(self, program: str, time_s: float, cycles: CycleRecords) -> None:
-        """Record the remainder of a part that was started before this process.
+        """Record the remainder of a part that was started before this process was started.
 
         The part counts as restarted.
         """

@@ -122,7 +122,7 @@ class PartsBook:
             self.worker.request_work(lambda _watch: work(), self._read, self._failed)
 
     def _is_reload_due(self, store: Store) -> bool:
-        """Return whether data must be read again and all earlier changes have been written."""
+        """Return whether data must be read again and no earlier change still has to be written."""
         if self._stale and self._behind is None:
             self._stale = False
             try:
@@ -163,7 +163,7 @@ class PartsBook:
                 failed(str(error))
 
     def request_reload(self) -> None:
-        """Request that the data is read again because other data was stored elsewhere."""
+        """Request that the data is read again, because data was stored without this object."""
         self._stale = True
 
     @property
@@ -173,7 +173,7 @@ class PartsBook:
 
     @property
     def is_settled(self) -> bool:
-        """Return whether ``current_data`` equals the stored data, with nothing left to write or read."""
+        """Return whether ``current_data`` equals the stored data and no read or write is pending."""
         return not (self.is_busy or self._stale or self._behind is not None or self._reading)
 
     def write_change(
@@ -209,7 +209,7 @@ class PartsBook:
             on_failed(str(error))
 
     def save_tool_use(self, lives: Iterable[ToolLifeRow], totals: ToolTotals | None = None) -> None:
-        """Store the use of tools in one transaction with the totals of the control that include this use."""
+        """Store the use of tools, and in the same transaction the control's totals that include it."""
         store, tools = self.store, self.tool_kind
         if store is None:
             return

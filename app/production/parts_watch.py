@@ -1,4 +1,4 @@
-"""Watch of tools and parts, which updates tool life, due measurements and blocked parts in each frame."""
+"""Monitor of tools and parts: tool life, due measurements, and the block of the next part."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.message import Message, join_messages
 
 
 class ProductionPlan(Protocol):
-    """Plan of an optional feature for the next parts."""
+    """Plan that an optional feature makes for the next parts."""
 
     def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return why the next part must not start, or an empty string."""
@@ -28,7 +28,7 @@ class ProductionPlan(Protocol):
 
 @dataclass(slots=True)
 class PartsWatch:
-    """Watch of production.
+    """Monitor of production.
 
     ``observe`` is called once a frame. The prompt line calls ``find_reminder``, which does not wait.
     """

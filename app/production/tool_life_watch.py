@@ -29,7 +29,7 @@ def make_tool_life(row: ToolLifeRow) -> ToolLife:
 
 @dataclass(slots=True)
 class ToolLifeWatch:
-    """Watch of tool life.
+    """Monitor of tool life.
 
     After the store has been read, the counts are maintained in this object. The limits are in the store. On
     a mill, the counts apply to a whole tool instead of an insert.
@@ -97,9 +97,9 @@ class ToolLifeWatch:
         self._report(show_message)
 
     def _begin(self, snapshot: Snapshot, control: str) -> None:
-        """Continue from the stored totals of this control.
+        """Start counting from the stored totals of this control.
 
-        If none are stored, continue from the totals of the snapshot.
+        If none are stored, start from the totals of the snapshot.
         """
         self._control, self._ends, self._cut = control, snapshot.ends, snapshot.cutting
         stored = (
@@ -145,7 +145,7 @@ class ToolLifeWatch:
         self._keep({number for number in self.counted_use if self._unkept(number)})
 
     def _report(self, show_message: Callable[[str], None]) -> None:
-        """Report once when a tool reaches its warning limit, and once when its life is used up."""
+        """Report a tool once when it reaches its warning limit, and once when its life is used up."""
         if self._seen is self.read_lives():
             return
         self._seen = self.read_lives()

@@ -1,4 +1,4 @@
-"""Totals of a control whose tool use is stored, so that the next screen adds only the difference."""
+"""Totals of the tool use already stored, so that a restarted screen adds only the difference."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ TOTALS_SETTING = "tool_totals"  # key of the setting
 
 @dataclass(frozen=True, slots=True)
 class ToolTotals:
-    """Number of finished parts, cutting seconds by tool, and tools of the current part of a control."""
+    """Totals of a control: finished parts, cutting seconds by tool, and tools of the current part."""
 
     control_identity: str
     finished_part_count: int = 0

@@ -19,7 +19,7 @@ from core.message import CodedError, Message, get_error_code
 
 
 class FileOperationError(CodedError):
-    """Failed file operation that did not change the file.
+    """A failed file operation, which left the file unchanged.
 
     The message states the reason.
     """
@@ -28,7 +28,7 @@ class FileOperationError(CodedError):
 def write_program_file(path: Path, data: bytes) -> None:
     """Replace a file atomically with ``data``, which must be valid program text.
 
-    The draft is first read back as a program. It receives the permissions of the old file. Raise
+    The temporary file is first read back as a program. It receives the permissions of the old file. Raise
     FileOperationError on failure.
     """
     target = path.resolve()  # the target of a link is replaced instead of the link

@@ -1,4 +1,4 @@
-"""Prompt ``FILE TO BE PROCESSED``, where a name is typed, or selected in the list by keys or touch."""
+"""The prompt ``FILE TO BE PROCESSED``: a name is typed, or selected in a list by keys or touch."""
 
 from __future__ import annotations
 
@@ -58,9 +58,9 @@ class FilePrompt(RowPanel):
 
     @property
     def wanted_name(self) -> str:
-        """Return the program for F3.
+        """Return the name or path of the program on which F3 acts.
 
-        This is the row that the user selected, the typed name, or an empty string.
+        This is the row that the user selected, or otherwise the typed name, which may be an empty string.
         """
         if self._moved and self._entries:
             return str(self._entries[self._row].path)
@@ -69,7 +69,7 @@ class FilePrompt(RowPanel):
     def prompt_text(self) -> str:
         """Return the prompt.
 
-        The prompt does not mention Cycle Start, because its keys are text here.
+        The prompt does not mention Cycle Start, because its keys enter text while the prompt is open.
         """
         return FILE_NOT_FOUND_TEXT if self.is_not_found else CHOOSE_FILE_TEXT
 

@@ -1,4 +1,4 @@
-"""Import and export of programs by folder and USB stick.
+"""Import and export of programs through folders and USB sticks.
 
 An existing program is replaced only with permission, and its text is first archived as a version. A copy is
 reported as done only after it has been written to the disk and verified.
@@ -47,7 +47,7 @@ OPEN_LOCATION_FIRST = "OPEN A LOCATION FIRST   ARROWS: SELECT   ENTER: OPEN"
 class TransferResult:
     """Result of a transfer.
 
-    It contains the copied names, the existing names with different content, and the errors of the proof.
+    It contains the copied names, the names that exist with different content, and the errors of the proof.
     """
 
     copied_names: tuple[str, ...] = ()
@@ -124,7 +124,7 @@ def export_programs(
 
 @contextmanager
 def _copy_context(medium: TargetMedium, count: int, total: int) -> Iterator[None]:
-    """Convert an error of a stick into a message for the operator, with the number of copied programs."""
+    """Convert an error of a stick into an operator message with the number of copied programs."""
     try:
         yield
     except FileOperationError as error:
@@ -198,8 +198,8 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
 class ImportExport:
     """Import and export through a folder chooser.
 
-    ``check_program`` proves an imported program. ``on_finished`` is called when the list must be read
-    again.
+    ``check_program`` proves an imported program. ``on_finished`` is called when the program list must be
+    read again.
     """
 
     desk: Desk

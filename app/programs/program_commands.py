@@ -1,4 +1,4 @@
-"""Copying, renaming and deleting programs, with a name entry or a confirmation.
+"""Commands that copy, rename and delete programs, with a name entry or a confirmation.
 
 A worker changes the files. Files are never overwritten.
 """
@@ -60,7 +60,7 @@ def remove_extension(name: str) -> str:
 
 
 def find_same_name(folder: Path, name: str) -> str:
-    """Return the name of the file in the folder that is equal except for case, or an empty string."""
+    """Return the file name in the folder that differs at most in case, or an empty string."""
     try:
         names = [path.name for path in folder.iterdir()]
     except OSError:
@@ -82,7 +82,7 @@ def copy_program(source: Path, folder: Path, name: str, accepts_name: AcceptsNam
 def rename_program(
     source: Path, name: str, persistence: Persistence, accepts_name: AcceptsName = is_program_name
 ) -> str:
-    """Rename a program together with its versions, count and record, and return the new name.
+    """Rename a program with its versions, part count and run record, and return the new name.
 
     Raise FileOperationError on failure.
     """

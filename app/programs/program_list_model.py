@@ -69,12 +69,12 @@ class ProgramListModel:
 
     @property
     def name_question(self) -> str:
-        """Return the question about a name, or an empty string."""
+        """Return the question that asks for a program name, or an empty string."""
         return self.program_commands.question
 
     @property
     def name_field(self) -> InputField:
-        """Return the entry field of the name."""
+        """Return the input field for the program name."""
         return self.program_commands.name_field
 
     # --- displayed values ----------------------------------------------------------------------------
@@ -148,7 +148,7 @@ class ProgramListModel:
     def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of a name.
 
-        No character is part of a name while the folder chooser is open.
+        This is False for all characters while the folder chooser is open.
         """
         return not self.import_export.is_open and self.search_field.accepts_key(key)
 

@@ -52,7 +52,7 @@ class ListedFile:
 def list_programs(
     program_folders: ProgramFolders, own_folder: Path, persistence: Persistence
 ) -> tuple[ListedFile, ...]:
-    """Return all programs and drawings of the folders, each with the record of its text.
+    """Return all programs and drawings of the folders, each with the run record of its text.
 
     Files whose text is not known yet are read. Call this function on a worker. Raise StoreError if the
     store cannot be read.
@@ -71,7 +71,7 @@ def list_programs(
 
 @lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)
 def _find_run_row(path: Path, _changed: int, _size: int) -> str:
-    """Return the record key of the text in a file, or an empty string if the file is not program text."""
+    """Return the key of a file's run record, or an empty string if the file is not program text."""
     try:
         return make_text_key(load_source(path).text)
     except SourceError:
@@ -102,7 +102,7 @@ def _backwards(at: str | None) -> float:
 
 
 def sort_programs(order: str, programs: Sequence[ListedFile]) -> tuple[ListedFile, ...]:
-    """Return the programs in the sort order with this name."""
+    """Return the programs, sorted by the order with this name."""
     return tuple(sorted(programs, key=SORT_ORDERS[order]))
 
 
@@ -124,7 +124,7 @@ ContentKey = tuple[str, float, int]
 class Thumbnail(NamedTuple):
     """Small picture with 32 bits per pixel.
 
-    The bits are alpha, red, green and blue, starting at the highest. The rows start at the top.
+    From the highest bits down, these are alpha, red, green and blue. The first row is at the top.
     """
 
     pixels: bytes
@@ -139,7 +139,7 @@ DrawThumbnail = Callable[[Job, ProgressCallback], Thumbnail | None]
 class ProgramPreview:
     """Preview of the selected program.
 
-    ``loading_steps`` must not store anything, because a preview is not a run.
+    ``loading_steps`` must not store anything, because showing a preview does not count as a run.
     """
 
     loading_steps: LoadingSteps

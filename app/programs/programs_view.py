@@ -160,7 +160,7 @@ class ProgramsPage(ListPage):
             editor.source_drawing = None
 
     def _use_program_key(self, key: ProgramKey) -> None:
-        """Open the page that belongs to the key, with the selected program."""
+        """Open the page that belongs to this key, and pass the selected program to it."""
         here = self.model.selected_program
         if here is None or here.is_drawing:
             self.desk.say(NO_SELECTION)

@@ -1,7 +1,7 @@
 """USB sticks and folders as sources of programs, with mounted media, free space and write errors.
 
 The list of mounts comes from the kernel (``/proc/self/mountinfo``). On systems without this list, each
-folder is checked.
+folder is tested for being a mount point.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ def _free(path: Path) -> int:
 
 @dataclass(frozen=True, slots=True)
 class TargetMedium:
-    """Folder for a copy, with the device number it had when it was opened.
+    """Target folder of a copy, with the device number that the folder had when it was opened.
 
     When a stick is unplugged, its folder remains and then belongs to the disk of the control.
     """

@@ -1,4 +1,4 @@
-"""Run history from snapshots, with runs and their outcomes, cycle times, proofs and part counts."""
+"""Run history, recorded from snapshots: runs with outcomes, cycle times, proofs and part counts."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class PartCounter:
     """Part count of each program, stored with its target.
 
     A target of 0 means no target. During the cycle of the last part, Cycle Repeat is switched off so that
-    the machine stops.
+    the machine stops afterwards.
     """
 
     persistence: Persistence = field(default_factory=Persistence)

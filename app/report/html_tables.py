@@ -109,7 +109,7 @@ def make_headline(title: str, date_text: str) -> str:
 
 
 def make_result_line(css_class: str, text: str) -> str:
-    """Return the result line as HTML with the given class of the page's style."""
+    """Return the result line as HTML with this CSS class."""
     return f'<p class="verdict {css_class}">{escape(text)}</p>'
 
 
@@ -119,7 +119,7 @@ def make_drawing_block(drawing: str, caption: str) -> str:
 
 
 def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
-    """Return a table of names and values.
+    """Return an HTML table of names and values.
 
     Names and values are escaped.
     """
@@ -128,9 +128,9 @@ def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
 
 
 def make_table(column_headings: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table.
+    """Return an HTML table.
 
-    The cells must be HTML.
+    The cells must already be HTML.
     """
     top = "".join(f"<th>{escape(each)}</th>" for each in column_headings)
     lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)

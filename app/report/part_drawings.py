@@ -40,21 +40,21 @@ class SvgDrawing:
     def add_polygon(self, points: Iterable[PointMm], css_class: str) -> None:
         """Add a closed outline.
 
-        ``css_class`` is a class of the page's style.
+        ``css_class`` is a CSS class of the page.
         """
         self._parts.append(f'<polygon class="{css_class}" points="{self._placed(points)}"/>')
 
     def add_polyline(self, points: Iterable[PointMm], css_class: str) -> None:
         """Add an open line.
 
-        ``css_class`` is a class of the page's style.
+        ``css_class`` is a CSS class of the page.
         """
         self._parts.append(f'<polyline class="{css_class}" points="{self._placed(points)}"/>')
 
     def add_dot(self, point: PointMm, css_class: str) -> None:
         """Add a dot at a point.
 
-        ``css_class`` is a class of the page's style.
+        ``css_class`` is a CSS class of the page.
         """
         x, y = self._place(point)
         self._parts.append(f'<circle class="{css_class}" cx="{x}" cy="{y}" r="3.5"/>')
@@ -253,7 +253,7 @@ def _half(
 
 
 def _group_moves(moves: Sequence[TipMove]) -> Iterator[tuple[list[PointMm], str]]:
-    """Yield each group of consecutive moves with the same style as one line.
+    """Yield one line for each group of consecutive moves that have the same style.
 
     The first move of the program is omitted.
     """

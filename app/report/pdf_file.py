@@ -27,7 +27,7 @@ class PaperSize(StrEnum):
 def make_pdf(html: str, title: str, paper: PaperSize) -> bytes:
     """Return the PDF of a page's HTML body.
 
-    ``title`` is the footer. This runs on a worker. Raise OSError on failure.
+    The footer shows ``title``. This runs on a worker. Raise OSError on failure.
     """
     with TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / "sheet.pdf"

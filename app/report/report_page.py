@@ -227,7 +227,7 @@ class ProgramReport:
         return name, part_drawings.draw_tool(shape), words, *(f"{each:.1f}" for each in seconds)
 
     def _describe_shape(self, shape: ToolShape | None) -> str:
-        """Return the specified data of a tool as text."""
+        """Return the specified shape data of a tool as text."""
         if shape is None:
             return "unknown"
         sizes = (
@@ -296,7 +296,7 @@ def make_unproved_section(reason: str) -> str:
 
 
 def make_offset_comparison(comparison_text: str) -> str:
-    """Return the effect of other offsets as HTML, in the text format of the command line."""
+    """Return the effect of other offsets as HTML, with the text that the command line prints."""
     return f"<h3>With different offsets</h3><pre>{escape(comparison_text)}</pre>"
 
 

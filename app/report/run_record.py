@@ -1,4 +1,4 @@
-"""Data for a report from the proving pass, with moves, times by tool, stops and material."""
+"""Data that the proving pass collects for a report: moves, times by tool, stops and material."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ToolTimes:
 class PlannedStop:
     """Program stop M00, or M01 if ``is_optional`` is set.
 
-    It has a line, a time in seconds and a message to the operator.
+    It has a line number, a time in seconds and a message to the operator.
     """
 
     line_number: int
@@ -47,7 +47,7 @@ class PlannedStop:
 
 @dataclass(slots=True)
 class RunRecorder:
-    """Recorder of the spans of a proving pass."""
+    """Recorder that collects report data from the time spans of a proving pass."""
 
     part_setting: PartSettings
     tip_moves: list[TipMove] = field(default_factory=list)
@@ -65,7 +65,7 @@ class RunRecorder:
         self._part = PartProof(self.part_setting)
 
     def add_span(self, span: MotionSpan | RestSpan) -> None:
-        """Add the moves, times and stops of the next span of the program."""
+        """Add the moves, times and stops of the next time span."""
         self._part.add_span(span)
         for each in span.iter_group_times():
             if isinstance(each, TimedSeries):
@@ -117,5 +117,5 @@ class RunRecorder:
                     self.tip_moves.append(make_live_tool_move(step))
 
     def find_material(self, block_numbers: Collection[int]) -> dict[int, PartedPiece]:
-        """Return the material before each of these blocks in which a tool moves in X and Z."""
+        """Return the material before each of these blocks, but only for blocks with X and Z motion."""
         return self._part.find_material_before_blocks(block_numbers)

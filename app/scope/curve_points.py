@@ -85,7 +85,7 @@ class CurveColumns:
         self.minima, self.maxima = self.minima[cut:], self.maxima[cut:]
 
     def make_points(self) -> CurvePoints:
-        """Return one vertical line per column, and a horizontal line across each gap in a connected curve."""
+        """Return a vertical line for each column, and a horizontal line for each gap of a joined curve."""
         at = (self.column_numbers + 0.5) * self.width_s
         later = 1 + np.flatnonzero(
             (np.diff(self.column_numbers) > 1) & np.isfinite(self.preceding_samples[1:])
@@ -137,9 +137,9 @@ def make_round_range(low: float, high: float, min_width: float) -> tuple[float, 
 def update_range(
     present_range: tuple[float, float] | None, low: float, high: float, min_width: float
 ) -> tuple[float, float]:
-    """Return the present range if it still suits the curve, and otherwise a new range.
+    """Return the current range if it still suits the curve, and otherwise a new range.
 
-    The present range suits the curve if the curve is inside it and fills at least a quarter of it. This
+    The current range suits the curve if the curve is inside it and fills at least a quarter of it. This
     prevents frequent small changes of the scale.
     """
     if present_range is not None:

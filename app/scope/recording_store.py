@@ -63,7 +63,7 @@ WriteCsvTable = Callable[[ScopeRecord, Callable[[str], object]], None]
 
 @dataclass(slots=True)
 class RecordingStore:
-    """Folder of scope records, with the functions that process the file format.
+    """Folder of scope records, with functions that read and write records.
 
     Errors are raised as RecordingFileError, or as an error whose text is a message for the operator.
     """
@@ -149,7 +149,7 @@ class RecordingStore:
         return next(self.folder / name for name in names if not (self.folder / name).exists())
 
     def _write_guarded(self, path: Path, write: Callable[[], None]) -> None:
-        """Write a file if there is enough disk space."""
+        """Write a file, but first check that there is enough disk space."""
 
         def carefully() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -194,7 +194,7 @@ class _DraftFile:
 
 
 def find_zero_instant(record: ScopeRecord) -> float:
-    """Return the instant 0 of a record on its clock.
+    """Return the time of instant 0 of a record, in seconds of the record's clock.
 
     This is the trigger or alarm, or the last sample if there is neither.
     """

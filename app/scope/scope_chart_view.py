@@ -27,7 +27,7 @@ _ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 class ScopeChart(Chart):
     """Chart of the scope.
 
-    ``show_picture`` draws a picture. The lanes are rebuilt if the picture contains other quantities.
+    ``show_picture`` draws a picture. The lanes are rebuilt if the picture contains different quantities.
     """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
@@ -204,7 +204,7 @@ class ScopeChart(Chart):
 
 
 def _quantities(sight: ScopePicture) -> list[Quantity]:
-    """Return the lanes of a picture from top to bottom, with inputs and outputs last."""
+    """Return the quantities of a picture's lanes from top to bottom, with inputs and outputs last."""
     found = list(dict.fromkeys(each.signal.quantity for each in sight.curves))
     return sorted(found, key=lambda each: each is Quantity.LOGIC_LEVEL)
 
@@ -218,7 +218,7 @@ def _connect(points: CurvePoints) -> object:
 def mix_colors(foreground: QColor, background: QColor, foreground_fraction: float) -> QColor:
     """Return a mix of two colors.
 
-    Opaque lines are drawn faster than transparent lines.
+    An opaque mixed color is used because opaque lines are drawn faster than transparent lines.
     """
     parts = (
         (foreground.red(), background.red()),

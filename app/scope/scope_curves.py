@@ -25,7 +25,7 @@ ALARM_STATES = (MachineState.FAULT.value, MachineState.ESTOP.value)
 
 
 class LiveSamples(Protocol):
-    """Ring buffer of the samples of the last minutes, readable from any thread."""
+    """Ring buffer of the samples of the last minutes, which any thread can read."""
 
     @property
     def channels(self) -> tuple[Channel, ...]:
@@ -114,7 +114,7 @@ class PictureRequest:
 
     @property
     def width(self) -> float:
-        """Return the duration of one pixel in seconds."""
+        """Return the width of one pixel in seconds."""
         return self.span_s / max(1, self.width_px)
 
 
@@ -176,7 +176,7 @@ def find_constant_values(
 class RecordingCurves:
     """Curves of one record, with a cache of derived columns.
 
-    ``zero_s`` is the instant 0 on the record's clock.
+    ``zero_s`` is the time of instant 0 on the record's clock.
     """
 
     record: ScopeRecord
@@ -212,7 +212,7 @@ class RecordingCurves:
     def make_picture(self, request: PictureRequest, overlay: RecordingCurves | None = None) -> ScopePicture:
         """Return the picture of a window.
 
-        An overlaid record is aligned at its own instant 0.
+        An overlaid record is shifted so that both records have the same instant 0.
         """
         curves = self.make_curves(request)
         earlier = overlay.make_curves(request) if overlay is not None else ()
@@ -343,7 +343,7 @@ class LiveCurves:
         return record.sampling_rate_hz
 
     def _find_trigger_time(self, wanted: PictureRequest, newest: float) -> float | None:
-        """Return the time at which new samples fired the trigger, or None if they did not.
+        """Return the time at which a new sample fired the trigger, or None if no sample fired it.
 
         Samples from before the trigger was armed are ignored.
         """

@@ -1,4 +1,4 @@
-"""Actions on the files of the scope: saving, opening, overlaying and deleting of records, and pictures."""
+"""File actions of the scope: save, open, overlay and delete records, and save pictures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ScopeFiles:
     scope_model: ScopeModel
 
     def make_visible_record(self) -> ScopeRecord | None:
-        """Return the record of the visible window, or None with a message while the curves are live."""
+        """Return the record of the visible window. If the curves are live, return None with a message."""
         frozen = self.scope_model.frozen_curves
         if frozen is None:
             self.scope_model.desk.say(CURVES_ARE_LIVE_MESSAGE)
@@ -71,7 +71,7 @@ class ScopeFiles:
         self.scope_model.recording_store.recording_files = files
 
     def open_alarm_recording(self, name: str) -> None:
-        """Open the record of an alarm, which may still be in the process of writing."""
+        """Open the record of an alarm, even if the record is still being written."""
         recorder = self.scope_model.desk.desk_control.recordings
         folder, shelf = self.scope_model.recording_store.folder, self.scope_model.recording_store
         self.scope_model.side_panel = SidePanel.READINGS
@@ -103,7 +103,7 @@ class ScopeFiles:
     def overlay_file(self, file: RecordingFile) -> None:
         """Overlay an earlier record, aligned at instant 0.
 
-        The same record again removes the overlay.
+        If this record is already overlaid, remove it.
         """
         self.scope_model.desk.clear_prompt_line()
         if self.scope_model.overlay_name == file.path.name:
@@ -144,7 +144,7 @@ class ScopeFiles:
         self.scope_model.desk.ask_operator(question, yes)
 
     def write_picture(self, render_png: Callable[[], bytes]) -> None:
-        """Save a picture of the page on a worker. ``render_png`` returns its bytes."""
+        """Save a picture of the page on a worker. ``render_png`` returns the PNG bytes."""
         shelf = self.scope_model.recording_store
         self.scope_model.file_worker.enqueue_work(
             lambda: shelf.write_picture(render_png()), self._written, self.scope_model.desk.show_refusal

@@ -12,7 +12,7 @@ SCOPE_PAGE = "SCOPE"  # name of the page in app.screen.page_table
 
 
 class ScopeFunction(PageFunction):
-    """Special function that shows how long data is recorded, and opens the scope."""
+    """Special function that opens the scope and shows how much time the recorded data covers."""
 
     name = "SCOPE"
     use = "axis and spindle curves"

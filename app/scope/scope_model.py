@@ -40,7 +40,7 @@ NO_SAMPLES_MESSAGE = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD"
 
 
 class SidePanel(Enum):
-    """The contents that the area next to the curves can show."""
+    """The kinds of content for the area next to the curves."""
 
     READINGS = "readings"
     CURVES = "curves"
@@ -169,7 +169,7 @@ class ScopeModel:
     def _is_unchanged(self, wanted: PictureRequest) -> bool:
         """Return whether the picture of constant curves is still valid.
 
-        The picture remains valid for a short time if the machine state does not change.
+        If the machine state does not change, the picture remains valid for a short time.
         """
         if self._asked is None or self.picture.constant_values is None or self.is_armed:
             return False
@@ -180,7 +180,7 @@ class ScopeModel:
     def _accept_picture(self, sight: ScopePicture, of: tuple[Trigger, float] | None = None) -> None:
         """Store a picture.
 
-        ``of`` is the trigger of the request. It is ignored if the trigger has changed since the request.
+        ``of`` is the trigger of the request. The picture is ignored if the trigger has changed since then.
         """
         if sight.is_live is not self.is_live:
             return  # requested before the change between live and frozen
@@ -192,7 +192,7 @@ class ScopeModel:
 
     @property
     def has_samples(self) -> bool:
-        """Return whether there are samples that can be frozen, or a frozen record."""
+        """Return whether a frozen record exists, or samples that can be frozen."""
         live = self.live_samples is not None and bool(np.isfinite(self.live_samples.newest_time_s))
         return self.frozen_curves is not None or live
 
@@ -207,7 +207,7 @@ class ScopeModel:
             self._freeze_window(None, self.time_window.span_s)
 
     def return_to_live(self) -> None:
-        """Return to live curves, and rearm the trigger."""
+        """Show live curves again, and rearm the trigger."""
         if self.live_samples is None:
             self.desk.say(NO_SAMPLES_MESSAGE)
             return
@@ -269,7 +269,7 @@ class ScopeModel:
         self._set_signals(list_signals(record.channels))
 
     def _set_signals(self, signals: tuple[ScopeSignal, ...]) -> None:
-        """Replace the available signals, and hide displayed signals that no longer exist."""
+        """Replace the available signals, and hide curves whose signal no longer exists."""
         self.signals = signals
         there = {each.key for each in signals}
         kept = tuple(each for each in self.selected_keys if each in there)
@@ -300,7 +300,7 @@ class ScopeModel:
     def stretch_lane(self, steps: int, quantity: Quantity | None = None) -> None:
         """Magnify the lane of the selected curve around its middle by a number of steps.
 
-        Negative steps reduce the lane.
+        Negative steps make the curve smaller.
         """
         self.magnify_lane(ZOOM_STEP**steps, quantity)
 
@@ -406,7 +406,7 @@ class ScopeModel:
         return tr("ARMED") if self.is_armed else tr("TRIGGER NOT ARMED. F2: ARM")
 
     def close(self) -> None:
-        """Stop the workers after pending writes are finished."""
+        """Finish pending writes, and stop the workers."""
         self.worker.close()
         self.file_worker.close()
 

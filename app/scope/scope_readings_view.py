@@ -1,4 +1,4 @@
-"""Values next to the curves of the scope, with color, name, and the value now or at both cursors."""
+"""Values next to the scope's curves: color, name, and the current value or both cursor values."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class ScopeReadings(RowPanel):
 
     @property
     def row_height_px(self) -> float:
-        """Return the height of a row in pixels, which is at least that of a fingertip."""
+        """Return the row height in pixels, which is at least the height of a fingertip."""
         return max(float(FINGERTIP_PX), _ROW_HEIGHT * self.theme.unit_px)
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -112,7 +112,7 @@ class ScopeReadings(RowPanel):
             self.add_target(box, partial(self._choose, number), kind="row", is_on=number == marked)
 
     def _draw_between(self, painter: ThemedPainter, area: QRectF) -> QRectF:
-        """Draw the time between the cursors, and return the area below it."""
+        """Draw the time between the cursors, and return the area that remains below it."""
         u, apart = self.theme.unit_px, self.scope_model.cursors.distance_s
         hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NO_VALUE
         row = QRectF(area.x(), area.y(), area.width(), 2.6 * u)

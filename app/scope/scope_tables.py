@@ -1,4 +1,4 @@
-"""Tables next to the curves of the scope: all signals, the trigger, and the records on the disk."""
+"""Tables next to the curves of the scope: all signals, the trigger, and the stored records."""
 
 from __future__ import annotations
 
@@ -270,7 +270,7 @@ class ScopeTables:
     def handle_escape(self) -> bool:
         """Go back one step.
 
-        Return False if the readings are shown without cursors, because no step remains.
+        Return False if no step remains, because the readings are shown without cursors.
         """
         scope = self.scope_model
         if scope.desk.prompt_notice:

@@ -155,7 +155,7 @@ class CurveArea(QWidget):
                 )
 
     def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
-        """Zoom the time by horizontal motion of two fingers, or the lane by vertical motion."""
+        """Zoom the time if two fingers move horizontally, or the lane if they move vertically."""
         self._down = None
         spans_px = (abs(one.x() - other.x()), abs(one.y() - other.y()))
         before, self._spread = self._spread, spans_px
@@ -193,7 +193,7 @@ class ScopePage(ListPage):
         scope.file_worker.enqueue_work(_import_chart_class, self._create_chart, self.desk.say)
 
     def _create_chart(self, chart_class: type[ScopeChart]) -> None:
-        """Insert the chart after its class has been loaded."""
+        """Create the chart after its class has been loaded."""
         chart = chart_class(self.theme, self.curve_area)
         self.curve_area.chart = chart
         chart.setGeometry(self.curve_area.rect())
@@ -262,9 +262,9 @@ class ScopePage(ListPage):
         }
 
     def is_animating(self) -> bool:
-        """Return whether the picture changes.
+        """Return whether the picture is changing.
 
-        It changes while live curves are not constant or lanes are unfinished.
+        It changes while live curves are not constant or while lanes are being created.
         """
         return self._undrawn or (
             self.scope_model.is_live and self.scope_model.picture.constant_values is None
@@ -277,7 +277,7 @@ class ScopePage(ListPage):
     def handle_escape(self) -> bool:
         """Go back one step.
 
-        Return False if only the curves are shown, because no step remains.
+        Return False if no step remains, because only the curves are shown.
         """
         return self.scope_tables.handle_escape()
 
@@ -401,7 +401,7 @@ class _ScopeKeys:
 
 
 def _find_view_key(sight: ScopePicture) -> object:
-    """Return a value that is equal for pictures with the same appearance."""
+    """Return a key of a picture. Pictures with the same appearance have equal keys."""
     if sight.constant_values is None:
         return sight
     level_texts = [

@@ -41,7 +41,7 @@ class TimeWindow:
         return 0.5 * (self.begin_s + self.end_s)
 
     def zoom_window(self, steps: int, time_s: float | None = None) -> None:
-        """Zoom in (positive steps) or out (negative steps) through round spans.
+        """Zoom in (positive steps) or out (negative steps) to the next round width.
 
         The time ``time_s`` does not move.
         """
@@ -112,7 +112,7 @@ class TimeCursors:
     def move_cursor(self, time_s: float, cursor: int | None = None) -> None:
         """Move a cursor to a time.
 
-        The default is the active cursor.
+        If no cursor is specified, move the active cursor.
         """
         self.active_index = self.active_index if cursor is None else cursor
         self.times_s = (time_s, self.times_s[1]) if self.active_index == 0 else (self.times_s[0], time_s)
@@ -179,10 +179,10 @@ class Trigger:
     def find_trigger_time(
         self, times: FloatArray, values: FloatArray, alarm_values: frozenset[int]
     ) -> float | None:
-        """Return the time of the first sample that fires the trigger, or None.
+        """Return the time of the first sample that fires the trigger, or None if no sample does.
 
-        The first sample cannot fire the trigger. ``alarm_values`` contains the values of the channel
-        ``state`` that indicate an alarm or an E-stop.
+        The first of the samples cannot fire the trigger. ``alarm_values`` contains the values of the
+        channel ``state`` that indicate an alarm or an E-stop.
         """
         if self.trigger_event is TriggerEvent.OFF or len(values) < 2:
             return None

@@ -34,7 +34,7 @@ def register_accessibility() -> None:
 def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
     """Return the accessible interface of a plain QWidget, or None for other classes.
 
-    Qt has its own interfaces for other classes.
+    For other classes, Qt provides its own interfaces.
     """
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
@@ -80,7 +80,7 @@ class AccessiblePanel(AccessiblePart):
         self._spots: dict[int, AccessibleTarget] = {}
 
     def text(self, kind: QAccessible.Text) -> str:
-        """Return the title for the name, or all texts outside the targets for the description."""
+        """Return the title as the name, or all texts outside the targets as the description."""
         if kind is Text.Name:
             return self._panel.find_accessible_name() or super().text(kind)
         return self._panel.describe_content() if kind is Text.Description else super().text(kind)
@@ -120,14 +120,14 @@ class AccessiblePanel(AccessiblePart):
 
 
 class _PressAction(QAccessibleActionInterface):
-    """Action that presses a target as a touch does."""
+    """Action that presses a target, like a touch."""
 
     def __init__(self, spot: AccessibleTarget) -> None:
         super().__init__()
         self._spot = spot
 
     def actionNames(self) -> list[str]:
-        """Return the press action, or no action for a control that can be dragged."""
+        """Return the press action, or no action if the control can be dragged."""
         held = self._spot.isValid() and self._spot.target.on_press is ignore_press
         return [] if held else [QAccessibleActionInterface.pressAction()]
 
@@ -144,7 +144,7 @@ class _PressAction(QAccessibleActionInterface):
 class AccessibleTarget(QAccessibleInterface):
     """One target of a panel, identified by its index.
 
-    The interface always describes the target as it was last painted.
+    The returned data always describes the target as it was last painted.
     """
 
     def __init__(self, panel: Panel, index: int) -> None:

@@ -37,7 +37,7 @@ def find_curve_color(theme: ScreenTheme, index: int) -> QColor:
 def make_line_pen(color: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
     """Return a pen with a width of one pixel.
 
-    Qt needs four times as long for a wider pen.
+    Qt takes four times as long to draw a wider line.
     """
     pen = QPen(color, 1.0, style)
     pen.setCosmetic(True)
@@ -53,7 +53,7 @@ class ChartAxis(pg.AxisItem):  # type: ignore[misc]
         self.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)  # Draw the labels only once.
 
     def find_label_values(self, low: float, high: float, length_px: float) -> list[float]:
-        """Return the values that have labels on an axis of ``length_px`` pixels from ``low`` to ``high``."""
+        """Return the labeled values of an axis from ``low`` to ``high``, ``length_px`` pixels long."""
         levels = self.tickValues(low, high, length_px) if high > low and length_px > 0.0 else []
         return [float(value) for _spacing, values in levels[:1] for value in values]
 
@@ -94,7 +94,7 @@ class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
         return self._axes[side]
 
     def add_item(self, item: QGraphicsItem) -> None:
-        """Add an item to the plot, in the units of the axes."""
+        """Add an item whose coordinates are values of the axes."""
         self.vb.addItem(item)
 
     def clear_plot(self) -> None:
@@ -172,9 +172,9 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.apply_theme()
 
     def prepare_plots(self, plot_count: int) -> bool:
-        """Return whether ``plot_count`` plots exist.
+        """Create a missing plot, and return whether ``plot_count`` plots exist.
 
-        Each call creates at most one missing plot, so that no call takes longer than a frame.
+        Each call creates at most one plot, so that no call takes longer than a frame.
         """
         if len(self.plots) + len(self._spare) < plot_count:
             self._spare.append(ChartPlot())
@@ -190,9 +190,9 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         return plot
 
     def remove_plots(self) -> None:
-        """Remove all plots.
+        """Remove all plots from the chart.
 
-        The plots are reused later.
+        The plot objects are reused later.
         """
         self.clear()
         for plot in self.plots:
@@ -201,7 +201,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.plots.clear()
 
     def set_left_axis_width(self, units: float) -> None:
-        """Set the width of all left axes in screen units, so that the plots are aligned."""
+        """Set the width of all left axes in theme units, so that the plots are aligned."""
         for plot in self.plots:
             plot.find_axis("left").setWidth(round(units * self.theme.unit_px))
 

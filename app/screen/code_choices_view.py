@@ -1,4 +1,4 @@
-"""List of the codes of a programming language, which the editor and MDI show."""
+"""List of a programming language's codes, for the editor and MDI."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MAX_ONE_COLUMN = 6  # Maximum number of words in a single column.
 
 
 class CodeChoiceList(RowPanel):
-    """List of code choices, with the words and an example of the selected choice.
+    """List of code choices, with the address words and an example of the selected choice.
 
     ``on_choose`` inserts the selected code in the text.
     """
@@ -45,7 +45,7 @@ class CodeChoiceList(RowPanel):
         self._shown = (self._help.choices, self._help.marked)
 
     def _find_foot_height(self) -> float:
-        """Return the total height of the words and the example in pixels."""
+        """Return the total height of the address words and the example in pixels."""
         return self._find_example_height() + self._count_word_rows() * WORD_ROW_HEIGHT * self.theme.unit_px
 
     def _find_example_height(self) -> float:
@@ -55,14 +55,14 @@ class CodeChoiceList(RowPanel):
         return (len(lines) * EXAMPLE_LINE_HEIGHT + 1.4) * self.theme.unit_px if lines else 0.0
 
     def _find_sketch_height(self) -> float:
-        """Return the height of a drawing in pixels, which is 0 here.
+        """Return the height of a drawing in pixels, or 0 without a drawing.
 
-        Subclasses may override this.
+        The base class has no drawing. Subclasses may override this.
         """
         return 0.0
 
     def _count_word_rows(self) -> int:
-        """Return the number of word rows that leave enough space for the selected code."""
+        """Return how many rows of address words fit without hiding the selected code."""
         count, u = len(self._help.words), self.theme.unit_px
         wanted = count if count <= _MAX_ONE_COLUMN else -(-count // 2)
         room = (
@@ -74,7 +74,7 @@ class CodeChoiceList(RowPanel):
         return max(0, min(wanted, int(room / (WORD_ROW_HEIGHT * u))))
 
     def _write_words(self, painter: ThemedPainter) -> None:
-        """Draw the words above the example, in two columns if there are many."""
+        """Draw the address words above the example, in two columns if there are many."""
         u, rows = self.theme.unit_px, self._count_word_rows()
         columns = 1 if len(self._help.words) <= _MAX_ONE_COLUMN else 2
         wide = (self.width() - 3.2 * u) / columns
@@ -89,7 +89,7 @@ class CodeChoiceList(RowPanel):
             painter.draw_text_line(box.adjusted(letters, 0, 0, 0), what, 1.7, "text", bold=False)
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the code choices, with the words and an example of the selected choice."""
+        """Draw the code choices, with the address words and an example of the selected choice."""
         u, shown = self.theme.unit_px, self._help
         self.frame(painter, shown.title)
         if shown.selected_entry is None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class ColorPalette:
     """Colors as ``#rrggbb``.
 
-    A name that starts with ``on_`` is the text color on a background of the color that follows.
+    For a background color with the name ``x``, the text color has the name ``on_x``.
     """
 
     name: str

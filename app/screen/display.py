@@ -36,7 +36,7 @@ def find_display_error() -> str:
 def _try_open(gui: object) -> tuple[bool, str]:
     """Open the display in a child process.
 
-    Return whether this succeeded, and the messages of Qt.
+    Return whether the display was opened, and the messages of Qt.
     """
     reads, writes = os.pipe()
     child = os.fork()
@@ -52,7 +52,7 @@ def _try_open(gui: object) -> tuple[bool, str]:
 def _open_display(gui: object, writes: int) -> None:
     """Open the display, and exit.
 
-    This runs in the child process and must not run the cleanup of the parent.
+    This runs in the child process, in which the cleanup functions of the parent process must not run.
     """
     try:
         import resource
@@ -86,7 +86,7 @@ def _read_result(reads: int, child: int) -> str:
 
 
 def _explain_error(qt_messages: str) -> str:
-    """Return the error text with a remedy for the messages of Qt."""
+    """Return an error text with a remedy, based on the messages of Qt."""
     platform = os.environ.get("QT_QPA_PLATFORM", "")
     if "Could not find the Qt platform plugin" in qt_messages:
         return Message(

@@ -165,7 +165,7 @@ class SketchPanel(Panel):
         self.add_target(self._make_touch_box(box), partial(self._touch, word))
 
     def _make_touch_box(self, box: QRectF) -> QRectF:
-        """Return a rectangle around a number that is large enough for a touch and inside the panel."""
+        """Return a rectangle around a number that is inside the panel and large enough for a touch."""
         least = max(5.0 * self.theme.unit_px, FINGERTIP_PX)
         side, up = (max(0.0, least - have) / 2.0 for have in (box.width(), box.height()))
         place = box.adjusted(-side, -up, side, up)
@@ -257,7 +257,7 @@ _FLANK_ANGLE = 0.7  # Radians from the tool's axis to its flanks.
 
 
 def draw_tool_tip(painter: ThemedPainter, box: QRectF, quadrant: int, color: str = "text") -> None:
-    """Draw a tool tip, with the body, the nose circle, and a dot at the point where X and Z are set."""
+    """Draw a tool tip: its body, its nose circle, and a dot at the point for which X and Z are set."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
     z, x = TIP_DIRECTIONS[quadrant]  # X+ points down on the screen.

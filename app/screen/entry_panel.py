@@ -68,7 +68,7 @@ class LetterPad(Panel):
         return self.theme.find_key_rows_height(len(self._rows))
 
     def set_target_field(self, text_field: QWidget) -> None:
-        """Keep the focus in this standard field when a key is touched.
+        """Keep the focus in this standard field when a key of the pad is touched.
 
         Otherwise Qt would give the focus to the window.
         """
@@ -154,7 +154,7 @@ class EntryPanel(Panel):
 def draw_entry_text(
     painter: ThemedPainter, area: QRectF, text: str, *, height_units: float = 2.8, has_cursor: bool = True
 ) -> None:
-    """Draw an input text that is ``size`` units high, with a caret if the field has the keyboard focus.
+    """Draw an input text, ``size`` theme units high, with a caret if the field has the focus.
 
     A rejected text is drawn as selected, because the next character replaces it.
     """
@@ -181,7 +181,7 @@ def draw_entry_box(painter: ThemedPainter, box: QRectF, text: str, size: float =
 def style_line_edit(edit: QLineEdit, theme: ScreenTheme, size: float, left_padding: float) -> None:
     """Apply the current font and colors to a line edit.
 
-    ``left_padding`` is the padding before the text, in units.
+    ``left_padding`` is the padding to the left of the text, in theme units.
     """
     u, colours = theme.unit_px, theme.palette
     edit.setFont(theme.make_font(size, is_bold=True))
@@ -202,7 +202,7 @@ _KEY_LABELS = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"
 
 
 class NumberPad(LetterPad):
-    """A touch keyboard for numbers and arithmetic."""
+    """A touch keyboard for numbers and arithmetic operators."""
 
     accessible_name = "NUMBER PAD"
     page_key: RedrawingAttribute[tuple[str, str] | None] = RedrawingAttribute(
@@ -228,7 +228,7 @@ class NumberPad(LetterPad):
     def draw_pad_key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
         """Draw one key.
 
-        If the page has no key of its own, the position of this key remains empty.
+        The position of the page's own key remains empty if the page has no such key.
         """
         key, shown = (
             (self.page_key or ("", "")) if key == _PAGE_KEY else (key, _KEY_LABELS.get(key, key.upper()))

@@ -194,7 +194,7 @@ class Page(QWidget):
         return ""
 
     def can_open(self) -> bool:
-        """Return whether the page can be opened now."""
+        """Return whether the page can be opened now. If not, show the reason."""
         return True
 
     def on_open(self) -> None:
@@ -206,14 +206,14 @@ class Page(QWidget):
     def try_leave(self) -> bool:
         """Return whether another page may replace this page.
 
-        If not, the prompt line shows the reason.
+        If not, show the reason on the prompt line.
         """
         return True
 
     def is_esc_stop_key(self) -> bool:
         """Return whether Esc starts feed hold while the machine moves.
 
-        It does not if an input field uses Esc.
+        The result is False if an input field uses Esc.
         """
         return not self.has_text_field()
 
@@ -222,7 +222,7 @@ class Page(QWidget):
         return False
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the snapshot, status and loaded program of this instant.
+        """Show the snapshot, status and loaded program, which are all from the same instant.
 
         This is called once a frame.
         """
@@ -277,7 +277,7 @@ class ModelPage(Page):
 
 
 class HeaderKey(NamedTuple):
-    """A touch target above the editor's text that opens the panel.
+    """A touch target above the editor's text. A touch opens the panel.
 
     ``label`` is the text of the target. ``name`` is the name of the equivalent key.
     """
@@ -287,7 +287,7 @@ class HeaderKey(NamedTuple):
 
 
 class EditorPanel(QWidget):
-    """A panel of the editor without content.
+    """Base class of the panels that features add to the editor.
 
     A feature registers a subclass as its ``editor_panel_class``. ``KEYS`` are the names of the keys that
     open the panel, from ``app.screen.window.key_table``.
@@ -308,8 +308,8 @@ class EditorPanel(QWidget):
     def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:  # noqa: ARG002
         """Open the panel for this text.
 
-        Return why this is not possible, or an empty string. ``line_number`` is the line of the cursor,
-        counted from 1. ``key`` is the name of the pressed key, or empty if a program is made from a file.
+        Return the reason if this is not possible. ``line_number`` is the line of the cursor, from 1.
+        ``key`` is the name of the pressed key, or an empty string if a program is created from a file.
         """
         return ""
 

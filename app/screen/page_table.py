@@ -238,7 +238,7 @@ def import_class(dotted_name: str) -> Any:
 
 
 def find_editor_panel_class(default: Any) -> Any:
-    """Return the panel class that an optional feature adds to the editor, or ``default``."""
+    """Return the editor panel class of an optional feature, or ``default`` if no feature has one."""
     return import_class(_PANELS[0]) if _PANELS else default
 
 
@@ -278,7 +278,7 @@ def batch_names(names: list[str]) -> Iterator[list[str]]:
 
 
 class PagePreloader:
-    """A loader that loads the pages in slices while TurnDesk is idle.
+    """Preloader that loads the pages in slices while TurnDesk is idle.
 
     It is closed together with TurnDesk.
     """
@@ -314,9 +314,9 @@ class PagePreloader:
         self._worker.close()
 
     def _load_all(self) -> Iterator[bool]:
-        """Yield False after every slice.
+        """Import and prepare all pages in slices.
 
-        A slice imports a page or prepares a part of it.
+        Yield False after each slice. A slice imports a page or prepares a part of a page.
         """
         yield from create_qt_classes()
         for entry in list_pages(self._desk.machine.program_language):

@@ -48,7 +48,7 @@ class RedrawingAttribute(Generic[T]):
 
 
 def ignore_press() -> None:
-    """Do nothing, because assistive technology does not press a control that can be dragged."""
+    """Do nothing, because assistive technology cannot drag a control."""
 
 
 class TouchTarget(NamedTuple):
@@ -108,7 +108,7 @@ class Panel(QWidget):
         """
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Press the target immediately when the mouse button or a touch goes down."""
+        """Press the target as soon as the mouse button is pressed or a touch begins."""
         self.press_at(event.position())
 
     def press_at(self, position: QPointF) -> bool:
@@ -203,7 +203,7 @@ class Panel(QWidget):
         return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
     def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
-        """Draw a frame with its title in the top edge, as on text screens."""
+        """Draw a frame with its title in the top edge, as in text-mode programs."""
         look, u, title = self.theme, self.theme.unit_px, tr(title)
         self._titled = title
         top = 1.0 * u
@@ -290,7 +290,7 @@ class TouchPanel(Panel):
 
     @property
     def touch_count(self) -> int:
-        """Return the number of touches that hold a control, including the mouse."""
+        """Return the number of touches that are pressing a control, with the mouse counted as a touch."""
         return len(self._held)
 
     def release_mouse(self) -> None:

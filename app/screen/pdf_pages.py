@@ -2,7 +2,7 @@
 
 Drawings remain vector graphics. Qt lays out the text and tables (QTextDocument). Boxes that HTML places
 side by side are placed below each other, because Qt does not support them. The module works without a
-display. After an application exists, it works on any thread.
+display. Once a Qt application exists, the module can be used on any thread.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ class PdfWriter:
 
 
 class _PdfText:
-    """HTML that is ready to be drawn.
+    """HTML that is ready to be drawn on PDF pages.
 
     Its SVG drawings are stored separately and drawn as vector graphics.
     """

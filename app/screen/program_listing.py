@@ -65,7 +65,7 @@ class ProgramListing(RowPanel):
 
     @property
     def _text_scale(self) -> float:
-        """Return the scale of the letters, which depends on the line spacing."""
+        """Return the text scale, which depends on the line spacing."""
         # Rows for touch are higher, but their letters are not larger.
         return min(1.0, self._high / (ROW * self.theme.unit_px))
 
@@ -75,7 +75,7 @@ class ProgramListing(RowPanel):
         return tuple(filter(None, (self._block, self._next))) if self._block else ()
 
     def follow_run(self) -> None:
-        """Make the listing follow the run again."""
+        """Make the listing scroll with the run again."""
         self.follows_run = True
 
     def scroll_by(self, rows: int) -> None:

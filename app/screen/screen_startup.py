@@ -1,4 +1,4 @@
-"""Start of the operator screen.
+"""Startup of the operator screen.
 
 The window is shown first, then the model is built, and then a program is loaded.
 """
@@ -100,7 +100,7 @@ class _Startup:
         timer.start(_LISTENS_AFTER)
 
     def _listen(self) -> None:
-        """Receive the programs that later starts of TurnDesk hand over."""
+        """Start to receive programs that another start of TurnDesk passes to this screen."""
         from app.screen.window.file_opening import FileOpening
         from app.screen.window.running_screen import RunningScreen
 
@@ -118,7 +118,7 @@ class _Startup:
             )
 
     def close(self) -> None:
-        """Stop the machine, end the threads, and raise the error of the start if there was one."""
+        """Stop the machine, end the threads, and raise the startup error if there was one."""
         if self._desk is not None:
             self._desk.close()
         if self._trouble is not None:

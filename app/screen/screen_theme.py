@@ -1,4 +1,4 @@
-"""Themes, bundled fonts, unit of size, and language for all parts that draw on the screen."""
+"""Themes, bundled fonts, unit of size and language for all parts that draw on the screen."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class ScreenTheme:
         )
 
     def find_key_rows_height(self, row_count: int) -> int:
-        """Return the height in pixels of a number of rows of touch keys, each as high as a fingertip."""
+        """Return the total height in pixels of this many rows of touch keys, each as high as a fingertip."""
         return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.unit_px)
 
     def find_em_height(self, size: float, role: TextRole, row_height_px: float) -> float:
@@ -128,7 +128,7 @@ class ScreenTheme:
         return QColor(self._colours[name])
 
     def make_font(self, size: float, *, is_bold: bool = False) -> QFont:
-        """Return the bundled font with an em height of ``size`` units."""
+        """Return the bundled font with an em height of ``size`` theme units."""
         key = (size, is_bold)
         if key not in self._fonts:
             font = QFont(FONT_FAMILY)
@@ -140,7 +140,7 @@ class ScreenTheme:
     def make_pen(self, color_name: str, width: float = 0.12) -> QPen:
         """Return a pen with a palette color.
 
-        ``width`` is in units. The pen is at least one pixel wide.
+        ``width`` is in theme units. The pen is at least one pixel wide.
         """
         return QPen(self.get_color(color_name), max(1.0, width * self.unit_px))
 
@@ -199,7 +199,7 @@ def draw_raw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text
 def measure_text(text: str, font: QFont) -> float:
     """Return the width of a line of text in pixels.
 
-    The result is cached, because Qt would shape the text for each call.
+    The result is cached, because Qt would otherwise lay out the text again in each call.
     """
     return _width(text, *_face(font))
 
@@ -272,7 +272,7 @@ class ThemedPainter(QPainter):
         (draw_raw_text if raw else draw_text)(self, rect, at, text)
 
     def draw_wrapped_text(self, rect: QRectF, flags: int | Qt.AlignmentFlag | Qt.TextFlag, text: str) -> None:
-        """Draw a text with several lines in the current pen and font."""
+        """Draw a text on several lines with the painter's current pen and font."""
         self.drawn_texts.append((QRectF(rect), text))
         self.drawText(rect, int(flags), text)
 
@@ -281,9 +281,9 @@ class ThemedPainter(QPainter):
         self.fillRect(rect, self.theme.get_color(color))
 
     def draw_box(self, rect: QRectF, line_color: str, width: float, fill_color: str) -> None:
-        """Draw a filled rectangle with an edge that is ``width`` units wide.
+        """Draw a filled rectangle with an edge that is ``width`` theme units wide.
 
-        If ``fill_color`` is empty, the rectangle is not filled.
+        If ``fill_color`` is an empty string, the rectangle is not filled.
         """
         self.setPen(self.theme.make_pen(line_color, width))
         self.setBrush(self.theme.get_color(fill_color) if fill_color else Qt.BrushStyle.NoBrush)

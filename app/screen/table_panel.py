@@ -1,6 +1,6 @@
-"""Panels with rows, and the base class of list pages.
+"""Panels with rows (a scrolling list, and a table), and the base class of list pages.
 
-The panels are a scrolling list, and a table with a heading line, notes and an entry line.
+The table has a heading line, notes and an entry line.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class RowPanel(Panel):
             )
 
     def count_fitting_rows(self, area: QRectF, row_height_px: float, row_count: int) -> int:
-        """Return how many rows of this height fit, which is at least one.
+        """Return how many rows of this height fit. The result is at least 1.
 
         The scroll keys of a narrow list are below its rows and use some of the height.
         """
@@ -127,8 +127,8 @@ class RowPanel(Panel):
     def _with_keys(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the scroll keys and the scroll bar, and return the rectangle that remains for the rows.
 
-        The keys are on the right, or below the rows of a narrow list. They are side by side if the area is
-        low.
+        The keys are on the right, or below the rows of a narrow list. If there is little height, they are
+        side by side.
         """
         gap, (wide, high) = 0.6 * self.theme.unit_px, self.scroll_key_size
         foot = self.is_narrow(area.width())
@@ -195,7 +195,7 @@ class TablePanel(RowPanel):
 
     @property
     def _high(self) -> float:
-        """Return the height of a row in units.
+        """Return the height of a row in theme units.
 
         A row is at least as high as a fingertip. On a large screen, a row is at most 9 mm high, or 14 mm if
         it is a tall row. If there are few rows, their height follows the size of the window.
@@ -207,13 +207,13 @@ class TablePanel(RowPanel):
         )
 
     def _find_list_height(self, notes: int) -> float:
-        """Return the height in units that remains for rows when a number of note lines is shown."""
+        """Return the height in theme units that remains for rows below this many note lines."""
         foot = notes * NOTE + (self._entry_height if self.table.question else 0.0)
         return self.height() / self.theme.unit_px - 4.0 - HEAD - foot
 
     @property
     def _entry_height(self) -> float:
-        """Return the height of the entry line in units.
+        """Return the height of the entry line in theme units.
 
         The line is at least as high as a fingertip if it reacts to touch.
         """
@@ -221,7 +221,7 @@ class TablePanel(RowPanel):
 
     @property
     def _text_scale(self) -> float:
-        """Return the scale of the letters in a row, which depends on the row's height."""
+        """Return the text scale in a row, which depends on the row's height."""
         return min(1.0, self._high / (TALL_ROW_HEIGHT if self.table.has_tall_rows else 4.2))
 
     def _count_fitting(self) -> int:
@@ -236,7 +236,7 @@ class TablePanel(RowPanel):
 
     @property
     def _scroll_key_height(self) -> float:
-        """Return the height in units of the scroll keys of a narrow table, or 0 for other tables.
+        """Return the height of a narrow table's scroll keys in theme units, or 0 for other tables.
 
         The scroll keys of a narrow table are below its rows.
         """
@@ -379,14 +379,14 @@ class ListPage(ModelPage):
     ) -> tuple[str, ...]:
         """Return the ten key labels.
 
-        They come from the common keys, the page's ``page_labels`` and the model's ``function_keys``.
+        They combine the common keys, the page's ``page_labels`` and the model's ``function_keys``.
         """
         named = {"F1": "MENU", "F7": "ALARMS", **page_labels}
         named.update((name, key.label) for name, key in function_keys.items())
         return tuple(named.get(f"F{number}", "") for number in range(1, 11))
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the model, which are none here."""
+        """Return the function keys of the model. The base class returns none."""
         return {}
 
     def find_disabled_keys(self) -> frozenset[str]:

@@ -17,7 +17,7 @@ CAPITAL_HEIGHT_RATIO = 0.73  # Height of a capital or a digit of B612, as a rati
 class TextRole(Enum):
     """The roles of texts.
 
-    Texts without another role are values, labels or rows of a table.
+    ``TABLE`` is the role of values, labels and table rows.
     """
 
     POSITION = "position"

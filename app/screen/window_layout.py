@@ -131,8 +131,8 @@ def make_low_layout(width: int, height: int, has_dock: bool, *, has_axis_motion:
     """Return the layout with low readouts, for a window of this size in pixels.
 
     The readouts are in one row. On a page on which axes can move, large positions are above the other
-    readouts, unless the window is so low that the touch targets of the page would become too small. Title,
-    dock, prompt and function keys have the same positions as on the Automatic page.
+    readouts, unless the touch targets of the page would then become too small. Title, dock, prompt and
+    function keys have the same positions as on the Automatic page.
     """
     at, u = make_layout(width, height, has_dock), find_unit_px(width, height)
     gap, wide = _gap(u), at.strip.w

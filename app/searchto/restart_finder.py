@@ -30,8 +30,7 @@ class RestartFinder:
     """Finder that finds and proves restart lines on a worker.
 
     A search for a later line continues from an earlier search. ``rebuild_state`` and ``prove_job`` are
-    called on the worker. ``on_found`` and ``on_failed`` are called with the results when the worker is
-    polled.
+    called on the worker. ``on_found`` and ``on_failed`` get the results when the worker is polled.
     """
 
     rebuild_state: Callable[[Job, ProgressCallback], RestartSearch]
@@ -52,7 +51,7 @@ class RestartFinder:
         self._ask(job, lambda rebuild: rebuild.find_restart(line_number, pass_number, interruption))
 
     def calculate_cuts(self, job: Job) -> None:
-        """Calculate all cuts of this job's program."""
+        """Calculate all cuts of the program of this job."""
         self._ask(job, lambda rebuild: rebuild.cut_record)
 
     def prove_restart(self, job: Job) -> None:
@@ -67,9 +66,9 @@ class RestartFinder:
     def _with(
         self, job: Job, watch: ProgressCallback, ask: Callable[[RestartSearch], RestartSearchResult]
     ) -> RestartSearchResult:
-        """Run a query on the worker.
+        """Run a query with the search of this job on the worker.
 
-        A canceled search is discarded, because it stopped within a line.
+        A canceled search is discarded, because it stopped in the middle of a line.
         """
         kept, self._rebuild = self._rebuild, None
         if kept is not None and kept[0] is job:
@@ -107,7 +106,7 @@ class LineCursor:
 
     @property
     def entered_pass(self) -> int:
-        """Return the pass entered after the line, for example 4 in ``8P4``, or 0 if none was entered."""
+        """Return the pass number after the line number, for example 4 in ``8P4``, or 0 without a pass."""
         passes = _PASS_PATTERN.fullmatch(self.entry_text)
         return int(passes[2]) if passes else 0
 
@@ -115,7 +114,7 @@ class LineCursor:
     def search_text(self) -> str:
         """Return the search text.
 
-        A number with a leading quotation mark is also a search text.
+        If a number follows a quotation mark, the number is the search text.
         """
         return self.entry_text.removeprefix(_QUOTE).upper()
 

@@ -1,4 +1,4 @@
-"""Texts and rows that describe a restart: required and current state, functions that start, and path.
+"""Texts and rows that describe a restart: required and current state, functions, and path.
 
 If the tool is in the part, the plan contains the retract path, or the instruction for a manual retract.
 """
@@ -54,9 +54,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RetractPlan:
-    """A retract without a restart, with its legs and its feed.
+    """The plan of a retract without a restart, with its legs and its feed.
 
-    ``error_text`` is the reason why the retract is not possible, or empty.
+    ``error_text`` is the reason why the retract is not possible, or an empty string.
     """
 
     start_state: PassStart
@@ -153,7 +153,7 @@ ROTATION_TOLERANCE_DEG = 0.01  # Degrees.
 
 @dataclass(frozen=True, slots=True)
 class StateRow:
-    """One row of the state table, with the value required at the line and the present value."""
+    """One row of the state table, with the value that the line requires and the current value."""
 
     label: str
     required_value: str
@@ -241,7 +241,7 @@ def _on_mill(
 
 
 def _check_rotary_axes(found: RestartPoint, now: PresentState, machine: Kinematics) -> str:
-    """Return a warning about a rotary axis that is not at zero if no earlier line positions it."""
+    """Return a warning if a rotary axis is not at zero and no earlier line positions it."""
     names = {axis.name for axis in machine.rotary_axes}
     for name, wanted, at in zip(machine.axis_names, found.axis_positions, now.axis_positions, strict=True):
         if name in names and wanted is None and abs(at) > ROTATION_TOLERANCE_DEG:
@@ -304,7 +304,7 @@ def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRo
 def _make_state_rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
     """Return the rows that compare the state at the line with the current state.
 
-    The rows are in the terms of the program's language.
+    The rows use the terms of the program's language.
     """
     both = zip(make_modal_rows(point, language), make_modal_rows(_now(snapshot), language), strict=True)
     return tuple(
@@ -319,7 +319,7 @@ def _now(snapshot: Snapshot) -> Checkpoint:
 
 
 def _make_position_rows(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
-    """Return the rows of a machine position in the terms of the line, with its tool, unit and Ø or R."""
+    """Return the rows of a machine position, for the tool, unit and X mode (Ø or R) of the line."""
     modal = point.modal
     mark, factor = ("Ø", 2.0) if modal.diameter else ("R", 1.0)
     return (

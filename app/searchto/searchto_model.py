@@ -107,7 +107,7 @@ class SearchtoModel:
         return not why
 
     def on_open(self) -> None:
-        """Prepare for the open page, on which Cycle Start only runs a confirmed restart."""
+        """Let Cycle Start run only a confirmed restart while the page is open."""
         loaded, snapshot = self.program_loader.loaded_program, self.read_snapshot()
         self.clear_message()  # The operator has read the earlier message.
         self.is_open, self.is_started = True, False
@@ -119,7 +119,7 @@ class SearchtoModel:
         self._discard_results()
 
     def on_close(self) -> None:
-        """Allow Cycle Start to run programs again."""
+        """Let Cycle Start run programs again."""
         if self.is_open:
             self.is_open = False
             self._withdraw()
@@ -157,7 +157,7 @@ class SearchtoModel:
         self._discard_results()
 
     def select_line(self, line_number: int, pass_number: int = 0) -> None:
-        """Select this line in this pass, and rebuild its state.
+        """Select this line in this pass, and rebuild the machine state at this line.
 
         Line 0 has no effect.
         """
@@ -282,11 +282,11 @@ class SearchtoModel:
             self.restart_finder.calculate_cuts(job)
 
     def toggle_coolant(self) -> None:
-        """Toggle whether the coolant starts if it is on at the line."""
+        """Switch whether the restart turns on coolant that is on at the line."""
         self._choose(replace(self.restart_choices, uses_coolant=not self.restart_choices.uses_coolant))
 
     def confirm_plan(self) -> None:
-        """Confirm the restart or the retract, which is then proved and prepared for Cycle Start."""
+        """Confirm the restart or the retract. It is then proved and prepared for Cycle Start."""
         if self.stage in {SearchtoStage.PROVING, SearchtoStage.READY}:
             return  # It is already confirmed.
         self.clear_message()
@@ -351,7 +351,7 @@ class SearchtoModel:
     def update(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Accept the results of the worker.
 
-        This is called once a frame. After a program has been reloaded, a new search is needed.
+        This is called once a frame. If the program has been reloaded, earlier results are not used.
         """
         if self._of is not None and loaded.job is not self._of:
             self._of = None
@@ -445,7 +445,7 @@ def make_searchto_prompt(
     """Return the prompt for a stage of the restart.
 
     ``start_instruction`` is the instruction for starting a cycle. ``error_text`` is the reason why the plan
-    cannot be started, or empty. ``is_retract`` is True for a retract without a restart.
+    cannot be started, or an empty string. ``is_retract`` is True for a retract without a restart.
     """
     if is_retract and stage is SearchtoStage.PLAN_SHOWN and not error_text:
         return tr("CHECK THE RETRACT PATH. F10: CONFIRM")

@@ -29,9 +29,9 @@ _LABEL, _SIGN = 0.25, 0.61  # Fractions of a row: end of the label, position of 
 
 @dataclass(frozen=True, slots=True)
 class NearestValidLine:
-    """A valid line near a rejected line.
+    """A valid line near a rejected line, which the operator can select instead.
 
-    It has the key that selects it, its number (0 for none) and its text.
+    It has the key that selects it, its line number (0 if there is none) and its text.
     """
 
     key_name: str
@@ -85,7 +85,7 @@ class RestartStatePanel(Panel):
             self._draw_table(painter, room)
 
     def _draw_passes(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the pass with a touch key on each side."""
+        """Draw the pass number between two touch keys."""
         wide = area.height() * 2
         sides = ((area.x(), "◀", PASS_BEFORE), (area.right() - wide, "▶", PASS_AFTER))
         for left, sign, key in sides:
@@ -95,9 +95,9 @@ class RestartStatePanel(Panel):
         painter.draw_text_line(words, self.content.pass_text, 2.0, "text", at=ALIGN_CENTER)
 
     def _draw_table(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the rows that differ in large letters, followed by the equal rows.
+        """Draw the different rows in large letters, followed by the equal rows.
 
-        The equal rows are folded into one row, or have one row each.
+        The equal rows are folded into one row, or drawn one by one.
         """
         u, shown = self.theme.unit_px, self.content
         other = tuple(row for row in shown.state_rows if row.must_change)

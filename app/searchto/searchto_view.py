@@ -1,4 +1,4 @@
-"""The SEARCHTO page (F6), with a line, its state, the path to it, and the functions that will start."""
+"""The SEARCHTO page (F6): a line, its state, the path to it, and the functions that will start."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 
 class SearchEntryPanel(Panel):
-    """The prompt for a line or a text, with the entered text."""
+    """The prompt that asks for a line number or a text, with the entered text."""
 
     background_color = "panel"
     entry_text = RedrawingAttribute("")
@@ -236,10 +236,7 @@ class SearchtoPage(ModelPage):
         self._whole = not self._whole
 
     def has_text_field(self) -> bool:
-        """Return whether the entry accepts text.
-
-        It always does except while the tool retracts.
-        """
+        """Return whether text can be entered. This is always possible unless the tool retracts."""
         return self.model.can_choose_line
 
     def prompt_text(self) -> str:
@@ -254,7 +251,7 @@ class SearchtoPage(ModelPage):
         return self.model.can_open()
 
     def try_leave(self) -> bool:
-        """Allow Cycle Start to run programs again, and allow the page to close."""
+        """Let Cycle Start run programs again, and allow the page to close."""
         self.number_pad.hide()
         self.model.on_close()
         return True
@@ -302,7 +299,7 @@ class SearchtoPage(ModelPage):
         self.path_view.show_picture(loaded.picture if scene is None else None)
 
     def _show_plane(self, scene: MillScene, picture: ProgramPicture) -> None:
-        """Show axes and plane at the beginning of the line, with the earlier blocks drawn as finished."""
+        """Show axes and plane as they are before the line, with the earlier blocks drawn as finished."""
         plan, line = self.model.restart_plan, self.model.line_cursor.selected_line
         here = make_line_instant(scene, line - 1)
         axes, done = here.axis_positions, picture.count_blocks_before(line)
@@ -318,9 +315,9 @@ class SearchtoPage(ModelPage):
         return self.path_view if self.plane_view.scene is None else self.plane_view
 
     def _find_tip(self, snapshot: Snapshot) -> TipPosition:
-        """Return the position of the tool tip.
+        """Return the position of the tool tip to display.
 
-        With a plan, this is the tip of the line's tool, where the path begins.
+        If there is a plan, this is the tip of the line's tool at the start of the path.
         """
         shown = self.model.retract_plan or self.model.restart_plan
         legs = shown.drawn_legs if shown is not None else ()
@@ -395,7 +392,7 @@ class SearchtoPage(ModelPage):
         )
 
     def _show_stock(self, loaded: LoadedProgram) -> None:
-        """Show the part after the earlier lines, in the pass that was found."""
+        """Show the part as the earlier lines leave it, in the pass that was found."""
         plan, picture, player = self.model.restart_plan, loaded.picture, self.path_view.part_player
         if picture is None or player is None:
             return

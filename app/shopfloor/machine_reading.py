@@ -38,7 +38,7 @@ _DEFAULT_CONDITIONS = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # conditions of alarms 
 def list_condition_keys(machine: Machine) -> frozenset[str]:
     """Return the names of all conditions of a machine.
 
-    They are the conditions of each axis with its own drive, and the other conditions. On a lathe the
+    Each axis with its own drive has conditions. The other conditions belong to no axis. On a lathe the
     spindle is also the C axis, unless C has its own drive.
     """
     turns_c = machine.kind == "lathe" and machine.is_spindle_c_axis
@@ -115,9 +115,9 @@ _MODE_BY_STATE = {
 
 @dataclass(slots=True)
 class ExecutionTracker:
-    """State machine that finds the execution state, and also detects the end of a program.
+    """State machine that finds the execution state and detects the end of a program.
 
-    ``input_names`` are the names and terminals of inputs for which a program can wait. Other waits of a
+    ``input_names`` are the names and terminals of the inputs for which a program can wait. Other waits of a
     cycle, such as a dwell, the spindle or a proof, count as active execution.
     """
 
@@ -168,7 +168,7 @@ class ExecutionTracker:
 def find_controller_mode(snapshot: Snapshot) -> str:
     """Return the controller mode, which is the kind of run that Cycle Start begins.
 
-    The control has no mode switch.
+    It is derived from the machine state, because the control has no mode switch.
     """
     if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
         return MANUAL
@@ -188,7 +188,7 @@ _AVAILABLE, _UNAVAILABLE = "AVAILABLE", "UNAVAILABLE"
 class MachineReading:
     """Values and conditions of the machine at one time.
 
-    Both are empty if nothing is known.
+    Both are empty if the machine state is unknown.
     """
 
     values: Mapping[str, ReadingValue]
@@ -197,7 +197,7 @@ class MachineReading:
     alarms: tuple[Alarm, ...] = ()  # catalog entries of the active alarms
 
     def find_alarm(self, code: str) -> Alarm | None:
-        """Return the alarm of a condition by its code, or None if the reading does not contain it."""
+        """Return the alarm with this number, or None if the reading does not contain it."""
         return next((alarm for alarm in self.alarms if str(alarm.number) == code), None)
 
     @property
@@ -213,7 +213,7 @@ UNKNOWN_READING = MachineReading({"avail": _UNAVAILABLE})
 class MachineReader:
     """Converter of the snapshots of one machine.
 
-    ``read_time_s``, in seconds, is used to detect that no new snapshots arrive.
+    ``read_time_s`` returns the time in seconds. It is used to detect that no new snapshots arrive.
     """
 
     machine: Machine

@@ -51,7 +51,7 @@ def make_status(machine: str, reading: MachineReading) -> StatusDocument:
 
 
 def _round_load(load: ReadingValue) -> int | None:
-    """Return the load in %, rounded to a multiple of 5 to limit the number of writes."""
+    """Return the load in %, rounded to a multiple of 5 so that the file is written less often."""
     return round(load / _LOAD_STEP_PERCENT) * _LOAD_STEP_PERCENT if isinstance(load, float) else None
 
 
@@ -89,7 +89,7 @@ class StatusFileWriter:
     def write_status(self, status: StatusDocument) -> None:
         """Write the status if it has changed or the file is too old.
 
-        A failed write is tried again.
+        After a failed write, the next call tries again.
         """
         self._looks += 1
         if status == self._written and self._looks < _MAX_UNCHANGED_CHECKS:

@@ -1,4 +1,4 @@
-"""Backup and restore of all stored data, which are offsets, versions, counts, settings and the log."""
+"""Backup and restore of all stored data: offsets, versions, counts, settings and the log."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class BackupFunction(SpecialFunction):
     ) -> None:
         """Create the function.
 
-        ``daily_folder`` is the folder of daily backups if it differs from ``folder``.
+        ``daily_folder`` is the folder of the daily backups, if they are not stored in ``folder``.
         """
         super().__init__(desk)
         self.persistence, self.worker, self.backup_folder, self.list_media = (
@@ -155,7 +155,7 @@ class BackupFunction(SpecialFunction):
     def _make_notes(self) -> tuple[str, ...]:
         """Return the notes about the selected backup.
 
-        The notes describe its damage or the effect of a restore.
+        The notes describe the damage to the backup or the effect of a restore.
         """
         kept = (
             "When a backup is restored, a copy of the replaced data is saved in the same folder "
@@ -280,7 +280,7 @@ def _describe_differences(verdict: BackupVerdict) -> str:
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupLocation, ...]:
-    """Return the control's folder and the media, each followed by its backups.
+    """Return the control's folder and the removable media, each followed by its backups.
 
     The newest backup is the first.
     """

@@ -1,4 +1,4 @@
-"""Counters of F10: parts with target and times, and tool life with its limits."""
+"""Counters of F10: the parts counter with its target and times, and tool life with its limits."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class ToolLifeFunction(NumericFunction):
         return tools[self.marked] if self.marked < len(tools) else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with limits, use, remaining life and stop setting."""
+        """Return the table with limits, use and remaining life, and with the stop setting of each tool."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
         rows = tuple(self._row(each) for each in self.list_tools())
         tool = self.selected_tool
@@ -254,7 +254,7 @@ class PartsCounterFunction(NumericFunction):
         }
 
     def correct_count(self, change: int) -> None:
-        """Correct the count by a part that was not counted or that is scrap."""
+        """Correct the count for a part that was not counted or is scrap."""
         if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):

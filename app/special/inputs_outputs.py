@@ -71,7 +71,7 @@ class SignalsFunction(SpecialFunction):
 
     @property
     def _is_simulated(self) -> bool:
-        """Return whether inputs can be switched, which is possible on a simulated machine."""
+        """Return whether the machine is simulated, so that inputs can be switched."""
         return self.desk.desk_control.set_input is not None
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
@@ -251,9 +251,9 @@ SPINDLE_ALARMS = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-stil
 
 
 class DriveStatusFunction(SpecialFunction):
-    """Special function for the drives.
+    """Special function that shows the drives.
 
-    Positions are in machine coordinates from home, with X as a radius.
+    Positions are distances from home in machine coordinates, with X as a radius.
     """
 
     name = "DRIVE STATUS"
@@ -324,7 +324,7 @@ class DriveStatusFunction(SpecialFunction):
 
 
 def _find_fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
-    """Return the number of the alarm of an axis or the spindle.
+    """Return the number of an alarm that applies to an axis or the spindle.
 
     An alarm that names no axis applies to all axes.
     """

@@ -30,7 +30,7 @@ EVENT_KINDS = tuple(MACHINE_SIGNALS)
 class EventSounds:
     """Player of sounds for new events.
 
-    ``volume_percent`` is 0 by default. The kinds in ``muted_kinds`` are muted.
+    ``volume_percent`` is 0 by default. ``muted_kinds`` are the kinds of event without a sound.
     """
 
     desk: Desk
@@ -64,7 +64,7 @@ class EventSounds:
         return kind not in self.muted_kinds and bool(MACHINE_SIGNALS[kind].tones_hz)
 
     def _report(self) -> None:
-        """Report each sound error once."""
+        """Report each error of sound output once."""
         why = self.sound_player.error_text
         if why and why != self._told:
             self.desk.say(tr(Message("NO SOUND: {why}", why=why)))

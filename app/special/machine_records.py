@@ -1,4 +1,4 @@
-"""Event log, newest first, and changes of the machine file since it was last accepted."""
+"""Event log (newest first), and the changes to the machine file since it was last accepted."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class EventLogFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of events that were found."""
+        """Return the number of events that match the search."""
         return len(self.found_events)
 
     def on_open(self) -> None:
@@ -187,7 +187,7 @@ class MachineFileFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of changed keys of the file."""
+        """Return the number of keys in the machine file that have changed."""
         return len(self.changes.changes)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:

@@ -284,7 +284,7 @@ class SpindleLimitFunction(NumericFunction):
         return {"F4": FunctionKey("NO LIMIT", self.confirm_remove_limit)}
 
     def confirm_remove_limit(self) -> None:
-        """Remove the limit after the operator confirms, because there may be a workpiece in the chuck."""
+        """Remove the limit after the operator confirms."""
         if not self.desk.read_snapshot().spindle_limit_rpm:
             self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
         elif not self.desk.is_refused(ProtectedChange.SPINDLE_LIMIT):

@@ -99,7 +99,7 @@ _MM_PER_INCH = 25.4
 class SetupTool:
     """Tool of the setup sheet.
 
-    ``is_assumed`` means that the shape is incomplete. ``tool_offset`` is None if the tool was not measured.
+    ``is_assumed`` means that the shape is incomplete. ``tool_offset`` is None if the tool is not measured.
     """
 
     tool_number: int
@@ -177,7 +177,7 @@ class SetupSheet:
 
     @property
     def clamping_texts(self) -> tuple[tuple[str, str], ...]:
-        """Return stick-out and clamping as pairs of name and text.
+        """Return stick-out and clamping as pairs of a name and a text.
 
         On a mill, return the preset instead.
         """
@@ -227,7 +227,7 @@ class SetupSheet:
     def format_offset(self, tool: SetupTool) -> str:
         """Return the offset of a tool as text.
 
-        The text contains X as a radius and Z, or length and radius on a mill.
+        The text contains Z, and X as a radius. On a mill, it contains length and radius.
         """
         if tool.tool_offset is None:
             return tr("NOT SET")

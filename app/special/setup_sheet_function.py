@@ -36,7 +36,7 @@ _COLUMN_SHARES = (0.15, 0.63, 0.22)
 class SetupSheetFunction(SpecialFunction):
     """Special function for the setup sheet and its notes.
 
-    F6 lists the locations for saving.
+    F6 lists the folders in which the sheet can be saved.
     """
 
     name = "SETUP SHEET"
@@ -102,11 +102,11 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of rows that can be selected."""
+        """Return the number of rows that the operator can select."""
         return len(self.save_locations) if self.save_locations else len(list(self._rows()))
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the sheet, or of the locations for saving."""
+        """Return the table of the setup sheet, or of the save locations if these are listed."""
         self._make_if_changed()
         if self.save_locations:
             return self._sheet_of_places()
@@ -308,7 +308,7 @@ class SetupSheetFunction(SpecialFunction):
         self._notes_of, self._paper = ("", []), None
 
     def _make_if_changed(self) -> None:
-        """Prepare the sheet if the job has changed."""
+        """Prepare the setup sheet again if the job has changed."""
         loaded = self.desk.program_loader.loaded_program
         job, picture = loaded.job, loaded.picture
         if job is None or picture is None or job is self._asked:
@@ -328,7 +328,7 @@ class SetupSheetFunction(SpecialFunction):
     # --- saving --------------------------------------------------------------------------------------
 
     def reload_save_locations(self) -> None:
-        """List the locations for saving.
+        """List the folders in which the sheet can be saved.
 
         The result is shown in a later frame.
         """
@@ -392,7 +392,7 @@ def _describe_change(before: Sequence[str], now: Sequence[str]) -> str:
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick]) -> tuple[BackupLocation, ...]:
-    """Return the media and the control's folder."""
+    """Return the removable media and the control's folder, in which the sheet can be saved."""
     return (
         *(BackupLocation(stick.label, stick.path) for stick in media),
         BackupLocation(tr("THIS CONTROL"), folder),

@@ -1,4 +1,4 @@
-"""Slow work of the setup sheet, which is the proof, the rows, the page and the files.
+"""Slow work of the setup sheet: the proof, the rows, the page and the files.
 
 This module is imported only when it is needed.
 """
@@ -43,7 +43,7 @@ def make_sheet_html(
 ) -> str:
     """Return the body of the HTML page.
 
-    ``fact_rows`` are the first rows. ``remarks`` are the remarks about tools, by tool number.
+    ``fact_rows`` are the rows at the top. ``remarks`` contains the remarks about tools, by tool number.
     """
     rows = [
         *fact_rows,

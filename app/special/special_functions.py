@@ -1,4 +1,4 @@
-"""Special functions of F10, with their interface to the page, their list, and the function that is open."""
+"""Special functions of F10: their interface to the page, their list, and the open function."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from core.message import Message
 class SpecialFunction(ABC):
     """Special function of F10.
 
-    No method waits. ``desk.say`` reports rejected actions.
+    No method blocks. Rejected actions are reported with ``desk.say``.
     """
 
     name: ClassVar[str]
@@ -77,7 +77,7 @@ class SpecialFunction(ABC):
         """Cancel entries and questions when the function closes."""
 
     def process_wire_input(self, *, is_displayed: bool) -> None:
-        """Process input that arrives over a wire.
+        """Process data from a connected device, such as a gauge.
 
         This is called once a frame. ``is_displayed`` is set while the function is displayed.
         """
@@ -102,7 +102,7 @@ class SpecialFunction(ABC):
         return 0
 
     def move_selection(self, key: str) -> bool:
-        """Move the selection if the key is a selection key, and return whether it is."""
+        """Move the selection if the key is a selection key. Return False for any other key."""
         if key not in ROW_STEPS or not self.row_count:
             return False
         self.desk.clear_prompt_line()
@@ -113,7 +113,7 @@ class SpecialFunction(ABC):
 class PageFunction(SpecialFunction):
     """Special function with a separate page.
 
-    It shows a few facts. Enter or a touch opens the page.
+    Its table shows a few facts. Enter or a touch opens the page.
     """
 
     key_hint: ClassVar[str]  # description of other keys that open the page
@@ -132,7 +132,7 @@ class PageFunction(SpecialFunction):
 class NumericFunction(SpecialFunction):
     """Special function with a numeric entry that accepts arithmetic.
 
-    Enter passes the text to ``take``.
+    Enter passes the text to ``accept_entry``.
     """
 
     def __init__(self, desk: Desk) -> None:
@@ -186,7 +186,7 @@ class NumericFunction(SpecialFunction):
 class SpecialFunctionList:
     """List of special functions.
 
-    ``at`` is the index of the displayed function, which receives the keys while ``inside`` is set.
+    ``at`` is the index of the displayed function. It receives the keys while ``inside`` is set.
     """
 
     functions: Sequence[SpecialFunction]
@@ -235,7 +235,7 @@ class SpecialFunctionList:
     def _add_digit(self, digit: str) -> None:
         """Select the function with the typed number.
 
-        A digit that does not fit starts a new number.
+        If no function has the number with the added digit, the digit starts a new number.
         """
         numbers = range(1, len(self.functions) + 1)
         typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")

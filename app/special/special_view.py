@@ -99,9 +99,9 @@ class SpecialPage(ListPage):
         self._page_instead()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key as in every list.
+        """Handle a key like other list pages.
 
-        A function with a separate page opens its page.
+        If the selected function has a separate page, Enter opens this page.
         """
         taken = super().handle_key(key)
         if taken:

@@ -21,8 +21,8 @@ T_co = TypeVar("T_co", covariant=True)
 class TransferProgress(Protocol):
     """Progress of a transfer.
 
-    ``total_byte_count`` is 0 while the size is unknown. ``wait_reason`` names the reason for waiting: held,
-    dc1, sender, frame, noise or empty. ``received_text`` is the data received before the first % of a
+    ``total_byte_count`` is 0 while the size is unknown. ``wait_reason`` is ``held``, ``dc1``, ``sender``,
+    ``frame``, ``noise`` or an empty string. ``received_text`` is the data received before the first % of a
     program.
     """
 
@@ -43,7 +43,7 @@ class TransferProgress(Protocol):
 
     @property
     def wait_reason(self) -> str:
-        """Return the reason for waiting, or an empty text if the transfer is not waiting.
+        """Return the reason for waiting, or an empty string if the transfer is not waiting.
 
         The reason is ``held``, ``dc1``, ``sender``, ``frame`` or ``noise``.
         """
@@ -60,7 +60,7 @@ class ReceivedProgram:
     """Complete received program that has been proved but not yet stored.
 
     ``name`` is the file name from the program, with an extension. ``sha256`` is the SHA-256 hash of
-    ``program_bytes``. ``is_seven_bit`` means that the program arrived with 7 data bits although 8 are set.
+    ``program_bytes``. ``is_seven_bit`` means that the data had 7 data bits although the port is set to 8.
     ``finding_texts`` are the errors of the proof.
     """
 

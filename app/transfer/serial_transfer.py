@@ -173,7 +173,7 @@ def make_progress_table(
 
 
 def _describe_wait(what: str) -> str:
-    """Return the text for the reason of a wait."""
+    """Return the display text for the reason why a transfer is waiting."""
     words = {
         "held": tr("STOPPED BY THE OTHER DEVICE (XOFF)"),
         "dc1": tr("WAITING FOR DC1 FROM THE OTHER DEVICE"),
@@ -185,7 +185,7 @@ def _describe_wait(what: str) -> str:
 
 
 def make_received_table(received: ReceivedProgram, name: str) -> TableContent:
-    """Return the table of a received program, with completeness, proof and name."""
+    """Return the table about a received program, with its completeness, proof result and name."""
     code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.is_seven_bit else tr("SAME AS SETTINGS")
     errors = len(received.finding_texts)
     some = tr("1 ERROR") if errors == 1 else tr(Message("{count} ERRORS", count=errors))
@@ -226,7 +226,7 @@ CONFIRM_DISCARD = "PRESS Y TO DISCARD THE RECEIVED PROGRAM, N TO KEEP IT"
 class SerialTransferFunction(SpecialFunction):
     """Special function for transfers over RS-232.
 
-    It has three states, which are settings, transfer, and naming of a received program.
+    It has three states: settings, transfer, and naming of a received program.
     """
 
     name = "RS-232"

@@ -1,6 +1,6 @@
 """Drawing of the mill at one instant, as lines and faces in pixels.
 
-Points in the workpiece system are transformed through the chain of axes at the angles of the instant. The
+Points in the workpiece system are transformed through the chain of axes at the angles of that instant. The
 faces are sorted with the farthest first, so that nearer faces cover them.
 """
 
@@ -66,7 +66,7 @@ class Camera:
         return VIEW_ASPECTS[self.aspect_index % len(VIEW_ASPECTS)]
 
     def with_next_aspect(self) -> Camera:
-        """Return the camera for the next view direction, which shows everything."""
+        """Return a camera with the next view direction, zoomed so that everything is visible."""
         return replace(
             self,
             aspect_index=(self.aspect_index + 1) % len(VIEW_ASPECTS),
@@ -170,7 +170,7 @@ def find_blank_center(scene: MillScene) -> tuple[float, float, float]:
 
 
 def find_blank_diagonal_mm(scene: MillScene) -> float:
-    """Return the diagonal of the blank in mm, which scales all other sizes."""
+    """Return the diagonal of the blank in mm. The sizes of other drawn objects depend on it."""
     low, high = scene.blank_corners
     return max(1.0, math.dist(low, high))
 
@@ -178,8 +178,8 @@ def find_blank_diagonal_mm(scene: MillScene) -> float:
 def make_table_rim(scene: MillScene) -> FloatArray:
     """Return the rim of the table (n, 3) in machine coordinates with all axes at 0.
 
-    The rim is a circle below the blank. It is centered on the axis of the first table, and wide enough for
-    the blank.
+    The rim is a circle below the blank. It is centered on the axis of the first rotary table, and wide
+    enough for the blank.
     """
     place = scene.kinematics.make_transform({}, scene.kinematics.workpiece_rotation)
     corners = transform_points(place, find_blank_corners(scene))
@@ -191,7 +191,7 @@ def make_table_rim(scene: MillScene) -> FloatArray:
 
 
 def _find_table_center(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
-    """Return a point on a table axis parallel to Z, or the center of the blank if there is no such axis."""
+    """Return a point on a table axis parallel to Z, or the blank's center if there is no such axis."""
     for axis in kinematics.rotary_axes:
         if axis.is_table and abs(axis.direction[2]) > 0.5:
             return np.array(axis.point_on_axis)
@@ -300,8 +300,8 @@ class _ScenePicture:
     def make_table_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return the table disk.
 
-        The disk is painted first when it is seen from above, and last when it is seen from below. The depth
-        of its center is not sufficient for sorting, because a small blank near the far rim is farther away.
+        The disk is painted first if it is seen from above, and last if it is seen from below. It is not
+        sorted by the depth of its center, because a small blank near the far rim is farther away.
         """
         machine_parallel = self._scene.kinematics.make_transform(self._tables)
         zero = self._scene.kinematics.make_transform({})

@@ -19,7 +19,7 @@ _AXES = ("A", "B", "C")
 
 @dataclass(frozen=True, slots=True)
 class SceneInstant:
-    """Axis positions by name, the displayed plane, and the active block (0 for none)."""
+    """An instant of the 3D view: axis positions by name, plane, and active block (0 for none)."""
 
     axis_positions: Mapping[str, float]
     plane_position: PlanePosition | None

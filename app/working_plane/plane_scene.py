@@ -32,7 +32,7 @@ _EMPTY: BlankCorners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))
 
 
 class MoveStyle(IntEnum):
-    """The drawing styles of the move to a point."""
+    """The drawing styles of a path, each for the move to a point."""
 
     NO_LINE = 0  # not drawn: a new line starts at this point
     RAPID = 1
@@ -72,7 +72,7 @@ class MillScene:
 
 
 class SceneBuilder:
-    """Builder that collects blocks with a position in a working plane."""
+    """Builder that collects the blocks that have a position in a working plane."""
 
     def __init__(self) -> None:
         self._points, self._ink, self._block = array("d"), array("b"), array("q")

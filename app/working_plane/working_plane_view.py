@@ -104,7 +104,7 @@ class WorkingPlaneView(Panel):
         self._look(self._camera.with_next_aspect() if self._camera else None)
 
     def fit_all_panes(self) -> None:
-        """Show the whole table."""
+        """Zoom and pan so that the whole table is visible."""
         self._look(self._camera.with_full_view() if self._camera else None)
 
     def zoom_view(self, step_count: int) -> None:

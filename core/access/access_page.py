@@ -32,7 +32,7 @@ This page is generated from `core/access/access_table.py` by
 
 
 def make_page() -> str:
-    """Return the text of the access-level page."""
+    """Return the access-level page as text."""
     return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER_PERMITTED)) + "".join(_lines())
 
 

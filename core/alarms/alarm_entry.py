@@ -78,10 +78,10 @@ class Reaction(Enum):
 
 
 class AlarmEntry(NamedTuple):
-    """An entry of the alarm catalog: ``text``, ``causes`` with the most likely cause first, and ``remedy``.
+    """An entry of the alarm catalog: ``text``, ``causes`` from most to least likely, and ``remedy``.
 
-    If ``shows_detail`` is True, the details of the alarm (an axis, a line, the text of a drive) are shown
-    to the operator before the causes. Otherwise they are only logged.
+    If ``shows_detail`` is True, the operator sees the details of the alarm (an axis, a line, the text of a
+    drive) before the causes. Otherwise the details are only logged.
     """
 
     number: int

@@ -41,7 +41,7 @@ def get_alarm_kind(reaction: Reaction) -> str:
 
 
 def render_page() -> str:
-    """Return the text of the alarm catalog page."""
+    """Return the alarm catalog page as text."""
     head = _HEAD.format(contents=make_contents(title for title, _ in ALARM_SUBJECTS))
     return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 

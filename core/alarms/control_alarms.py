@@ -1,4 +1,4 @@
-"""Alarms of the control and of programs, and requested stops and holds."""
+"""Alarms of the control and of programs, and stops and holds that were requested."""
 
 from __future__ import annotations
 

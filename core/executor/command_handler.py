@@ -152,9 +152,9 @@ class CommandHandler:
     # --- selection of the next start ----------------------------------------------------------------------
 
     def _load_job(self, command: commands.LoadJob) -> None:
-        """Load a job.
+        """Load a job and discard a prepared restart.
 
-        A prepared restart is discarded, but the start mode (restart or MDI) remains.
+        The selected start mode (restart or MDI) remains.
         """
         if self._control.state in CYCLE_STATES:
             self._refuse(_PROGRAM_RUNNING_REASON)
@@ -182,7 +182,7 @@ class CommandHandler:
         status.clearances = command.clearances
 
     def _change_offsets(self, command: commands.ChangeOffsets) -> None:
-        """Accept changed offsets, at once between programs, otherwise at the end of the part in progress."""
+        """Accept changed offsets immediately between programs, otherwise at the end of the current part."""
         changed_offsets, status = self._control.program_run.changed_offsets, self._control.status
         why = changed_offsets.store_request(command, status.job)
         if why:

@@ -1,8 +1,8 @@
-"""Commands that other threads post to the executor's queue, and the clearance that a start requires.
+"""Commands that other threads post to the executor's queue, and the clearance for a start.
 
-The executor does not compute geometry. A worker of the screen checks one job at one position of the axes and
-posts the resulting clearance. The executor only compares positions. A clearance for another position is not
-used.
+The executor does not compute geometry. A worker thread of the screen checks one job at one position of the
+axes and posts the resulting clearance. The executor only compares positions, and ignores a clearance for
+another position.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Clearance:
     ``job`` is the digest of the job, and ``at`` is the position in machine coordinates in mm. ``begun`` is
     the number of runs that had started when the check was made, because a run may change the part. If the
     start is refused, ``code`` is ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES``, and ``why`` is the sentence
-    for the operator. Both are empty if the first move is clear. ``warned`` is a warning to show before the
-    start because the part is unknown or assumed. ``is_for_repeat`` marks a check from the end position of
-    the program, from which Cycle Repeat starts.
+    for the operator. Both are empty if the first move is clear. ``warned`` is the warning to show before
+    the start if the part's shape is unknown or assumed. ``is_for_repeat`` marks a check from the end
+    position of the program, from which Cycle Repeat starts.
     """
 
     job: str
@@ -48,9 +48,9 @@ class Clearance:
     is_for_repeat: bool = False
 
     def applies_to(self, job_digest: str, position: Sequence[float], run_count: int) -> bool:
-        """Return whether this clearance is valid for a start of this job.
+        """Return whether this clearance is valid for starting this job from ``position``.
 
-        The start is from ``position`` after ``run_count`` runs.
+        ``run_count`` is the number of runs that have started.
         """
         if self.job != job_digest or (self.begun != run_count and not self.is_for_repeat):
             return False
@@ -65,7 +65,7 @@ def find_clearance(
     *,
     for_repeat: bool = False,
 ) -> Clearance | None:
-    """Return the clearance for a start of this job from ``position``, or None if it is not computed yet.
+    """Return the clearance for starting this job from ``position``, or None if not yet computed.
 
     If ``for_repeat`` is True, only clearances for Cycle Repeat are searched.
     """
@@ -98,7 +98,7 @@ class LoadJob(Command):
 
 
 class SupplyProof(Command):
-    """A command that supplies the proof of the loaded job if proving took longer than loading."""
+    """A command that supplies the proof of the loaded job if proving finished only after loading."""
 
     __slots__ = __match_args__ = ("proof",)
 
@@ -110,7 +110,7 @@ class SupplyProof(Command):
 class ChangeOffsets(Command):
     """A command to use changed offsets for the loaded program, starting with the next part.
 
-    The command may arrive while the program runs. The part in progress then uses its present offsets to the
+    The command may arrive while the program runs. The part in progress then uses its current offsets to the
     end. A command without a proof only announces the change. No part starts until a second command supplies
     either the job with its proof, or ``failure_reason``, the reason why the job cannot be proved.
     """
@@ -146,7 +146,7 @@ class FeedHold(Command):
     """A command that stops the axes on the path within the commit time plus the braking time v/a.
 
     ``by`` is the source of the request, for the log. ``press`` is the number of the key press, or 0 if
-    unknown. A press that arrives twice causes only one hold.
+    unknown. If the same press arrives twice, it causes only one hold.
     """
 
     __slots__ = __match_args__ = ("by", "press")
@@ -193,7 +193,7 @@ class SetSwitch(Command):
 
 
 class SetFeedOverride(Command):
-    """A command that sets the feed override to ``fraction`` of the programmed feed, from 0 to 1.5."""
+    """A command that sets the feed override as a fraction of the programmed feed, from 0 to 1.5."""
 
     __slots__ = __match_args__ = ("fraction",)
 
@@ -205,7 +205,7 @@ class Jog(Command):
     """A command that moves one axis while the lease lasts, at a signed velocity in mm/s or degrees/s.
 
     The sender must renew the lease (in seconds) before it expires, or the axis stops. ``along`` is the
-    direction of the axis of this name in a tilted plane (3D-ROT), in the machine's X, Y and Z.
+    direction vector of this axis in a tilted plane (3D-ROT), in the machine's X, Y and Z.
     """
 
     __slots__ = __match_args__ = ("axis", "velocity", "lease", "while_on", "along")
@@ -242,7 +242,7 @@ class JogByStep(Command):
     """A command that moves one axis by exactly ``distance`` at ``speed``.
 
     The units are mm and mm/s, or degrees and degrees/s. The step is refused while an axis moves, or if the
-    full step would leave the travel. ``along`` is described in ``Jog``.
+    full step would exceed the travel limits. ``along`` is described in ``Jog``.
     """
 
     __slots__ = __match_args__ = ("axis", "distance", "speed", "along")
@@ -264,7 +264,7 @@ class RunDriveTest(Command):
     """A command that runs a drive test from rest while the lease (in seconds) lasts.
 
     ``StopJog`` ends the test. The test is refused while an axis moves or the spindle turns, or if the full
-    path would leave the travel.
+    excursion would exceed the travel limits.
     """
 
     __slots__ = __match_args__ = ("path", "lease")
@@ -287,7 +287,7 @@ class SelectHandwheel(Command):
     """A command that lets the handwheel move ``axis`` by ``step`` (mm or degrees) per click.
 
     The handwheel is active only while the lease lasts, which is in seconds and must be renewed by the
-    sender. Counts before the command, and counts faster than the axis can follow, cause no motion. If the
+    sender. Counts before the command cause no motion, nor do counts faster than the axis can follow. If the
     control ends the handwheel motion, the handwheel stays disabled until ``DeselectHandwheel``.
     """
 
@@ -318,7 +318,7 @@ class SetSpindleLimit(Command):
 
 
 class HomeAxes(Command):
-    """A command that homes ``axis`` or, if ``axis`` is empty, all axes that are not homed."""
+    """A command that homes ``axis``, or all unhomed axes if ``axis`` is empty."""
 
     __slots__ = __match_args__ = ("axis",)
 
@@ -341,7 +341,7 @@ class UseOffsets(Command):
 
 
 class StopSpindle(Command):
-    """A command that stops a spindle that MDI or M02 left running. It is refused while a program runs."""
+    """A command that stops a spindle left running by MDI or M02. It is refused while a program runs."""
 
     __slots__ = ()
 
@@ -360,11 +360,11 @@ class ForceOutput(Command):
 
 
 class ConfirmStart(Command):
-    """A command that confirms a start of the program at its first line although a job was interrupted.
+    """A command that confirms starting the program at its first line although a job was interrupted.
 
-    ``at`` is the time of the interrupted job that the operator confirmed. The confirmation is valid only
-    for the next start, for 60 s, and until the machine leaves the idle state. An empty ``at`` withdraws the
-    confirmation.
+    ``at`` is the time of the interrupted job for which the operator confirmed the start. The confirmation
+    is valid only for the next start, for 60 s, and until the machine leaves the idle state. An empty ``at``
+    withdraws the confirmation.
     """
 
     __slots__ = __match_args__ = ("at",)
@@ -392,7 +392,7 @@ class ReplaceClearances(Command):
 
 
 class BlockNextPart(Command):
-    """A command that prevents the start of another part after the present part, for the reason ``why``.
+    """A command that prevents the start of the next part, for the reason ``why``.
 
     An empty ``why`` permits the start again. Restarts and MDI remain possible.
     """

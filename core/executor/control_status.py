@@ -21,7 +21,7 @@ from core.message import Message
 class Counters:
     """Counts and times since the start of the executor. Times are in seconds and exclude stops.
 
-    ``load_sum`` contains the integral of the spindle load in percent over cutting time, and this time in
+    ``load_sum`` is a pair: the integral of the spindle load (percent) over cutting time, and this time in
     seconds.
     """
 
@@ -43,14 +43,14 @@ class Counters:
     def add_cutting_time(self, tool: int, seconds: float, load_percent: float | None = None) -> None:
         """Add cutting time at feed for a tool, and the spindle load in percent if it is known.
 
-        The mapping of cutting times is replaced, so that earlier copies do not change.
+        The mapping of cutting times is replaced, so that a mapping that was read earlier does not change.
         """
         self.cutting_times_s = {**self.cutting_times_s, tool: self.cutting_times_s.get(tool, 0.0) + seconds}
         if load_percent is not None:
             self.load_sum = self.load_sum[0] + load_percent * seconds, self.load_sum[1] + seconds
 
     def pop_mean_load(self) -> float | None:
-        """Return the mean spindle load at feed during the ending part, in percent, or None if unknown.
+        """Return the mean spindle load at feed in the part that ends now, in percent, or None if unknown.
 
         The call resets the sum for the next part.
         """
@@ -100,10 +100,10 @@ def make_power_up_modal_state(context: MachineContext) -> ModalState:
 
 
 def make_modal_state_after_cancel(modal: ModalState, language: str = "omniturn") -> ModalState:
-    """Return the modal state after a program was canceled by Reset, an alarm or an E-stop.
+    """Return the modal state after a program is canceled by Reset, an alarm or an E-stop.
 
-    The result is the same as after M30. On a SINUMERIK control, the power-up mode of diameter words applies
-    again.
+    The result is the same as after M30. On a SINUMERIK control, the diameter programming mode returns to
+    its power-up setting.
     """
     return compute_modal_after_end(modal, modal.rpm, resets_m_functions=True)._replace(
         diameter=language == "sinumerik"
@@ -119,7 +119,7 @@ def make_modal_state_after_mdi_cancel(modal: ModalState) -> ModalState:
 
 
 def sync_modal_state_with_machine(modal: ModalState, context: MachineContext) -> ModalState:
-    """Return the modal state with the M functions updated to their present state at the machine.
+    """Return the modal state with the M functions updated to their current state at the machine.
 
     An alarm, a reset or a manual action may have switched them. A stopped spindle releases C. Nose
     compensation and plane switching end with the program that used them.
@@ -151,7 +151,7 @@ def apply_offsets_to_modal_state(
 class Workpiece:
     """The workpiece in progress.
 
-    A program that starts at its first line starts a new workpiece; a restart continues the present one.
+    A program that starts at its first line starts a new workpiece; a restart continues the current one.
     Elementary blocks have the same numbers in a run and in its restart, so the numbers show whether a
     restart skipped blocks. A workpiece is not counted as a part if blocks were skipped, or if the spindle
     or an output was off although the program had turned it on. The operator can add a good part to the
@@ -176,7 +176,7 @@ class Workpiece:
         self._whole = begin is None or (not begin.skips_cuts and begin.checkpoint.blocks <= self._begun)
 
     def count_started_blocks(self, block: int) -> int:
-        """Return the number of blocks that have started without a gap when the run has reached ``block``."""
+        """Return how many blocks have started without a gap if the run has reached ``block``."""
         return max(self._begun, block) if self._whole else self._begun
 
     def finish_program(self) -> None:
@@ -185,7 +185,7 @@ class Workpiece:
 
     @property
     def uncounted_reason(self) -> str:
-        """Return why the end of the program does not count as a part, or an empty text if it counts."""
+        """Return why the end of the program does not count as a part, or an empty string if it counts."""
         if self.disturbance:
             return Message(
                 "the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it "
@@ -205,7 +205,7 @@ class PartCounter:
 
     @property
     def uncounted_reason(self) -> str:
-        """Return the reason why the running program will not count as a part, or an empty text if it will."""
+        """Return why the running program will not count as a part, or an empty string if it will."""
         return "NO COUNT is on" if self._context.switches.no_count else self.workpiece.uncounted_reason
 
     def record_program_end(self) -> None:

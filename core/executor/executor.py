@@ -85,7 +85,7 @@ class RestDetector:
     def detect_change(self) -> bool:
         """Compare the machine with the last tick; return whether a new snapshot is needed.
 
-        Most of the time of a tick is needed to make the snapshot.
+        The comparison saves time, because making a snapshot takes most of the time of a tick.
         """
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
@@ -118,7 +118,7 @@ class RestDetector:
     def wait_for_wakeup(self) -> bool:
         """Wait until a driver wakes the executor, for at most 0.095 s; return whether it waited.
 
-        Returns False at once if the machine is not at rest or its drivers cannot wake the executor.
+        If the machine is not at rest or its drivers cannot wake the executor, return False at once.
         """
         wakeup = self._wakeup
         if wakeup is None or not self._is_safe_at_rest() or not wakeup.is_settled():
@@ -146,11 +146,11 @@ class RestDetector:
 
 
 def _ignore_interruption(_what: InterruptedJob | None) -> None:
-    """Ignore the interrupted job, for an executor that stores no data beyond its end."""
+    """Ignore the interrupted job; used by an executor that does not store it beyond its own end."""
 
 
 def _css_function(ports: MachinePorts) -> Callable[[float], None]:
-    """Return the function that receives the highest spindle speed before each speed command."""
+    """Return the function to call with the highest spindle speed before each speed command."""
     return ports.blocks.prepare_css if ports.blocks is not None else lambda _: None
 
 
@@ -222,7 +222,7 @@ class Executor:
 
     @property
     def halt_function(self) -> Callable[[], None] | None:
-        """Return the drivers' function that stops the machine from any thread, or None."""
+        """Return the drivers' function that stops the machine from any thread, or None if there is none."""
         return self._ports.halt_machine
 
     def post(self, command: Command, posted_at: float | None = None) -> None:
@@ -284,8 +284,8 @@ class Executor:
     def _record_delay(self, delay_s: float) -> None:
         """Record the delay of a tick in seconds.
 
-        If the computer is busy, the setpoint queue becomes longer. The longer delay of a feed hold is
-        logged once.
+        If the computer is busy, the setpoint queue is lengthened. This delays feed holds, which is logged
+        once.
         """
         self._late = max(self._late, delay_s)
         lateness = self._context.tick_lateness
@@ -396,7 +396,7 @@ class Executor:
                     self._control.cycle.update_current_block()
 
     def _log_lost(self) -> None:
-        """Log when the pendant is disconnected and when it is connected again."""
+        """Log when the connection to the pendant is lost and when it is restored."""
         lost = (
             self._context.station_signals.connection_lost_reason
             or self._context.station_signals.handwheel_fault
@@ -490,7 +490,7 @@ class Executor:
                 self._raise_alarm(AlarmError(error.code, str(error)))
 
     def _raise_alarm(self, error: AlarmError) -> None:
-        """Raise an alarm, unless the E-stop has caused the loss of power; in that case handle the E-stop."""
+        """Raise an alarm, or handle the E-stop if the E-stop has caused the loss of power."""
         if error.code in _ESTOP_ALARM_CODES and self._ports.station.read_state().estop:
             self._control.handle_estop(True)
         else:

@@ -79,13 +79,13 @@ class InterruptionWatch:
 
     @property
     def started_block_count(self) -> int:
-        """Return the number of elementary blocks of the present workpiece that have started."""
+        """Return the number of elementary blocks of the current workpiece that have started."""
         status = self._status
         job, before = status.job, status.interrupted_job
         return before.begun if job is not None and before is not None and _belongs_to(before, job) else 0
 
     def record_start(self, begin: PassStart | None) -> None:
-        """Record the start of a program or a restart, which a power loss would now interrupt."""
+        """Record the start of a program or a restart, because a power loss would now interrupt it."""
         status, before = self._status, self._status.interrupted_job
         assert status.job is not None
         self._begun = True
@@ -183,7 +183,7 @@ class InterruptionWatch:
         return ""
 
     def withdraw_confirmation(self) -> None:
-        """Withdraw the confirmation because the next start has a different action."""
+        """Withdraw the confirmation because Cycle Start now has a different action."""
         self._answered = None
 
     @property
@@ -193,7 +193,7 @@ class InterruptionWatch:
 
     @property
     def start_refusal(self) -> str:
-        """Return why a start at the first line needs a confirmation, or an empty text if it does not."""
+        """Return why a start at the first line needs a confirmation, or an empty string if it does not."""
         found = self._status.interrupted_job
         if found is None or self._status.start_action is not StartAction.PROGRAM or self.is_confirmed:
             return ""

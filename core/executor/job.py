@@ -1,6 +1,6 @@
 """Jobs, their proofs, and a reader that reads blocks ahead of the motion.
 
-A proof is valid for exactly one job.
+A proof is valid only for the job with its digest.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class BlockReadAhead:
     """Reader that reads the blocks of a pass ahead of the motion.
 
     ``pending_blocks`` contains the blocks of one path section. ``stop`` is the next block that needs a
-    standstill (``SectionEndDetector``). No block after ``stop`` is read until that block has been executed,
-    so that the program reads inputs at the correct time. Each block is checked again against the machine as
-    it is read.
+    standstill (``SectionEndDetector``). No block after ``stop`` is read until ``stop`` has been executed,
+    so that the program reads inputs at the correct time. Each block is checked against the machine again
+    when it is read.
     """
 
     def __init__(self, source: ProgramPass, machine: Machine) -> None:
@@ -156,8 +156,8 @@ def compute_nominal_duration_s(block: Block) -> float:
 def check_block(block: Block, machine: Machine) -> None:
     """Check a block again before it moves an axis.
 
-    Raises AlarmError if the block leaves the travel, if it uses feed per revolution with a stopped spindle,
-    or if it moves C while the spindle turns and the spindle is the C axis.
+    Raises AlarmError if the block exceeds the travel limits, if it uses feed per revolution with a stopped
+    spindle, or if it moves C while the spindle turns and the spindle is the C axis.
     """
     if not block.moves:
         return
@@ -229,7 +229,7 @@ class Proof:
     warnings: tuple[str, ...] = ()
 
     def unset(self, job: Job) -> list[int]:
-        """Return the tools of the program that are neither set nor measured by the program itself."""
+        """Return the program's tools that are not set and that the program does not measure itself."""
         return sorted(set(self.tool_numbers) - job.set_tool_numbers - set(self.measured_tools))
 
 
@@ -237,8 +237,7 @@ def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) 
     """Return the job of a program with its setup.
 
     If this job starts in the middle of a program, ``whole_job`` is the job of the whole program. The digest
-    covers everything on which the elementary blocks depend, except live inputs and the position of the
-    axes.
+    covers everything that affects the elementary blocks, except live inputs and the position of the axes.
     """
     part_of = whole_job.digest if whole_job is not None else ""
     circumstances = (
@@ -279,9 +278,9 @@ def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) 
 
 
 def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
-    """Return how the present units or rapid rate differ from those of the proof, or an empty text.
+    """Return how the current units or rapid rate differ from those of the proof, or an empty string.
 
-    The previous job may have changed them.
+    The previous job may have changed the units or the rapid rate.
     """
     if job.setup.begin is not None:
         return ""
@@ -298,7 +297,7 @@ def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
 def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
     """Start one pass through a job.
 
-    Its blocks end at the first error, which ``get_diagnostics`` then returns.
+    The blocks end at the first error; ``get_diagnostics`` then returns this error.
     """
     if setup.begin is not None and setup.begin.is_mdi_line:
         line = interpret_mdi_line(job.source, setup)

@@ -68,7 +68,7 @@ class MachineContext:
 
     @property
     def spindle_load(self) -> float | None:
-        """Return the spindle load in percent from the machine's input, otherwise from the driver, or None."""
+        """Return the spindle load in percent from the machine's input or the driver, or None if unknown."""
         return self._borne if self.station_signals.spindle_load is None else self.station_signals.spindle_load
 
     def record_load(self, samples: FloatArray | None) -> None:
@@ -105,7 +105,7 @@ class MachineContext:
             self.stop = self.log_stop(code, detail)
 
     def log_stop(self, code: AlarmCode, detail: str = "") -> Alarm:
-        """Log a stop that is not displayed, and return it as an alarm entry."""
+        """Log a stop without displaying it, and return it as an alarm entry."""
         stop = make_alarm(code, detail, self.line_number, self.now)
         self._noted = code
         kind = "estop" if code == "estop" else "stop"
@@ -134,7 +134,7 @@ class MachineContext:
     def is_button_pressed(self, name: str) -> bool:
         """Return whether a jog button is pressed.
 
-        If there is an enabling switch, it must be pressed too.
+        On a machine with an enabling switch, this switch must be pressed too.
         """
         return self.inputs.get(name, False) and self.inputs.get(HANDWHEEL_ENABLE_INPUT, True)
 

@@ -62,7 +62,7 @@ _STOP_STATES = frozenset({MachineState.ESTOP, MachineState.FAULT, MachineState.D
 
 
 class MachineControl:
-    """Complete control of one machine, used only by the executor's thread."""
+    """Complete control of one machine. Only the executor's thread uses it."""
 
     def __init__(
         self,
@@ -102,7 +102,7 @@ class MachineControl:
 
     @property
     def state(self) -> MachineState:
-        """Return the present state of the machine."""
+        """Return the current state of the machine."""
         return self.status.state
 
     @property
@@ -112,7 +112,7 @@ class MachineControl:
 
     @property
     def modal_state(self) -> ModalState:
-        """Return the modal state of the block being executed, or the modal state between two programs."""
+        """Return the modal state of the block being executed, or between two programs the stored state."""
         return self.program_run.modal_state
 
     def change_state(self, state: MachineState) -> None:
@@ -155,7 +155,7 @@ class MachineControl:
             self.program_run.start_run()
 
     def refuse_start(self, reason: str) -> bool:
-        """Store and log a start refusal; return whether ``reason`` contains a reason."""
+        """Store and log a start refusal; return True if ``reason`` is not empty."""
         self.status.start_refusal = reason
         if reason:
             self._context.log_text("refused", reason)
@@ -172,7 +172,7 @@ class MachineControl:
     def handle_spindle_switch(self) -> None:
         """Handle a change of the spindle switch from OFF to AUTO.
 
-        Between programs the switch starts a waiting spindle. In a stopped cycle only Cycle Start starts it.
+        Between programs this starts a spindle that is waiting. In a stopped cycle only Cycle Start does.
         """
         spindle = self._context.spindle
         if self.state not in MANUAL_STATES or not spindle.waiting_reason:
@@ -238,7 +238,7 @@ class MachineControl:
             self._stop_homing()
 
     def stop_jog(self, reason: str) -> None:
-        """Stop manual motion and a touch-off for the given reason. Raises DriverError."""
+        """Stop manual motion and a touch-off for the given reason. Raises DriverError if a driver fails."""
         self.touch_off.cancel_touch_off(reason)
         self.jogger.stop()
 
@@ -253,7 +253,7 @@ class MachineControl:
             self.stop_jog("the key or button was released")
 
     def _end_jog(self, reason: str) -> None:
-        """End manual motion and refuse further renewals until the key is released."""
+        """End manual motion, and refuse to renew the jog until the key is released."""
         self.jog_end_reason = (
             "" if self.jogger.is_stepping or self.jogger.target_position is not None else reason
         )
@@ -304,7 +304,7 @@ class MachineControl:
     # --- actions in every tick ----------------------------------------------------------------------------
 
     def advance_one_tick(self) -> None:
-        """Advance the active function by one tick. Raises AlarmError, MotionError or DriverError."""
+        """Advance the active function; raises AlarmError, MotionError or DriverError if it fails."""
         self._finish_stopping()
         self._clear_start_refusal()
         self.program_run.update_between_cycles()

@@ -36,7 +36,7 @@ from core.tool_edges import get_tool_number
 class ChangedOffsets:
     """A request to continue the running program with changed offsets.
 
-    The part in progress uses its present offsets. The changed job must be proved before its first move.
+    The part in progress uses its current offsets. The changed job must be proved before its first move.
     With Cycle Repeat, the next part waits for the proof. If the program fails the proof with the new
     offsets, it is not repeated.
     """
@@ -177,7 +177,7 @@ class ProgramRun:
         )
 
     def mark_part_disturbed(self, reason: str) -> None:
-        """Mark the part in progress as disturbed, so that it is not counted."""
+        """Mark the part in progress as disturbed for the given reason, so that it is not counted."""
         if not (self._line or self._between):
             self.part_count.workpiece.disturbance = self.part_count.workpiece.disturbance or reason
 
@@ -206,7 +206,7 @@ class ProgramRun:
     def cancel_run(self, reason: str) -> None:
         """Cancel the run for the given reason.
 
-        After a program, the modal state is the same as after M30. The modes of an MDI line remain.
+        After a program, the modal state is the same as after M30. Modes set by an MDI line remain.
         """
         cycle = self.cycle
         if cycle is None:
@@ -236,9 +236,9 @@ class ProgramRun:
         self.changed_offsets.apply_changes(self.status)
 
     def _store_modal(self, modal: ModalState, *, tool_open: bool = False) -> None:
-        """Store the modal state.
+        """Store the modal state for the next run.
 
-        The units and the rapid rate are adopted only from OmniTurn programs.
+        Only OmniTurn programs change the stored units and rapid rate.
         """
         before = self.status.modal_state
         if self._dialect is not Dialect.OMNITURN:
@@ -248,7 +248,7 @@ class ProgramRun:
     def update_between_cycles(self) -> None:
         """Update the state between two cycles.
 
-        The next part of Cycle Repeat is started if this is permitted.
+        With Cycle Repeat, the next part is started if this is permitted.
         """
         self.interruption_watch.record_progress(None if self._line or self._between else self.cycle)
         if self.cycle is None:
@@ -257,7 +257,7 @@ class ProgramRun:
             self._repeat_program(self.cycle)
 
     def _open_pass(self, job: Job) -> None:
-        """Start a pass through ``job`` from the present position of the axes."""
+        """Start a pass through ``job`` from the current position of the axes."""
         at, _ = self._context.ports.axes.demand_at(self._context.now)
         setup = make_start_setup(job.setup, at, self._context.is_input_on)
         self.motion.clear_section()
@@ -328,7 +328,7 @@ class ProgramRun:
     def _end_mdi_line(self, end: ProgramEnd | None) -> None:
         """Store the state that an MDI line passes to the next line.
 
-        After M30 this is the state after a program.
+        After M30 in the line, this is the same state as after a program.
         """
         source = self._source
         left = source.make_checkpoint() if source is not None and source.make_checkpoint is not None else None
@@ -340,11 +340,11 @@ class ProgramRun:
 
     @property
     def modal_state(self) -> ModalState:
-        """Return the modal state of the block being executed, or the modal state between two programs."""
+        """Return the modal state of the block being executed, or between two programs the stored state."""
         return self.cycle.modal if self.cycle is not None else self.status.modal_state
 
     def _end_functions(self) -> None:
-        """Stop the spindle and turn off all outputs except the collet at M30."""
+        """Stop the spindle at M30, and turn off all outputs except the collet."""
         context = self._context
         context.spindle.stop()
         for name, on in context.ports.io.get_outputs().items():

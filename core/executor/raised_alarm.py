@@ -1,4 +1,4 @@
-"""Alarms that are raised, with their catalog entries, and context managers that catch and report failures."""
+"""Alarms with their catalog entries, and context managers that catch and report failures."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def find_hold_code(reason: str, source: str) -> tuple[AlarmCode, str]:
 
 
 def format_log_line(alarm: Alarm) -> str:
-    """Return one line for the event log, starting with the alarm number of the catalog."""
+    """Return one line for the event log that begins with the alarm's catalog number."""
     return Message("{number} {alarm}: {cause}", number=alarm.number, alarm=alarm.text, cause=alarm.cause)
 
 
@@ -84,8 +84,7 @@ def log_alarm(alarm: Alarm) -> None:
 class CaughtAttempt:
     """A context manager that catches an error of its ``with`` block and stores it in ``error``.
 
-    SystemExit is caught too. Only KeyboardInterrupt is raised again, because it is meant for the main
-    thread of the program.
+    SystemExit is caught too. Only KeyboardInterrupt is re-raised, because it is meant for the main thread.
     """
 
     def __init__(self) -> None:
@@ -104,8 +103,8 @@ class CaughtAttempt:
 class ReportedAttempt(CaughtAttempt):
     """A context manager that logs an error of its block and passes it to ``handle_failure``.
 
-    An error in ``handle_failure`` is logged too. If an error repeats in every tick, its first, tenth,
-    hundredth … occurrence is logged, so that it does not hide earlier entries.
+    An error in ``handle_failure`` is logged too. If an error repeats in every tick, only its first, tenth,
+    hundredth … occurrence is logged, so that it does not displace earlier log entries.
     """
 
     _written: ClassVar[Counter[str]] = Counter()

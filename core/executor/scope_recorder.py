@@ -1,8 +1,8 @@
-"""Recorder of the scope, which stores the data of the executor's ticks for the last minutes.
+"""Scope recorder, which stores the data of the executor's ticks for the last few minutes.
 
-The executor only appends to a queue. A separate thread moves the queue into a ring buffer ten times per
-second, or twice per second while the machine is at rest. When an alarm occurs, the thread also saves the
-preceding record to a file.
+The executor only appends to a queue. A separate thread moves the queued data into a ring buffer ten times
+per second, or twice per second while the machine is at rest. When an alarm occurs, the thread also saves
+the data that precedes it to a file.
 """
 
 from __future__ import annotations
@@ -234,7 +234,7 @@ class ScopeRecorder(ScopeRecordings):
         return rows[rows[:, 0] > np.maximum.accumulate(np.concatenate(([last], rows[:-1, 0])))]
 
     def _with_gap(self, rows: FloatArray, ticks: Iterable[TickData]) -> FloatArray:
-        """Insert a row of NaN where axis data is missing, so that no line is drawn across the gap."""
+        """Insert a row of NaN where axis data is missing, so that the plot shows a gap."""
         silent = [tick.snapshot.t for tick in ticks if UnknownPart.AXES in tick.snapshot.unknown]
         begins, self._silent = bool(silent) and not self._silent, bool(silent)
         if not silent:
@@ -313,7 +313,7 @@ class ScopeRecorder(ScopeRecordings):
 
 
 def _values_or_nan(values: list[float], is_known: bool) -> list[float]:
-    """Return the values, or NaN in place of each value if the values are unknown."""
+    """Return ``values``, or NaN for each of them if the values are unknown."""
     return values if is_known else [_NAN] * len(values)
 
 
@@ -350,7 +350,7 @@ def _load(tick: TickData) -> float:
 def _add_spindle_load(rows: FloatArray, tick: TickData) -> FloatArray:
     """Return the samples with the spindle load from the machine's input.
 
-    The load is not added if the driver measures it.
+    The samples are returned unchanged if the driver measures the load itself.
     """
     load = tick.snapshot.spindle_load
     if load is None or not len(rows) or not np.isnan(rows[:, _LOAD]).all():

@@ -1,9 +1,9 @@
-"""Signal tower with red, amber and green lamps and a buzzer, and the machine signals that it shows.
+"""Signal tower with red, amber and green lamps and a buzzer, and the signals that it shows.
 
 Lamps are not outputs of the program. A failed lamp does not hold the cycle, and M30 does not change lamps.
-A lamp that is on does not prevent the slower tick rate of a machine at rest. A drive fault, the E-stop and
-the shutdown switch lamps to their safe state like all other outputs. The control then turns on the lamps
-that it can still switch.
+A machine at rest can use the slower tick rate even if a lamp is on. A drive fault, the E-stop and the
+shutdown switch lamps to their safe state like all other outputs. The control then turns on the lamps that
+it can still switch.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _REFUSAL_TIME_S = 5.0  # s after which a lamp that the driver refused is switche
 class SignalSelector:
     """Selector of the active signals.
 
-    It also stores whether a part is finished and no other part has started.
+    It also stores whether a part is finished and the next one has not started.
     """
 
     _ends: int = -1
@@ -64,7 +64,7 @@ def _of_state(state: MachineState) -> str:
 class SignalLamps:
     """Control of the lamps at the end of each tick on the executor's thread.
 
-    It never raises an error or waits.
+    It never raises an exception and never waits.
     """
 
     context: MachineContext

@@ -58,7 +58,7 @@ class InterruptedJob:
 
     @property
     def words(self) -> str:
-        """Return the program, line, tool, part and cause in a few words, for the log and for sentences."""
+        """Return a short text with the program, line, tool, part and cause, for the log and for messages."""
         return Message(
             "{program}, line {line}, {tool}, part {part}: {why}",
             program=self.program,
@@ -93,12 +93,12 @@ def parse_interrupted_job(value: object) -> InterruptedJob | None:
 
 
 def make_utc_timestamp() -> str:
-    """Return the present time in UTC in ISO 8601 format, with a resolution of 1 s."""
+    """Return the current time in UTC in ISO 8601 format, with a resolution of 1 s."""
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
 class MachineState(StrEnum):
-    """States of the executor. The values are shown to the operator."""
+    """States of the machine. The values are the texts shown to the operator."""
 
     ESTOP = "E-STOP"
     DISABLED = "DRIVES OFF"
@@ -131,7 +131,7 @@ MDI_ACTIONS = frozenset({StartAction.MDI_LINE, StartAction.RETRACT})
 class Alarm:
     """An alarm, a hold or a stop, with its text, cause, remedy and program line (0 if unknown).
 
-    ``cause`` is the known cause in this case, otherwise the most likely one of ``causes``. ``detail`` is
+    ``cause`` is the actual cause if it is known, otherwise the most likely one of ``causes``. ``detail`` is
     for the log.
     """
 

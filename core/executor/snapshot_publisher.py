@@ -33,7 +33,7 @@ class _BlockValues(TypedDict):
 
 
 class SnapshotPublisher:
-    """Factory of snapshots, which also measures the velocity from two consecutive samples."""
+    """Factory of snapshots. It also calculates the velocity from two consecutive samples."""
 
     def __init__(self) -> None:
         self._before: AxisSample | None = None
@@ -130,8 +130,8 @@ class SnapshotPublisher:
 
         The mode of the last program or MDI line remains after its end, a reset or an E-stop, and during a
         retract from the part. The tool may still be in the part, and a displayed value that suddenly halves
-        would mislead the operator. Loading another program selects the mode of the control. MDI also
-        selects this mode, because typed values are in this mode.
+        would mislead the operator. Loading another program selects the control's own mode, and so does MDI,
+        because typed values are in this mode.
         """
         name = status.job.source.name if status.job is not None else ""
         if name != self._shown_for:
@@ -159,7 +159,7 @@ class SnapshotPublisher:
         )
 
     def _measure_velocity(self, sample: AxisSample, linear_axis_count: int) -> float:
-        """Return the combined velocity of the linear axes in mm/s, measured by the encoders."""
+        """Return the combined velocity of the linear axes in mm/s, calculated from encoder positions."""
         before, self._before = self._before, sample
         if before is None:
             return 0.0
@@ -176,7 +176,7 @@ def _ends(block: Block) -> bool:
 
 
 def _block_values(block: Block | None, modal: ModalState, sample: AxisSample) -> _BlockValues:
-    """Return the values of the block or, without a block, those of the modal state and the setpoint."""
+    """Return the values of the block or, if there is none, of the modal state and the setpoint."""
     return _BlockValues(
         line=block.line if block else 0,
         block=block.n if block else 0,
@@ -211,7 +211,7 @@ def _is_rotary_feed(block: Block | None, modal: ModalState) -> bool:
 
 
 def _feed_in_force(block: Block | None, modal: ModalState) -> float:
-    """Return the programmed feed of a moving block, otherwise the active feed."""
+    """Return the programmed feed of a block that moves, or the active feed for any other block."""
     if block is not None and block.moves and block.kind is not BlockKind.ROTATE:
         # A tap moves by its lead even if the feed per minute is in force.
         by_minute = block.follows_spindle and block.per_rev and not block.modal.per_rev

@@ -104,7 +104,7 @@ class SpindleControl:
     def requested_rpm(self) -> float:
         """Return the requested signed speed in rpm.
 
-        With G96, the speed is calculated for the present tool radius.
+        With G96, the speed is calculated for the current tool radius.
         """
         ask = self._ask
         if ask is None:
@@ -118,7 +118,7 @@ class SpindleControl:
 
     @property
     def is_stopped_or_orienting(self) -> bool:
-        """Return whether the spindle is stopped or moves only because its drive orients it."""
+        """Return whether the spindle is stopped, or moves only because its drive is orienting it."""
         return self.is_speed_known and (self.is_stopped or self.orientation.max_rpm > 0.0)
 
     @property
@@ -172,7 +172,7 @@ class SpindleControl:
             self._again, self._in_band_since = True, None
 
     def record_external_stop(self, reason: str) -> None:
-        """Record that a device between control and drive has stopped the spindle, which then waits."""
+        """Record that a device between control and drive has stopped the spindle; the spindle then waits."""
         if self._ask is not None:
             self.waiting_reason, self._withdrawn = reason, True
 
@@ -238,7 +238,7 @@ class SpindleControl:
     def orient_spindle(self, angle: float, direction: int) -> bool:
         """Orient the spindle (M19, SPOS); return whether the drive holds it at ``angle`` degrees.
 
-        A condition that prevents a spindle start also prevents orienting. Raises AlarmError or DriverError.
+        Conditions that prevent a start also prevent orienting. Raises AlarmError or DriverError on failure.
         """
         if self.start_inhibit_reason and self.orientation.angle_deg is None:
             self.orientation.release_spindle()
@@ -370,9 +370,9 @@ class SpindleControl:
             self._rose = (now, min(abs(self.measured_rpm), abs(self.commanded_rpm)))
 
     def _check_stopped_spindle(self, now: float) -> None:
-        """Put a requested but stopped spindle into the waiting state.
+        """Let a requested spindle wait if it has stopped.
 
-        The spindle then does not start when the cause of the stop disappears.
+        The spindle then does not start by itself when the cause of the stop disappears.
         """
         if self._ask is None:
             return
@@ -411,7 +411,7 @@ class SpindleControl:
 
     @property
     def _grace_s(self) -> float:
-        """Return the time in seconds after a command during which the measured speed need not follow."""
+        """Return how long after a command the measured speed may differ from it, in seconds."""
         return max(_GRACE_S, self._lag() + _REACTION_TIME_S)
 
     _now = 0.0

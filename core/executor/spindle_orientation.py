@@ -1,4 +1,4 @@
-"""Spindle orientation by the spindle drive, with its request, wait, supervision and release."""
+"""Orientation of the spindle by its drive: request, wait, supervision and release."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class OrientationControl:
     def __init__(self, port: OrientingSpindle | None, rpm: float) -> None:
         """Initialize the control without a requested angle.
 
-        ``rpm`` is the maximum speed of the spindle while it is oriented.
+        ``rpm`` is the maximum speed of the spindle during orientation.
         """
         self._port = port
         self._rpm = rpm
@@ -41,7 +41,7 @@ class OrientationControl:
     def request_angle(self, angle: float, direction: int) -> bool:
         """Request an angle once; return whether the drive holds the spindle at this angle.
 
-        Raises AlarmError or DriverError.
+        Raises AlarmError if the machine cannot orient the spindle, or DriverError if the drive fails.
         """
         if self._port is None:
             raise AlarmError("spindle-orient", "this machine cannot orient the spindle to an angle")

@@ -1,7 +1,7 @@
 """Conditions of a cycle start, in the order in which an operator has to satisfy them.
 
-The conditions concern the machine, the job to start (program, restart or MDI line) and its proof. Any other
-function that a start would turn on must be announced first.
+The conditions concern the machine, the job to start (program, restart or MDI line) and its proof. Each
+function that a start would turn on, other than the job, must be announced first.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def is_guard_open(context: MachineContext) -> bool:
 
 
 def find_station_refusal(context: MachineContext) -> str:
-    """Return the condition of the operator station that prevents a cycle, or an empty string."""
+    """Return why the operator station prevents a cycle, or an empty string."""
     if context.station_signals.is_hold_requested:
         return "feed hold is pressed"
     if is_guard_open(context):
@@ -72,7 +72,7 @@ def find_program_collet_refusal(context: MachineContext) -> str:
 
 
 def find_state_refusal(context: MachineContext, state: MachineState) -> str:
-    """Return the state of the machine that prevents any cycle start, or an empty string."""
+    """Return the machine state that prevents a cycle start, or an empty string."""
     if state in _BUSY_STATES:
         return _BUSY_STATES[state]
     if find_station_refusal(context):
@@ -224,7 +224,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
 
 
 def _find_change(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
-    """Return the change since the program, the line or the restart was proved, or an empty string."""
+    """Return what has changed since the program, line or restart was proved, or an empty string."""
     if job is None:
         return ""
     begin = job.setup.begin
@@ -250,7 +250,7 @@ def _find_change(context: MachineContext, status: ControlStatus, job: Job | None
 
 
 def _proof_instruction(begin: PassStart) -> str:
-    """Return the instruction by which the operator can have the job proved again."""
+    """Return the text that instructs the operator how to have the job proved again."""
     if begin.is_mdi_line:
         return "request the retract path again" if begin.approach else "enter or select the line again"
     return "search for the line again"
@@ -259,7 +259,7 @@ def _proof_instruction(begin: PassStart) -> str:
 def _find_restart_change(status: ControlStatus, job: Job, begin: PassStart, now: ModalState) -> str:
     """Return why a restart is outdated, or an empty string.
 
-    A restart is outdated if another program is loaded or the collet is in another state.
+    A restart is outdated if another program has been loaded or the state of the collet has changed.
     """
     if status.job is None or status.job.digest != job.parent_digest:
         return "the program was loaded again: search for the line again"
@@ -285,8 +285,8 @@ _VALUE_CHANGE_FRACTION = 0.1  # relative change of a value that makes a new anno
 class AnnouncedStart(NamedTuple):
     """A function that the next start would turn on.
 
-    ``function_name`` identifies the function, and the operator reads ``text``. ``displayed_value`` is a
-    value of the function, such as the rpm of a spindle. A large change of this value creates a new
+    ``function_name`` identifies the function, and ``text`` is shown to the operator. ``displayed_value`` is
+    a value in the text, such as the rpm of a spindle. A large change of this value creates a new
     announcement. ``turn_on`` turns the function on after the announced start.
     """
 

@@ -45,7 +45,7 @@ class StationSignals(NamedTuple):
 class OverridePot:
     """Filter of one override potentiometer.
 
-    A decrease takes effect at once, but a sudden increase must be stable first.
+    A decrease takes effect at once, but a sudden increase only when the value has been stable.
     """
 
     def __init__(self) -> None:
@@ -56,7 +56,7 @@ class OverridePot:
 
     @property
     def is_noisy(self) -> bool:
-        """Return whether the value jumps more often than an operator could turn the potentiometer."""
+        """Return whether the value jumps too often to be caused by an operator."""
         return len(self._jumps) >= _NOISY_JUMPS
 
     def filter_reading(self, raw_value: float, now: float) -> float:
@@ -144,7 +144,7 @@ class OutputMismatch(NamedTuple):
 
     @property
     def description(self) -> str:
-        """Return the change of the output as a text for the operator."""
+        """Return a text for the operator that describes the change of the output."""
         name = self.output_name.upper()
         return (
             Message("{name} TURNED OFF", name=name)
@@ -208,7 +208,7 @@ class CommandedOutputs:
         self._now = now
 
     def mark_switched_off(self, names: Sequence[str]) -> None:
-        """Mark outputs as switched off by another device, even if they were written recently."""
+        """Mark outputs as switched off by another device, even if they were written a moment ago."""
         for name in names:
             self._written.pop(name, None)
 

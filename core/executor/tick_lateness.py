@@ -1,7 +1,7 @@
-"""Delay of the executor's ticks on a busy computer, and the resulting depth of the setpoint queue.
+"""Delay of the executor's ticks on a busy computer, and the resulting setpoint queue depth.
 
-The queue moves the axes while the executor does not run. The queue becomes one step deeper if a late tick
-has used more than half of it. After a period without late ticks, the queue becomes one step shallower.
+The queue moves the axes while the executor is not running. If a late tick has used more than half of the
+queue, the queue becomes one step deeper. After a period without late ticks, it becomes one step shallower.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class TickLateness:
 
     @property
     def lookahead_s(self) -> float:
-        """Return the time for which setpoints are queued ahead of the motion, in seconds."""
+        """Return the time in seconds for which setpoints are queued in advance."""
         return self._lookahead + QUEUE_DEPTH_STEPS_S[self._step]
 
     @property

@@ -1,7 +1,7 @@
 """Chamfers and roundings of the corner between two elements of a contour.
 
-Between two lines, the corner is a chamfer or a tangent fillet. The leg of a chamfer is straight, even along
-an arc, where it is a chord (as in Beckhoff's G301). A rounding may be between lines and arcs.
+Between two lines, the corner is a chamfer or a tangent fillet. The leg of a chamfer is straight; along an
+arc it is a chord (as in Beckhoff's G301). A rounding may be between lines and arcs.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class NoCornerError(CornerError):
 
 
 class CornerTooLargeError(CornerError):
-    """An error raised if the corner requires more of a move than the length of the move.
+    """An error raised if the corner needs more length than one of the two moves has.
 
     ``needed_length`` is the required length in mm. ``is_first_move`` is True if the first of the two moves
     is too short.
@@ -56,7 +56,7 @@ def chamfer(first_element: Element, second_element: Element, leg: float) -> tupl
     """Return both elements shortened by ``leg`` mm at their corner, with the chamfer between them.
 
     Raises NoCornerError, CornerTooLargeError or CornerError. CornerError is raised if the second element
-    reverses the direction of the first, or if the chamfer would cross one of them.
+    reverses the direction of the first, or if the chamfer would cross an element.
     """
     angle = _turn_between(first_element, second_element)
     first, last = _shorten(first_element, second_element, leg)
@@ -186,7 +186,7 @@ _HALVINGS = 60
 
 
 def find_chamfer_leg(first_element: Element, second_element: Element, length: float) -> float:
-    """Return the leg of a chamfer whose own length is ``length`` mm. Raises the errors of ``chamfer``."""
+    """Return the leg of a chamfer that is ``length`` mm long. Raises the same errors as ``chamfer``."""
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         # The chamfer and its two legs are an isosceles triangle.
         return length / (

@@ -33,8 +33,8 @@ class ClearingRing:
     """One clearing ring, which starts at the point where the tool reaches it.
 
     If ``moves_at_depth`` is True, the tool moves to the ring at the depth of the ring; otherwise it comes
-    from above. ``ramp_loop`` is the ring along which the tool ramps down. It is usually the same ring, or a
-    wider ring if this ring is too short.
+    from above. ``ramp_loop`` is the ring along which the tool ramps down. It is usually this ring itself,
+    or a wider ring if this ring is too short.
     """
 
     loop: ElementLoop
@@ -44,7 +44,7 @@ class ClearingRing:
 
 @dataclass(slots=True)
 class _AreaPatch:
-    """A connected part of the area at one distance.
+    """A connected part of the pocket area at one distance from its boundary.
 
     The patch has an outer ring, its islands, and the patches inside it.
     """
@@ -160,7 +160,7 @@ def _order_rings(
 def _iter_inner_first(
     patches: Sequence[_AreaPatch], outer_rings: list[ElementLoop]
 ) -> Iterator[tuple[ElementLoop, list[ElementLoop]]]:
-    """Yield each ring, with the outer rings around it, after the rings inside it."""
+    """Yield each ring after the rings inside it, together with the outer rings around it."""
     for patch in patches:
         yield from _iter_inner_first(patch.inner_patches, [*outer_rings, patch.outer_loop])
         for ring in (*patch.hole_loops, patch.outer_loop):

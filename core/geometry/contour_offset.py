@@ -1,11 +1,11 @@
 """Offset of a contour by a distance, and the spans in which roughing may move next to a contour.
 
-``OffsetBuilder`` rejects a contour into which the distance does not fit. ``trim_offset``, for roughing,
-omits fillets smaller than the allowance and grooves narrower than twice the allowance.
+``OffsetBuilder`` rejects a contour that has no room for the distance. ``trim_offset``, for roughing, omits
+fillets smaller than the allowance and grooves narrower than twice the allowance.
 
 Points for roughing are (depth, distance along Z) relative to the start point of the tool. The depth
-increases along X toward the contour, and the second value increases along Z toward it. The contour is
-directed so that the tool is on its left.
+increases along X toward the contour, and the second value increases along Z toward the contour. The contour
+is directed so that the tool is on its left.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class OffsetBuilder:
         self._guard = _GougeGuard(abs(distance_left))
 
     def add(self, element: Element) -> Iterator[OffsetPiece]:
-        """Add the next element, and yield the pieces that can no longer change. Raises GougeError."""
+        """Add the next element, and yield the final pieces. Raises GougeError if the offset would gouge."""
         index = self._count
         self._count += 1
         try:
@@ -137,7 +137,7 @@ class OffsetBuilder:
             yield self._ready.popleft()
 
     def finish_contour(self) -> Iterator[OffsetPiece]:
-        """Yield the remaining pieces after the last element. Raises GougeError."""
+        """Yield the remaining pieces after the last element. Raises GougeError if the offset would gouge."""
         if self._last is not None:
             self._keep(self._count - 1, self._last[1], corner=False)
             self._last = None
@@ -259,7 +259,7 @@ def make_region_edges(element: Element, distance: float) -> list[Element]:
 
 
 def trim_offset(elements: Sequence[Element], distance: float) -> list[Element]:
-    """Return the path ``distance`` mm to the left of a contour, which is at most 0.5 µm closer to it.
+    """Return the path ``distance`` mm to the left of a contour, at most 0.5 µm closer.
 
     Each element must start at the end of the previous element. Raises TrimError if the path is not
     continuous.
@@ -287,7 +287,7 @@ class ElementIndex:
     def find_near(self, box: BoundingBox, distance: float) -> list[Element]:
         """Return the elements whose bounding boxes are near ``box``.
 
-        The distance is at most ``distance`` mm along both axes.
+        An element is near if the distance is at most ``distance`` mm along both axes.
         """
         x0, x1, z0, z1 = self._boxes.T
         hit = (x0 <= box[1] + distance) & (x1 >= box[0] - distance)
@@ -360,7 +360,7 @@ def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
 def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) -> bool:
     """Return whether the middle of a part is far enough from every element.
 
-    If so, the whole part is far enough.
+    The whole part is then far enough too.
     """
     x, z = middle = part.get_point(part.length / 2)
     return all(
@@ -372,7 +372,7 @@ def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) ->
 def _follow_path(parts: list[Element]) -> list[Element]:
     """Return the parts that form a continuous path from the first part.
 
-    If several parts start at one point, the last of them is used, because the offset loops between them.
+    If several parts start at the same point, the last one is used, because the offset loops between them.
     Raises TrimError if a part of relevant length is not reached.
     """
     if not parts:
@@ -447,7 +447,7 @@ class RoughingArea:
 
 
 def _split_by_depth(element: Element) -> list[Element]:
-    """Return the sections of an element along which the depth only increases or only decreases."""
+    """Return the sections of an element, each with a depth that only increases or only decreases."""
     if isinstance(element, Line):
         return [element]
     (cx, cz), radius = element.center, element.radius
@@ -462,13 +462,13 @@ def _split_by_depth(element: Element) -> list[Element]:
 
 
 def _span_at_depth(wall: Sequence[Element], depth: float) -> ZSpan | None:
-    """Return the span along Z of the part of a wall that is not deeper than ``depth``, or None."""
+    """Return the span along Z of the section of a wall down to ``depth``, or None if there is none."""
     places = [place for edge in wall for place in _z_extremes(edge, depth)]
     return (min(places), max(places)) if places else None
 
 
 def _z_extremes(edge: Element, depth: float) -> list[float]:
-    """Return positions along Z that include both extremes of the section of an edge down to ``depth``."""
+    """Return positions along Z that include both extremes of an edge's section down to ``depth``."""
     if isinstance(edge, Line):
         return _places_of_line(edge, depth)
     candidates = [edge.start, edge.end, *_inner_extremes(edge)]

@@ -120,7 +120,7 @@ class Line:
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
     def get_point(self, distance: float) -> Point:
-        """Return the point at ``distance`` mm from the start, on the infinite line."""
+        """Return the point at ``distance`` mm from the start; it may be outside the line's ends."""
         dx, dz = self.start_direction
         return self.start[0] + dx * distance, self.start[1] + dz * distance
 
@@ -184,7 +184,7 @@ class Arc:
         return compute_arc_extent(*self.start, *self.end, *self.center, self.clockwise)
 
     def get_point(self, distance: float) -> Point:
-        """Return the point at ``distance`` mm from the start, on the full circle."""
+        """Return the point at ``distance`` mm from the start; it may be outside the arc's ends."""
         radius = self.radius
         angle = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
         angle += distance / radius if self.clockwise else -distance / radius
@@ -271,7 +271,7 @@ def compute_turn_angle(first: Point, second: Point) -> float:
 
 
 def find_extended_intersections(first: Element, second: Element) -> list[Point]:
-    """Return the intersections of the infinite lines or full circles of two elements, at most two points.
+    """Return where the infinite lines or full circles of two elements intersect, at most two points.
 
     A tangent point counts once. Elements on the same line or circle have no intersections.
     """
@@ -293,7 +293,7 @@ def find_intersections(first: Element, second: Element) -> list[Point]:
 
 
 def contains_point(element: Element, point: Point) -> bool:
-    """Return whether a point on the infinite line or full circle of an element is within the element."""
+    """Return whether a point on an element's infinite line or full circle is within the element."""
     return (
         -SAME_POINT_TOLERANCE_MM
         <= element.get_distance_from_start(point)
@@ -365,7 +365,7 @@ def compute_min_distance(first: Element, second: Element) -> float:
 
 
 def _facing_points(element: Element, other: Element) -> list[Point]:
-    """Return the inner points of an element whose normal passes through the center of the other element."""
+    """Return an element's inner points whose normal passes through the center of the other element."""
     if isinstance(other, Line):
         return []
     if isinstance(element, Line):

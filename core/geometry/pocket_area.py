@@ -53,7 +53,7 @@ class AreaError(Exception):
 
 
 def close_loop(elements: Sequence[Element]) -> ElementLoop:
-    """Return the elements as a closed loop, with a line from the end to the start if it is necessary."""
+    """Return the elements as a closed loop; a line closes the loop if necessary."""
     loop = list(elements)
     if loop and dist(loop[-1].end, loop[0].start) > SAME_POINT_TOLERANCE_MM:
         loop.append(Line(loop[-1].end, loop[0].start))
@@ -81,8 +81,8 @@ class WindingCalculator:
     def compute_winding_number(self, point: Point) -> int:
         """Return the winding number of the loop around ``point``.
 
-        The method adds the angles of the chords as seen from the point, and a full revolution for each arc
-        that passes on the other side of the point than its chord.
+        The method adds the angles of the chords as seen from the point. It adds a full revolution for each
+        arc if the point is between the arc and its chord.
         """
         a, b = self._start - point, self._end - point
         cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
@@ -94,7 +94,7 @@ class WindingCalculator:
 
 
 def _split_large_arcs(element: Element) -> Iterator[Element]:
-    """Yield the element. An arc of more than half a circle is divided into shorter arcs."""
+    """Yield the element, but divide an arc of more than half a circle into shorter arcs."""
     if isinstance(element, Line) or abs(element.sweep_rad) <= _HALF_TURN:
         yield element
         return
@@ -141,7 +141,7 @@ def find_boundary(curves: Sequence[ElementLoop], contains_point: ContainsPoint) 
 
 
 def _divide_at_crossings(element: Element, every: ElementIndex) -> list[Element]:
-    """Return the sections of an element between all points where other elements meet it or end on it."""
+    """Return the sections of an element, divided where other elements cross it or end on it."""
     parts = split_at_edges(element, every)
     ends = {
         end
@@ -182,7 +182,7 @@ def _direction_halfway(part: Element) -> Point:
 
 
 def make_inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLoop]:
-    """Return the boundary of the points inside the loops that are at least ``distance`` mm from the loops.
+    """Return the boundary of the points inside the loops, at least ``distance`` mm from the loops.
 
     Raises AreaError if the boundary is not closed.
     """
@@ -248,7 +248,7 @@ def _chain_loops(parts: Sequence[Element]) -> list[ElementLoop]:
 
 
 def _remove_tails(parts: Sequence[Element]) -> list[Element]:
-    """Return the parts without short dead ends, which occur after crossings at a small angle."""
+    """Return the parts without the short dead ends that result from crossings at a small angle."""
     left = list(parts)
     while left:
         starts, ends = np.array([part.start for part in left]), np.array([part.end for part in left])
@@ -291,7 +291,7 @@ def _collect_loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], fre
 def _turn_between(before: Element, after: Element) -> float:
     """Return the angle by which the direction changes between two elements.
 
-    The caller selects the sharpest left turn, which separates loops that touch at a point.
+    The caller selects the sharpest left turn, so that loops that touch at a point remain separate.
     """
     angle = compute_turn_angle(before.end_direction, after.start_direction)
     return angle if angle < _HALF_TURN else -pi  # a reversal comes last

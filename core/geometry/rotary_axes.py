@@ -1,4 +1,4 @@
-"""Rotary axes of a mill as a chain from workpiece to tool, and the machine positions of programmed points.
+"""Rotary axes of a mill from workpiece to tool, and machine positions of programmed points.
 
 The same rule applies to heads and tables: a frame as seen from the workpiece is the product of Rot(axis,
 +angle) over the chain from the workpiece to the tool. A head at +t rotates the tool by +t. A table at +t
@@ -126,7 +126,7 @@ class DatumPreset:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """A mill with X, Y, Z and its rotary axes in order from the workpiece to the tool, tables before heads.
+    """A mill with X, Y, Z and its rotary axes in order from workpiece to tool (tables before heads).
 
     ``origin`` is the machine position of the workpiece zero with all rotary axes at 0.
     ``basic_rotation_deg`` is the angle of the workpiece system about Z relative to the machine, with the
@@ -193,7 +193,7 @@ class Kinematics:
     def compute_tool_frame(self, angles: Mapping[str, float]) -> Matrix:
         """Return the tool's frame as seen from the workpiece at the given angles.
 
-        ``angles`` contains angles by axis name; the angle of a missing axis is 0.
+        ``angles`` contains angles by axis name; an axis that is not listed has the angle 0.
         """
         return multiply_matrices(
             *(make_rotation(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotary_axes)
@@ -209,8 +209,8 @@ class Kinematics:
         """Return the transformation from points of a system to positions of the linear axes.
 
         The system has the axes ``frame`` and the origin ``datum`` (mm). Both are specified in the
-        machine-parallel system at the workpiece zero, without tilt. The transformation is valid for these
-        angles and this tool length.
+        machine-parallel system at the workpiece zero, without tilt. The transformation is valid only for
+        the given angles and tool length.
         """
         turn, shift = self._table_transform(angles)
         spot = apply_matrix(turn, add_vectors(self.origin, datum))
@@ -271,7 +271,7 @@ class PivotMove:
 
     ``pivot`` is the fixed point in mm, in the machine-parallel system at the workpiece zero. It is
     ``pivot_distance`` mm below the tip along the tool. ``length`` is in degrees. If ``pivot_end`` is not
-    None, the point moves there in a straight line, and ``length`` is in mm.
+    None, the pivot moves to ``pivot_end`` in a straight line, and ``length`` is in mm.
     """
 
     kinematics: Kinematics
@@ -285,12 +285,12 @@ class PivotMove:
 
     @property
     def is_feed_in_degrees(self) -> bool:
-        """Return whether the feed is in degrees, which applies if the pivot is fixed."""
+        """Return whether the feed is in degrees, which is the case if the pivot is fixed."""
         return self.pivot_end is None
 
     @property
     def is_straight(self) -> bool:
-        """Return False, because linear axes and angles are not proportional."""
+        """Return False, because the linear axes do not move proportionally to the angles."""
         return False
 
     def compute_machine_positions(self, fractions: FloatArray) -> FloatArray:
@@ -348,7 +348,7 @@ def _rotate_with_tables(
 
 
 def _noses_to_tips(machine: Kinematics, angles: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
-    """Return the vectors from the spindle nose at 0 to the tip with the heads at these angles (k,), in mm.
+    """Return the vectors from the spindle nose (heads at 0) to the tip at head angles (k,), in mm.
 
     The result has the shape (k, 3), or one row if there are no heads.
     """

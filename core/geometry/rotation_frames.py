@@ -1,4 +1,4 @@
-"""Frames of tilted working planes, with rotations, vector operations, and the plane through three points.
+"""Frames of tilted working planes, rotations, vector operations, and planes through three points.
 
 A frame is a rotation matrix, stored by rows. Its columns are the axes X' Y' Z' of the working plane in the
 surrounding system. Angles are in degrees.
@@ -77,7 +77,7 @@ def transpose_matrix(matrix: Matrix) -> Matrix:
 
 
 def multiply_matrices(*factors: Matrix) -> Matrix:
-    """Return the product of matrices from left to right, or the identity if there are no factors."""
+    """Return the product of matrices from left to right, or the identity matrix without factors."""
     made = IDENTITY
     for factor in factors:
         columns = transpose_matrix(factor)
@@ -140,7 +140,7 @@ def make_frame_from_euler_angles(precession: float, nutation: float, rotation: f
 
 
 def make_frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
-    """Return the frame with Z' along ``normal`` and X' along the component of ``base`` perpendicular to it.
+    """Return the frame with Z' along ``normal`` and X' along ``base``, made perpendicular to Z'.
 
     Raises InvalidFrameError if a vector has no length or if the vectors are parallel.
     """
@@ -157,10 +157,10 @@ def make_frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
 
 
 def make_frame_from_projections(first: float, second: float, rotation: float) -> Matrix:
-    """Return the frame of the plane whose projections have the angle ``first`` in ZX and ``second`` in YZ.
+    """Return the frame of a plane from its projected angles ``first`` in ZX and ``second`` in YZ.
 
     X' is in the plane ZX before the frame is rotated by ``rotation`` about Z'. Angles are measured upward
-    from X and from Y. Raises InvalidFrameError at 90 degrees.
+    from X and from Y. Raises InvalidFrameError if an angle is 90 degrees.
     """
     (c1, s1), (c2, s2) = compute_exact_cos_sin(first), compute_exact_cos_sin(second)
     if min(abs(c1), abs(c2)) < MIN_SINE:

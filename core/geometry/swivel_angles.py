@@ -1,4 +1,4 @@
-"""Angles of the rotary axes for the frame of a working plane, and the choice between two solutions.
+"""Angles of the rotary axes for a working plane's frame, and the choice between two solutions.
 
 The machine is right-angled: every rotary axis is parallel to X, Y or Z at 0, and the tilting axis next to
 the tool is perpendicular to the tool. Angles are in degrees. The two solutions follow from Rot(a1, t1)
@@ -37,7 +37,7 @@ TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count
 class SolutionSide(StrEnum):
     """The requested side of the primary axis.
 
-    The side is relative to the symmetry point (SYM) or the basic position (SEQ) of the axis.
+    The side is relative to the axis's symmetry point (SYM) or basic position (SEQ).
     """
 
     SYM_PLUS = "SYM+"
@@ -50,9 +50,9 @@ class SolutionSide(StrEnum):
 class SwivelSolution:
     """Angles of the rotary axes, by axis name, that orient the tool.
 
-    ``tool_rotation_deg`` is the remaining mathematical rotation about the tool axis. ``symmetry_angle_deg``
-    is the angle of the primary axis from its symmetry point, and ``primary_angle_deg`` is its angle from the
-    basic position 0.
+    ``tool_rotation_deg`` is the mathematical rotation that remains about the tool axis.
+    ``symmetry_angle_deg`` is the angle of the primary axis from its symmetry point, and
+    ``primary_angle_deg`` is its angle from the basic position 0.
     """
 
     axis_angles: Mapping[str, float]
@@ -63,7 +63,7 @@ class SwivelSolution:
     def is_on_side(self, side: SolutionSide | None) -> bool:
         """Return whether the solution is on this side.
 
-        The symmetry point or basic position itself is on both sides.
+        The symmetry point and the basic position themselves are on both sides.
         """
         if side is None:
             return True
@@ -82,11 +82,11 @@ class SwivelSolution:
 def find_all_solutions(
     machine: Kinematics, frame: Matrix, *, rotates_table: bool = False
 ) -> list[SwivelSolution]:
-    """Return all solutions with the tool perpendicular to ``frame``, without regard to the axis ranges.
+    """Return all solutions with the tool perpendicular to ``frame``, ignoring the axis ranges.
 
     ``frame`` is in the machine-parallel system. If the first axis of the chain is parallel to the tool, its
-    angle is free, and it moves to its zero. If ``rotates_table`` is True, it moves to the angle at which no
-    rotation about the tool remains.
+    angle is free, and the axis moves to its zero. If ``rotates_table`` is True, it moves to the angle at
+    which no rotation about the tool remains.
     """
     normal = apply_matrix(frame, Z_AXIS)
     found: list[SwivelSolution] = []
@@ -193,7 +193,7 @@ def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tupl
 
 
 def _angle_about(axis: Vector, start: Vector, end: Vector) -> float:
-    """Return the angle in degrees about ``axis`` from one direction to another, seen along the axis."""
+    """Return the angle in degrees from one direction to another, as seen along ``axis``."""
     p, q = (subtract_vectors(each, scale_vector(axis, dot_product(axis, each))) for each in (start, end))
     return math.degrees(math.atan2(dot_product(axis, cross_product(p, q)), dot_product(p, q)))
 
@@ -213,7 +213,7 @@ def _same(machine: Kinematics, one: SwivelSolution, other: SwivelSolution) -> bo
 def _choose_nearest_turn(
     machine: Kinematics, solution: SwivelSolution, present_angles: Mapping[str, float]
 ) -> SwivelSolution | None:
-    """Return the solution with each limited axis at the revolution nearest to its present angle.
+    """Return the solution with each limited axis at the revolution nearest to its current angle.
 
     The result is None if an axis is out of range.
     """

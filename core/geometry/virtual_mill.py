@@ -1,8 +1,8 @@
-"""Plane switching: lines and arcs of a virtual mill, and the lathe positions X, Z and C along them.
+"""Plane switching: lines and arcs of a virtual mill, and lathe positions X, Z and C along them.
 
-XC mills on the face of the part. ZC mills on its side, unrolled at a diameter. The live tool is on the
-negative X side of the lathe, or on the positive side if ``is_far_side`` is True. As seen from the tool,
-mill X points to the right and mill Y points up.
+The XC plane is on the face of the part. The ZC plane is its side, unrolled at a diameter. The live tool is
+on the negative X side of the lathe, or on the positive side if ``is_far_side`` is True. As seen from the
+tool, mill X points to the right and mill Y points up.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class FacePlane:
 
     ``c_start_deg`` is C at the entry in degrees, and ``tool_height_mm`` is the height h of the tool above
     the axis in mm. A point (X, Y) of the part at the distance rho from the axis is under the tool if X is
-    at -sqrt(rho² - h²), or at the positive value on the far side, and if C has rotated the point there.
+    at -sqrt(rho² - h²), or at the positive value on the far side, and if C has rotated the point to this X.
     """
 
     c_start_deg: float
@@ -101,9 +101,9 @@ _SAMPLES = 721  # points of an arc at which its extent is sampled: 0.5 degree of
 class PlaneMove:
     """A straight line or, with ``center``, an arc in the mill's frame, with X, Y and Z in mm.
 
-    On the side of the part, Z is a radius. ``start_angle_rad`` is the continuous polar angle of the start in
-    radians, so that C never jumps by a revolution. It is used only on the face. If the start is the center,
-    it is the direction of departure. The end of an arc is within the control's tolerance of its circle.
+    On the side of the part, Z is a radius. ``start_angle_rad`` is the continuous polar angle of the start
+    in radians, so that C never jumps by a revolution. It is used only on the face. At the center it is the
+    direction of departure. The end of an arc is within the control's tolerance of its circle.
     """
 
     frame: FacePlane | SidePlane
@@ -138,7 +138,7 @@ class PlaneMove:
 
     @property
     def is_straight(self) -> bool:
-        """Return whether the lathe axes move proportionally."""
+        """Return whether the lathe axes move in proportion to each other."""
         return self.center is None and isinstance(self.frame, SidePlane)
 
     def compute_mill_points(self, fractions: FloatArray) -> FloatArray:
@@ -180,9 +180,9 @@ class PlaneMove:
         return wound
 
     def split_at_axis(self) -> list[PlaneMove]:
-        """Return the move as a list, divided into two moves if it passes through the axis.
+        """Return the move as a list; a move through the axis is divided into two moves.
 
-        C must turn between the two moves.
+        C must turn between these two moves.
         """
         if isinstance(self.frame, SidePlane) or self.length <= AXIS_TOLERANCE_MM:
             return [self]
@@ -195,7 +195,7 @@ class PlaneMove:
         return [replace(self, end=(0.0, 0.0, z)), replace(self, start=(0.0, 0.0, z))]
 
     def find_start_rotation(self) -> float:
-        """Return the change of the polar angle before a move that starts on the axis, in radians.
+        """Return by how much the polar angle changes before a move that starts on the axis, in radians.
 
         The change is in the shorter direction.
         """

@@ -1,4 +1,4 @@
-"""Arcs, helices, mirroring and scaling in a mill's working plane, and the motion of all axes in a block.
+"""Arcs, helices, mirroring and scaling in a mill's working plane, and the motion of all axes.
 
 A point of the program is scaled, then mirrored, then rotated about the tool axis, in whatever order these
 functions are programmed.
@@ -50,7 +50,7 @@ class ProgramTransform:
 
     @property
     def is_identity(self) -> bool:
-        """Return whether the program's coordinates are the same as those of the plane."""
+        """Return whether program coordinates and plane coordinates are the same."""
         return self == _IDENTITY_TRANSFORM
 
     @property
@@ -79,7 +79,7 @@ class ProgramTransform:
         return Arc(start, end, centre, arc.clockwise != self.reverses_arcs)
 
     def transform_upright_arc(self, arc: Arc, order: AxisOrder) -> tuple[Arc, Matrix]:
-        """Return the scaled arc of another plane of the program, and its axis directions.
+        """Return a scaled arc that is programmed in another plane, and its axis directions.
 
         The directions are the rows of a matrix.
         """
@@ -135,7 +135,7 @@ class HelixMove:
 
     @property
     def is_straight(self) -> bool:
-        """Return False, because the linear axes do not move proportionally."""
+        """Return False, because the linear axes do not move in proportion to each other."""
         return False
 
     def compute_machine_positions(self, fractions: FloatArray) -> FloatArray:
@@ -177,12 +177,12 @@ CurvedMove = HelixMove | PivotMove | PlaneMove
 
 @dataclass(frozen=True, slots=True)
 class AxisMove:
-    """A move from ``start`` to ``end``, which are machine positions of all axes in the machine's order.
+    """A move from ``start`` to ``end``: machine positions of all axes in the machine's order.
 
     Linear axes are first, in mm. Rotary axes are in degrees and continuous. ``length`` is the length to
     which the feed applies, in mm, or in degrees if only rotary axes turn. ``curved_move`` is the curved
-    move if the axes do not move proportionally; it has the same length. ``slides`` is True if a linear axis
-    is programmed to move.
+    path of the same length if the axes do not move proportionally. ``slides`` is True if a linear axis is
+    programmed to move.
     """
 
     start: tuple[float, ...]

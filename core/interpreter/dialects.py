@@ -125,7 +125,7 @@ DIALECT_NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", D
 
 @cache
 def get_code_book(dialect: Dialect) -> CodeBook:
-    """Return the code book of a dialect, and read it on first use."""
+    """Return the code book of a dialect, which is loaded on first use."""
     if dialect is Dialect.OMNITURN:
         from core.interpreter.omniturn.codes.omniturn_book import build_code_book
 
@@ -155,7 +155,7 @@ class SharedProgram:
         self._strict = strict
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return the pickle data, which contain only the program text.
+        """Return pickle data that contain only the program text.
 
         The receiving process parses the text again.
         """
@@ -179,9 +179,9 @@ class SharedProgram:
         return self._begin(setup)
 
     def start_branching_pass(self, setup: Setup, branch_record: BranchRecord) -> BranchingPass | None:
-        """Return a pass that can execute both branches of conditional calls, or None.
+        """Return a pass that can execute both branches of conditional calls.
 
-        ``branch_record`` selects the branches. The result is None if the program does not read any inputs.
+        ``branch_record`` selects the branches. Returns None if the program does not read any inputs.
         """
         if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.is_mdi_line):
             return None

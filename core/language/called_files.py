@@ -63,7 +63,7 @@ def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> ProgramSource
 def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Path]:
     """Yield the possible paths of a file, starting with the most likely path.
 
-    Folders are therefore listed only if necessary.
+    The paths are generated one by one, so that folders are listed only if necessary.
     """
     for each in (name, *_alternative_names(name, dialect)):
         for folder in folders:

@@ -51,7 +51,7 @@ class CodeBookEntry:
 
     @property
     def written(self) -> str:
-        """Return the text that completion inserts."""
+        """Return the text that completion inserts for this code."""
         return self.insert or self.head
 
 
@@ -88,9 +88,9 @@ class CodeBook:
     def at(self, line: str, column: int) -> CodeBookEntry | None:
         """Return the entry of the code at the cursor.
 
-        If the cursor is not at a code, the entry of the nearest code to its left is returned, or of the
-        first code in the line. ``column`` counts from 1 and may be one past the end of the line. Returns
-        None in a comment and in a line without a known code.
+        If the cursor is not at a code, the entry of the nearest code to the left of the cursor is returned,
+        or the entry of the first code in the line. ``column`` counts from 1 and may be one past the end of
+        the line. Returns None in a comment and in a line without a known code.
         """
         code = line.upper().split(self.comment_sign, 1)[0]
         if column - 1 > len(code):
@@ -121,7 +121,7 @@ class CodeBook:
     def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, CodeBookEntry]], ...]:
         """Return a pattern for each group of heads that differ only in their number.
 
-        Each pattern comes with the entries of the group by number.
+        Each pattern is paired with the entries of its group, by number.
         """
         families: dict[tuple[str, bool], dict[str, CodeBookEntry]] = {}
         for entry in self.entries:
@@ -159,7 +159,7 @@ class CodeBook:
         return tuple((each, _normalize(each.head)) for each in self.entries)
 
     def find_chapter(self, entry: CodeBookEntry | None) -> int:
-        """Return the index of the chapter that contains an entry, or 0 for None."""
+        """Return the index of the chapter that contains an entry, or 0 if no chapter contains it."""
         return next((n for n, (_, entries) in enumerate(self.chapters) if entry in entries), 0)
 
     def compile_patterns(self) -> CodeBook:
@@ -174,7 +174,7 @@ def _normalize(written: str) -> str:
 
 
 def _pattern(stem: str, numbered: bool) -> re.Pattern[str]:
-    """Return a pattern that finds a code in a line, whose group is the number or an empty text."""
+    """Return a pattern that finds a code in a line; its group is the number or an empty string."""
     words = r"\s*".join(map(re.escape, stem.split()))
     last = _NO_DIGIT_AFTER if stem[-1].isdigit() else _NO_LETTER_AFTER if stem[-1].isalpha() else ""
     before = _NO_LETTER_BEFORE if stem[0].isalpha() else ""

@@ -32,7 +32,7 @@ class Parameter(NamedTuple):
 
 
 class Operation(NamedTuple):
-    """An operator or function with its operands, whose ``name`` is a key of ``OPERATIONS``."""
+    """An operator or function with its operands; ``name`` is a key of ``OPERATIONS``."""
 
     name: str
     operands: tuple[Formula, ...]
@@ -102,17 +102,17 @@ class FormulaGrammar:
         object.__setattr__(self, "_constant", _any_of(self.constants))
 
     def find_operator(self, text: str, index: int) -> str | None:
-        """Return the operator at this index, or None."""
+        """Return the operator at this index, or None if the text there is not an operator."""
         match = self._sign.match(text, index)
         return match.group() if match else None
 
     def find_function(self, text: str, index: int) -> str | None:
-        """Return the function at this index, or None."""
+        """Return the function at this index, or None if the text there is not a function."""
         match = self._word.match(text, index)
         return match.group() if match else None
 
     def find_constant(self, text: str, index: int) -> str | None:
-        """Return the constant at this index, or None."""
+        """Return the constant at this index, or None if the text there is not a constant."""
         match = self._constant.match(text, index)
         return match.group() if match else None
 
@@ -186,7 +186,7 @@ class FormulaReader(LineReader):
         return self._word(at) or self._parameter_or_number(at)
 
     def _word(self, index: int) -> Formula | None:
-        """Read a function with its operands or a constant, or return None for any other text."""
+        """Read a constant, or a function with its operands, or return None for any other text."""
         grammar = self._grammar
         if word := grammar.find_function(self.uppercase_text, index):
             self.index += len(word)

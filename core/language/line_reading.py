@@ -33,7 +33,7 @@ class LineReader:
     def match_pattern(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of the pattern at this position, and move past it.
 
-        Returns None without a match.
+        Returns None if the pattern does not match.
         """
         match = pattern.match(self.uppercase_text, self.index)
         if match is not None:

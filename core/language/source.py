@@ -16,7 +16,7 @@ from core.message import CodedError, Message
 
 
 class Dialect(StrEnum):
-    """Dialect of a program, whose values are used on the command line and in the JSON output."""
+    """Dialect of a program; the enum values are used on the command line and in the JSON output."""
 
     OMNITURN = "omniturn"
     KLARTEXT = "klartext"
@@ -63,7 +63,7 @@ class ProgramSource:
     subprograms: tuple[ProgramSource, ...] = ()
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return the pickle data without the lines, which the receiving process splits again."""
+        """Return the pickle data without the lines. The receiving process splits the text again."""
         return ProgramSource, (self.name, self.text, self.specified_dialect, self.subprograms)
 
     @property
@@ -73,7 +73,7 @@ class ProgramSource:
 
     @cached_property
     def lines(self) -> Sequence[str]:
-        """Return the lines without line ends, and without an empty line after the final line end."""
+        """Return the lines without line ends; an empty line after the final line end is omitted."""
         if len(self.text) >= _LONG and self.text.isascii() and "\r" not in self.text:
             from core.language.long_lines import LazyLines  # noqa: PLC0415  with numpy
 

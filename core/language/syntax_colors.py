@@ -10,7 +10,7 @@ PLAIN_STATE = 0
 
 
 class SyntaxKind(StrEnum):
-    """Kind of a span of a line, which determines its color."""
+    """Kind of a span of a line, which determines the color of the span."""
 
     NUMBER = "number"  # of the block
     CODE = "code"
@@ -23,7 +23,7 @@ class SyntaxKind(StrEnum):
 
 
 class ColoredSpan(NamedTuple):
-    """A range of characters in a line with its kind, whose ``start`` counts from 0."""
+    """A range of characters in a line with its kind; ``start`` counts from 0."""
 
     start: int
     length: int

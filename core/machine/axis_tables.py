@@ -188,7 +188,7 @@ class LatheCAxisKeys:
 
 
 class LinearThirdAxisKeys:
-    """The keys of a linear third axis of a lathe, with mm instead of the degrees of C."""
+    """The keys of a linear third axis of a lathe, which are in mm instead of degrees."""
 
     travel: Pair = LinearAxisKeys.travel
     vmax: float = LinearAxisKeys.vmax

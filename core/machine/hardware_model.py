@@ -20,8 +20,8 @@ BLINK_HALF_PERIOD_S = 0.5  # s that a blinking lamp is on, and off
 class AnalogInputModel:
     """A potentiometer or a handwheel.
 
-    ``range`` contains the values at both ends of the signal. ``switch`` is the name of the input of its
-    AUTO/OFF switch.
+    ``range`` contains the values at both ends of the signal. ``switch`` is the name of the input to which
+    the AUTO/OFF switch is wired.
     """
 
     name: str

@@ -160,13 +160,13 @@ class OutputModel:
 
     @property
     def safe_state(self) -> bool | None:
-        """Return the state of the output after an E-stop, or None if the output does not change."""
+        """Return the state of the output after an E-stop, or None if an E-stop does not change it."""
         return None if self.stated_safe == "keep" else self.stated_safe is True
 
 
 @make_key_table
 class InputModel:
-    """An input, whose name is used by programs and interlocks."""
+    """An input, with the name that programs and interlocks use."""
 
     name: str
     terminal: str = declare_key(

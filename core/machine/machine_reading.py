@@ -69,7 +69,7 @@ class MachineReading:
         self._check_language()
 
     def _check_language(self) -> None:
-        """Check the MDI language, whose permitted values depend on the kind of machine."""
+        """Check the MDI language. The permitted languages depend on the kind of machine."""
         spoken = machine_tables.LANGUAGES[self.kind]
         said = self.values.values_by_path.get("machine.language") or spoken[0]
         self.values.values_by_path["machine.language"] = said
@@ -258,8 +258,8 @@ def _coarsest_count(reading: MachineReading, _place: str) -> DerivedValue:
 def _spindle_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
     """Return the acceleration of the spindle as the default for its deceleration.
 
-    Most spindles decelerate faster than they accelerate. A deceleration time that is too long only causes a
-    wait.
+    Most spindles decelerate faster than they accelerate. A deceleration time that is too long only makes
+    the control wait longer than necessary.
     """
     return _number(reading.values, "spindle.accel_rpm_s")
 
@@ -292,9 +292,9 @@ def _following_error_window(reading: MachineReading, place: str) -> DerivedValue
 
 
 def _in_position_window(reading: MachineReading, place: str) -> DerivedValue:
-    """Return the value of another axis, or four counts, because a drive at rest moves by one or two counts.
+    """Return the value of another axis or, by default, four counts (five for a rotary axis).
 
-    Five counts are used for a rotary axis such as C, whose counts are coarser.
+    A drive at rest moves by one or two counts. The counts of a rotary axis such as C are coarser.
     """
     values = reading.values
     count = _number(values, place.replace("in_pos", "count"))

@@ -115,7 +115,7 @@ def _jog_overrun_rule(axis: str) -> ValueRule:
 
 
 def _corner_tolerance_rule(axis: str) -> ValueRule:
-    """Return the rule that the tolerance must be at least one count, by which joints always move."""
+    """Return the rule that the corner tolerance must not be below the rounding error of one count."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
     def wrong(values: FileValues) -> str:
@@ -270,7 +270,7 @@ _QUEUE = "the setpoint queue would run empty"
 
 
 def _find_turret_error(values: FileValues) -> str:
-    """Return the error for a turret, which no driver can index, so that T2 would cut with another tool."""
+    """Return the error for a turret. No driver can index a turret, so T2 would cut with another tool."""
     if values.text("tooling.kind") != "turret":
         return ""
     return (

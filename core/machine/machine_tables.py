@@ -148,7 +148,7 @@ class _SpindleDriver:
 
 
 def _add_driver_choices(keys: tuple[KeyField, ...], key: str, words: Iterable[str]) -> tuple[KeyField, ...]:
-    """Return the keys, in which the key ``key`` has the choices that the drivers provide."""
+    """Return the keys after the choices that the drivers provide are added to the key ``key``."""
     choices = tuple(word for word in words if word)
     return tuple(replace(each, choices=choices) if each.key == key else each for each in keys)
 
@@ -203,7 +203,7 @@ def list_top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ..
 
 
 class _NoColletKeys:
-    """The empty set of keys of [collet] of a mill."""
+    """Substitute for the keys of [collet] on a mill, which has no collet."""
 
     open_s: float = declare_key(
         KeyRange(0.0, 10.0, FileUnit.SECONDS), default=0.0, meaning="A mill has no collet."

@@ -95,7 +95,7 @@ class KinematicsTableReader:
             self._read(data[KINEMATICS_TABLE], kind, rotary)
 
     def build_model(self) -> KinematicsModel | None:
-        """Return the model of the table, or None without a table.
+        """Return the model of the table, or None if the file lacks the table.
 
         Call this method only if ``findings`` is empty.
         """

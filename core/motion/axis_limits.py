@@ -1,4 +1,4 @@
-"""Speed and acceleration limits of the axes, which the motion planner uses."""
+"""Axis speed and acceleration limits for the motion planner."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CENTRIPETAL_SHARE = 0.8  # fraction of the acceleration; the rest of the vector 
 
 
 class AxisLike(Protocol):
-    """The properties of an axis in the machine file that the motion planner uses."""
+    """The axis properties that the motion planner reads from the machine file."""
 
     @property
     def max_speed(self) -> float:
@@ -43,7 +43,7 @@ class AxisLike(Protocol):
 
     @property
     def count_size(self) -> float:
-        """Return the encoder and command step of the axis in mm, or degrees for a rotary axis."""
+        """Return the size of one encoder count in mm, or in degrees for a rotary axis."""
         ...
 
 

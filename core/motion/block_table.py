@@ -38,7 +38,7 @@ class ModalLike(Protocol):
     def max_css_rpm(self) -> float | None:
         """Return the maximum spindle speed in rpm under constant surface speed.
 
-        Returns None without a limit.
+        None means that there is no limit.
         """
         ...
 
@@ -370,7 +370,7 @@ def _repeat_entries(column: Any, counts: Sequence[int]) -> Any:
 
 
 def _write_series(table: BlockTable, rows: slice, row: MoveSeries) -> None:
-    """Write the numbers, positions and feeds of a series of blocks to the slice ``rows`` of the table."""
+    """Write the numbers, positions and feeds of a series to the slice ``rows`` of the table."""
     like = row.pattern
     table.n[rows] = row.n
     if row.feed is not None:

@@ -24,7 +24,7 @@ Points = npt.NDArray[np.complex128]
 
 
 class _Window(NamedTuple):
-    """The range of neighbors of each of m joints.
+    """The windows of neighbors around m joints.
 
     The sum over a window of ``joint_count`` joints is the running sum at ``last_index`` minus the running
     sum at ``first_index``. ``joint_count`` (2m,) has two equal values for each joint.
@@ -77,7 +77,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
     off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 
     def mean(of: Points) -> Points:
-        """Return the mean of the neighbors, corrected along their line to the distance of the joint.
+        """Return the mean of the neighbors, moved along their line to the path distance of the joint.
 
         The joints of a straight line therefore remain on the line.
         """
@@ -119,7 +119,7 @@ def _within(
 
 
 def _clear(free: BoolArray) -> IntArray:
-    """Return the number of consecutive free joints (m,) on both sides of each joint."""
+    """Return the smaller number of consecutive free joints on either side of each joint (m,)."""
     at = np.arange(len(free))
     before = at - np.maximum.accumulate(np.where(free, -1, at))
     count_after = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
@@ -128,11 +128,11 @@ def _clear(free: BoolArray) -> IntArray:
 
 
 class _Near(NamedTuple):
-    """The joints within AROUND of each joint in the same run, reached in a few doubling steps.
+    """The joints of the same run within AROUND joints of each joint, found in doubling steps.
 
     Each item of ``doubling_steps`` is a distance in coordinates (2 for one joint) and an array. The array
-    has, for each coordinate, 1.0 if the coordinate at that distance after it belongs to the same run, and 0.0
-    otherwise. It is None if only one run exists.
+    has, for each coordinate, 1.0 if the coordinate at that distance after it belongs to the same run, and
+    0.0 otherwise. It is None if only one run exists.
     """
 
     doubling_steps: tuple[tuple[int, FloatArray | None], ...]
@@ -152,7 +152,7 @@ class _Near(NamedTuple):
         return cls(tuple((step, (run[step:] == run[:-step]).astype(np.float64)) for step in steps))
 
     def find_largest(self, values: FloatArray) -> FloatArray:
-        """Return the largest value (2m,) within AROUND joints of each joint, at least 0."""
+        """Return the largest value (2m,) within AROUND joints of each joint, but not less than 0."""
         ahead, back = values.copy(), values.copy()
         for step, same in self.doubling_steps:
             later, earlier = ahead[step:], back[:-step]

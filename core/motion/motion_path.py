@@ -178,7 +178,7 @@ def _find_c_fed_moves(table: BlockTable) -> BoolArray:
 
 
 def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> PathPieces:
-    """Return the move of X and Z with C, followed by the rotation of C that the move does not need."""
+    """Return the move of X, Z and C, followed by the remaining rotation of C alone."""
     start, end, feed = table.start[index], table.end[index], float(table.feed[index])
     path_length_mm = float(np.hypot(*(end - start)[:2]))
     needed, turn = path_length_mm / feed * 360.0, float(end[2] - start[2])
@@ -279,9 +279,9 @@ class MotionPath:
 class PathBuilder:
     """A builder of a path from blocks that are added step by step.
 
-    ``rpm_max`` is the highest spindle speed that is possible now, which is the limit of the machine or of
-    the operator. It may be changed and applies to blocks that are added afterwards. The path remains valid
-    while it grows. A plan on the longer path is possible from any state of a plan on the shorter path.
+    ``rpm_max`` is the current limit of the spindle speed, set by the machine or by the operator. A change
+    applies to blocks that are added afterwards. The path remains valid while it grows. A plan on the longer
+    path is possible from any state of a plan on the shorter path.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = np.inf) -> None:
@@ -305,7 +305,7 @@ class PathBuilder:
     def add_blocks(self, blocks: Iterable[MotionBlock], reached_distance: float = -np.inf) -> None:
         """Append blocks that move.
 
-        ``reached_distance`` is the distance before which the present motion can still stop. If this
+        ``reached_distance`` is the distance before which the current motion can still stop. If this
         distance is near the end of the path, existing joints are no longer moved. Raises MotionError, and
         adds no block, if one of the blocks cannot be planned.
         """
@@ -314,7 +314,7 @@ class PathBuilder:
             self.add_batch([batch], reached_distance)
 
     def add_batch(self, batch: Sequence[BlockGroup], reached_distance: float = -np.inf) -> None:
-        """Append blocks that are given as lists and series, which must not be empty; see ``add_blocks``."""
+        """Append blocks given as non-empty lists and series; see ``add_blocks``."""
         table = build_table(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
@@ -335,7 +335,7 @@ class PathBuilder:
         self._path = None
 
     def _append_pieces(self, pieces: PathPieces, reached: float) -> None:
-        """Append pieces and smooth the joints of short chords before the old end again.
+        """Append pieces, and smooth the joints of short chords before the previous end again.
 
         The new pieces affect these joints.
         """
@@ -372,7 +372,7 @@ class PathBuilder:
         self._closed, self._path = True, None
 
     def drop_blocks_before(self, block_number: int) -> None:
-        """Drop the blocks before block ``block_number``, except those that its corner limit still needs.
+        """Drop the blocks before block ``block_number``, except those that affect its corner limit.
 
         These are the last block with a length and, for short chords, the blocks within one interval.
         """

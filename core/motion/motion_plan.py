@@ -1,4 +1,4 @@
-"""The plan of a path: look-ahead, squared speeds at the joints, and phases of constant acceleration.
+"""The plan of a path: look-ahead, squared joint speeds, and phases of constant acceleration.
 
 To add a jerk limit, change ``build_profile``, which gives each piece an acceleration, a cruise and a
 deceleration. A jerk limit replaces these three phases by seven phases, and ``2·a·length`` by the speed that
@@ -73,7 +73,7 @@ def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
 
 
 def _remove_rounding(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
-    """Return the minima without the rounding error of the running sums, wherever a limit applies."""
+    """Return the minima with the rounding error of the running sums removed where a limit applies."""
     sharp = rough.copy()
     np.minimum(limit[1:], rough[:-1] + steps, out=sharp[1:])
     sharp[0] = limit[0]
@@ -106,7 +106,7 @@ def build_profile(
     speed_caps: FloatArray,
     speeds: FloatArray,
 ) -> MotionProfile:
-    """Return the profile of n consecutive pieces from ``first_piece`` on, starting at ``start_distance``.
+    """Return the profile of n consecutive pieces, starting at ``first_piece`` and ``start_distance``.
 
     ``speed_caps`` (n,) are the squared feeds within the pieces, and ``speeds`` (n+1,) are the squared
     speeds at the joints. A piece accelerates to its cap or as far as its length permits, cruises, and
@@ -281,7 +281,7 @@ class _PieceRun:
         return v * v <= float(self.squared_speed_gains.sum()) + self.calculate_rounding_error(v)
 
     def calculate_rounding_error(self, v: float) -> float:
-        """Return the rounding error of a squared speed that results from the rounding of distances."""
+        """Return the error of a squared speed that results from rounded distances."""
         return float(
             ROUNDING_TOLERANCE * v * v + 2.0 * ROUNDING_TOLERANCE * self.accelerations.max(initial=0.0)
         )
@@ -301,7 +301,7 @@ def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
 
 
 def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: float) -> FloatArray:
-    """Return full braking until the speed is within the new feeds, followed by the normal plan."""
+    """Return the squared speeds of full braking to the new feeds, followed by the normal plan."""
     braked = square - np.concatenate([[0.0], np.cumsum(run.squared_speed_gains)])
     fits = np.flatnonzero(braked <= allowed + slack)
     fits = fits[fits > 0]
@@ -338,7 +338,7 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
 
 
 def _braking_profile(path: MotionPath, at: float, v: float, first: int) -> MotionProfile:
-    """Return the profile of braking to rest with full acceleration along the path."""
+    """Return the profile of a stop along the path at the full acceleration limit."""
     last = first
     while True:
         last = min(len(path), last + max(64, last - first))

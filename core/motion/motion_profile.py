@@ -47,7 +47,7 @@ class Phases(NamedTuple):
 
 
 def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -> SegmentArrays:
-    """Return the setpoint pieces (t, dt, p, v, a) of k phases, with ``time_origin_s`` added to their times.
+    """Return the setpoint pieces (t, dt, p, v, a) of k phases; ``time_origin_s`` is added to times.
 
     A phase on a line gives one exact piece. A phase on an arc is divided into parts of equal time, each at
     most 2 ms. The ends of the parts are on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so
@@ -255,7 +255,7 @@ class MotionProfile:
         return make_axis_segments(self.path, self._window(start_time_s, end_time_s), time_origin_s)
 
     def cut_at_distance(self, distance: float) -> MotionProfile:
-        """Return the part of the profile up to ``distance``, which must be the distance of a joint.
+        """Return the part of the profile up to ``distance``, which must be that of a joint.
 
         The part may end in motion.
         """

@@ -153,7 +153,7 @@ def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, Flo
 
 
 def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
-    """Return arc centers moved to the perpendicular bisector of the chord, so that the arc meets its end.
+    """Return arc centers on the perpendicular bisectors of the chords, so that arcs meet their ends.
 
     Programmed centers are rounded to the resolution. Without this correction, the path would have a gap of
     that size.
@@ -232,7 +232,7 @@ def extend_smoothed_pieces(
     redo_count: int,
     limits: MotionLimits,
 ) -> PathPieces:
-    """Return the last ``redo_count`` pieces of ``smoothed_pieces`` and all ``new_pieces``, smoothed together.
+    """Return the last ``redo_count`` smoothed pieces and all ``new_pieces``, smoothed together.
 
     ``programmed_pieces`` contains the last pieces of ``smoothed_pieces`` as programmed, at least SUPPORT
     more than ``redo_count`` if so many exist.
@@ -258,7 +258,7 @@ def ends_with_chord(pieces: PathPieces, limits: MotionLimits) -> bool:
 
 
 def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
-    """Return a mask (n,) of the lines of linear axes that are short enough to be affected by rounding."""
+    """Return a mask (n,) of the lines of linear axes that are so short that rounding affects them."""
     # Rounding turns longer lines so little that no speed is too high for the joint.
     longest = (
         _TURNS * limits.grain * limits.max_plane_speed / (limits.max_plane_acceleration * limits.interval)

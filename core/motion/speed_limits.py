@@ -223,7 +223,7 @@ def _chord_demand(
     *,
     more: bool,
 ) -> JointLimits:
-    """Return the limits of short chords over an interval, for the joints that would otherwise be slow."""
+    """Return the limits of short chords over one interval, for joints that would otherwise be slow."""
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
@@ -356,7 +356,7 @@ def split_piece_by_radius(pieces: PathPieces, table: BlockTable, index: int) -> 
 
 
 def split_piece(piece: PathPieces, distances: FloatArray, speeds: FloatArray) -> PathPieces:
-    """Return one piece divided at ``distances`` (k+1,), which include both ends, with ``speeds`` (k,)."""
+    """Return one piece divided at ``distances`` (k+1,), including both ends, with ``speeds`` (k,)."""
     parts = piece[np.zeros(len(distances) - 1, dtype=np.int64)]
     return replace(
         parts,
@@ -380,7 +380,7 @@ def _radii(piece: PathPieces, owner: BlockTable, at: FloatArray) -> FloatArray:
 
 
 def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> FloatArray:
-    """Return the distances at which the rpm, which depends on the radius, reaches a level.
+    """Return the distances at which the radius-dependent rpm reaches a level.
 
     The levels are a geometric series.
     """

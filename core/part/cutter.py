@@ -1,4 +1,4 @@
-"""A tool that machines a turned part: the material that the tool removes, and collisions of its body.
+"""A tool that machines a turned part: the material that it removes, and collisions of its body.
 
 An outside tool removes all material further out than its edge, because material outside the edge becomes a
 chip or would hit the holder. A boring tool removes all material closer to the axis. A face tool removes
@@ -68,9 +68,9 @@ class _OutlineSet(NamedTuple):
 class Cutter:
     """A tool given by its outlines (k, 2) in Z and r about the control point, prepared for sweeping.
 
-    ``is_drill`` means that the tool is round about the spindle axis. ``is_rear`` means that the tool works
-    at negative X, where its outlines are given. ``edge_height_mm`` is the height of its edges along r, in
-    mm.
+    ``is_drill`` means that the tool is rotationally symmetrical about the spindle axis. ``is_rear`` means
+    that the tool works at negative X, where its outlines are given. ``edge_height_mm`` is the height of its
+    edges along r, in mm.
     """
 
     def __init__(
@@ -126,9 +126,9 @@ class Cutter:
         return self._swept(part, start, end, cut=False)
 
     def cut_with_body(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Return the material that the holder and the shank hit.
+        """Remove the material that the holder and the shank hit, and return the cut.
 
-        The material is removed, so that it is reported only once.
+        Each collision is therefore reported only once.
         """
         met = NO_CUT
         start, end = self._ends_on_working_side(start, end)
@@ -196,7 +196,7 @@ class Cutter:
         return place[0], place[1] * self.x_sign
 
     def _ends_on_working_side(self, start: Point, end: Point) -> tuple[Point, Point]:
-        """Return both ends of a move on the side of the axis where the outlines are.
+        """Return both ends of a move, relative to the side of the axis on which the outlines are.
 
         A round tool works on both sides.
         """
@@ -227,7 +227,7 @@ class Cutter:
 
 
 def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, end: Point) -> Cut:
-    """Return the cut at the opposite wall of a bore, which a boring bar hits if its diameter is too large."""
+    """Return the cut that a boring bar of excessive diameter makes at the opposite wall of a bore."""
     first, near = sweep_edge(outline.near_edge, start, end, part.columns)
     return part.cut_inside(first, -near)
 
@@ -245,8 +245,8 @@ def _mirrored(point: Point) -> Point:
 class SolidTool(NamedTuple):
     """The parts of a tool that must not hit material.
 
-    ``lower_corner`` and ``upper_corner`` are the corners of the extent about the control point. ``sides``
-    are the outlines on either side of the axis.
+    ``lower_corner`` and ``upper_corner`` are the corners of the bounding box, relative to the control
+    point. ``sides`` are the outlines on either side of the axis.
     """
 
     lower_corner: FloatArray

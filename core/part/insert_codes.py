@@ -199,7 +199,7 @@ def decode_insert_code(code: str) -> Insert:
     """Return the insert of an ISO or ANSI code.
 
     Characters after the size (edge condition, hand, chip breaker of the manufacturer) are ignored. Raises
-    InsertCodeError that names the invalid character.
+    InsertCodeError if a character is invalid; the message names the character.
     """
     text = re.sub(r"[\s_]", "", code).upper()
     letters = re.match(r"[^-.\d]*?(?=[-.\d]|L\d|$)", text)
@@ -247,7 +247,7 @@ def _check_letters(code: str, head: str, *, is_old_code: bool) -> None:
 
 @dataclass(slots=True)
 class _CodeDigits:
-    """The remaining digits of a code, which are read from the left."""
+    """The remaining digits of a code, read from left to right."""
 
     code: str
     shape: str
@@ -297,7 +297,7 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
 
 
 def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
-    """Return the inscribed circle, the thickness and the nose radius in mm that a metric code specifies."""
+    """Return the inscribed circle, thickness and nose radius in mm that a metric code specifies."""
     edge = size.remaining_digits[:2]
     circle = size.remove_digits(
         edge, Message("size for insert shape {shape}", shape=size.shape), list_metric_circle_sizes(size.shape)
@@ -324,7 +324,7 @@ def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
 
 
 def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
-    """Return the inscribed circle, the thickness and the nose radius in mm that an inch code specifies."""
+    """Return the inscribed circle, thickness and nose radius in mm that an inch code specifies."""
     circle = size.remove_digits(_next_number(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
     thickness = size.remove_digits(
         _next_number(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS
@@ -354,7 +354,7 @@ def _next_number(size: _CodeDigits, pattern: re.Pattern[str]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ToolHolder:
-    """A tool holder in mm, in which 0 means not specified.
+    """A tool holder, with dimensions in mm; 0 means not specified.
 
     A bar is round; a shank is square or nearly square. ``reach_mm`` is the distance from the tip to the far
     side of the shank. ``entering_angle_deg`` is the entering angle in degrees. ``is_facing_angle`` is True
@@ -370,7 +370,7 @@ class ToolHolder:
 
 
 def parse_holder(text: str) -> ToolHolder | None:
-    """Return the holder that a text describes, or None if the text is empty or only a name."""
+    """Return the holder that a text describes, or None for an empty string or a mere name."""
     words = text.strip()
     if points := parse_outline(words):
         return ToolHolder(outline=points)

@@ -264,7 +264,7 @@ class MilledPart:
                 yield RadialMillMove(float(min(start[0], end[0])), back, front, float(start[2]), dc)
 
     def _divide_at_ends(self, runs: list[list[RadialMillMove]], radius: float) -> None:
-        """Divide the columns at both ends of a radial path, where the round edge of the mill crosses them."""
+        """Divide the columns at both ends of a radial path, where the mill's round edge crosses them."""
         back, front = (
             min(s.back_z_mm for run in runs for s in run),
             max(s.front_z_mm for run in runs for s in run),
@@ -344,7 +344,7 @@ def _path_lines(path: FloatArray) -> FloatArray:
 
 
 def _floor_levels(path: FloatArray, length: float) -> FloatArray:
-    """Return the Z of the floors that a path leaves, and of the ends of the flutes.
+    """Return the Z values of the floors that a path leaves and of the flute ends.
 
     The lowest floor is always included.
     """

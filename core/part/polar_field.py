@@ -50,7 +50,7 @@ class RemovedMaterial(NamedTuple):
         return self.volume_mm3 > 0.0
 
     def combine(self, other: RemovedMaterial) -> RemovedMaterial:
-        """Return the total of both cuts."""
+        """Return the total of this cut and another cut."""
         return RemovedMaterial(
             self.volume_mm3 + other.volume_mm3,
             max(self.depth_mm, other.depth_mm),

@@ -1,4 +1,4 @@
-"""Tool, holder and chuck in the solid picture, as layers that are combined with the part by depth.
+"""Tool, holder and chuck in the solid picture, as layers that are merged with the part by depth.
 
 The outlines of a tool become prisms below its rake face, which is in the plane of turning. A rotating tool
 becomes a solid of revolution. The points of these bodies are one pixel apart and are not cached, because
@@ -33,7 +33,7 @@ _GHOST = 0.3
 
 
 class RoundAxis(StrEnum):
-    """The axis about which a tool is round, if any."""
+    """The axis about which a tool is rotationally symmetrical, if any."""
 
     NONE = ""
     Z = "z"
@@ -53,7 +53,7 @@ class ToolBody(NamedTuple):
 
 
 class ImageLayer(NamedTuple):
-    """An image of 0xAARRGGBB values with the depth of each pixel, where depth 0 means empty.
+    """An image of 0xAARRGGBB values with the depth of each pixel; depth 0 means empty.
 
     ``opacity`` is the opacity of the layer, from 0 to 1.
     """
@@ -99,7 +99,7 @@ class _Viewer(NamedTuple):
 
 
 def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
-    """Return the front of a chuck with its jaws, or of a collet, together with the tailstock center."""
+    """Return the front of a chuck with jaws or of a collet, together with the tailstock center."""
     edges: list[float] = []
     columns: list[tuple[float, float]] = []  # inner and outer radius
     if clamping.diameter:

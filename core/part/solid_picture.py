@@ -443,9 +443,9 @@ def _smoother(before: Float32Array, next_change: Float32Array) -> Float32Array:
 
 
 def _remove_specks(codes: CodeArray) -> CodeArray:
-    """Replace points at a rim that point away, and single points, by their neighbors.
+    """Replace rim points that face away, and isolated points, by the median of their neighbors.
 
-    A median of three points is applied horizontally, then vertically.
+    The median of three points is applied horizontally, then vertically.
     """
     for turned in (codes, codes[:, ::-1], codes.T, codes.T[:, ::-1]):
         away = turned[:, :-1] == _FACING_AWAY
@@ -458,7 +458,7 @@ def _remove_specks(codes: CodeArray) -> CodeArray:
 
 
 def _draw_edges(codes: CodeArray, depth: npt.NDArray[np.int32]) -> None:
-    """Darken the deeper side of an edge, so that a step is visible between two faces of equal brightness.
+    """Darken the deeper side of an edge to show a step between two faces of equal brightness.
 
     A point is on the deeper side if it is deeper than the mean of its two neighbors by more than ``_EDGE``.
     """

@@ -33,7 +33,7 @@ class StockSpec:
     """A stock specification, in mm.
 
     A ``length`` of 0 means that the stock is as long as the program needs. ``profile`` is the file of a
-    profile, and ``after`` is the program that made the stock. Both are empty for a bar or a tube.
+    profile, and ``after`` is the program that made the stock. Both are empty strings for a bar or a tube.
     """
 
     given: str
@@ -135,9 +135,9 @@ def _split_allowance(rest: str) -> tuple[str, float]:
 
 
 def _parse_length(text: str, whole: str) -> float:
-    """Return the length in mm that a text specifies.
+    """Return the length in mm that a string specifies.
 
-    Raises StockError if the text is not a length.
+    Raises StockError if the string is not a length.
     """
     found = _LENGTH.fullmatch(text.strip())
     if found is None:

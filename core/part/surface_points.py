@@ -65,7 +65,7 @@ class SurfacePatch(NamedTuple):
     """Surface points that are not on the walls of rays, with their normals.
 
     ``z_px`` and ``radius_px`` are Z and r in pixels. The normals are given along r, the angle and Z.
-    ``half_ray_numbers`` (n,) counts halves of the step between rays. None means that the points are rings,
+    ``half_ray_numbers`` (n,) counts halves of the step between rays. It is None if the points are rings,
     with a point at every ray. ``is_rough`` means that the wall crosses columns and rays, so that its
     normals vary from point to point.
     """
@@ -162,7 +162,7 @@ class SolidSurface:
     def _make_faces(self, face_direction: int, solid: Solid, drawn: tuple[float, float]) -> SurfacePatch:
         """Return the surface of each column that the next column does not cover.
 
-        The edge of the picture is not an end of the part.
+        No face is made at the edge of the picture, because the part does not end there.
         """
         cell_pair = _differing_cells(self.inner_radii, self.outer_radii, _GAP, round_=False)
         own, other = cell_pair if face_direction > 0 else cell_pair[::-1]
@@ -348,7 +348,7 @@ def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int)
 def _differing_cells(
     low: list[Float32Array], high: list[Float32Array], min_difference: float, *, round_: bool
 ) -> tuple[CellIndices, CellIndices]:
-    """Return the cells that differ by more than ``min_difference`` from the next cell, and the next cells.
+    """Return the cells that differ from the next cell by over ``min_difference``, and the next cells.
 
     The next cell is along Z, or around the part if ``round_`` is True.
     """

@@ -66,8 +66,8 @@ class ToolOutline:
     """Convex polygons (k, 2) of (z, r) about the control point, in mm, counterclockwise.
 
     ``cutting_outlines`` remove material, and ``body_outlines`` must not touch any material. ``is_axial``
-    means that the tool is round about an axis parallel to Z. ``assumed_fields`` lists the fields of the
-    shape for which a standard size is used.
+    means that the tool is rotationally symmetrical about an axis parallel to Z. ``assumed_fields`` lists
+    the fields of the shape for which a standard size is used.
     """
 
     cutting_outlines: tuple[FloatArray, ...]
@@ -149,7 +149,7 @@ def make_outline(shape: ToolShape) -> ToolOutline:
 
 
 def make_nose_circle(radius: float, tip: int) -> ToolOutline:
-    """Return the outline of a tool without a shape, which is its nose circle.
+    """Return the nose circle as the outline of a tool without a shape.
 
     Without a radius, the circle is very small.
     """
@@ -211,7 +211,7 @@ def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, 
 def _seat_insert(
     drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the outline of the insert, and of its part on the seat, about the control point."""
+    """Return the outlines of the insert and of its seated part, relative to the control point."""
     radius = insert.nose_radius
     seat = 1.0 - 2.0 * min(1.0, _INSERT_OVERHANG_FRACTION * insert.inscribed_circle) / insert.inscribed_circle
     if not insert.corner_angles:
@@ -246,7 +246,7 @@ _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  
 
 
 def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
-    """Add a head from the seat to the shank, and add the shank up to its stick-out."""
+    """Add the head from the seat to the shank, and the shank up to the stick-out length."""
     drawing.body_outlines.append(find_convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
@@ -339,7 +339,7 @@ def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: flo
 
 
 def _draw_threading(drawing: _OutlineDrawing) -> None:
-    """Draw a V-shaped point with a nose radius or with a flat of one eighth of the pitch (ISO 68-1)."""
+    """Draw a V-shaped point with a nose radius, or with a flat of 1/8 of the pitch (ISO 68-1)."""
     shape = drawing.shape
     angle = math.radians(drawing.get_size("point", _POINTS[ToolKind.THREADING]))
     high = shape.length or max(shape.pitch, 3.0)
@@ -375,7 +375,7 @@ def _mirror_half(upper: list[tuple[float, float]]) -> FloatArray:
 
 
 def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -> None:
-    """Add the shank up to its clamping, and the clamping if its position is specified."""
+    """Add the shank up to the clamping, and the clamping itself if its position is specified."""
     end = drawing.shape.stick_out or length + 2.0 * diameter
     if end > length:
         drawing.body_outlines.append(_cylinder(length, end, diameter / 2.0))

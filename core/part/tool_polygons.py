@@ -21,7 +21,7 @@ _RIGHT_ANGLE = math.pi / 2.0
 
 
 class PartError(CodedError, ValueError):
-    """Error raised if no part, cut or tool can be computed from points, edges or outlines."""
+    """Error raised if points, edges or outlines do not define a valid part, cut or tool."""
 
 
 def make_polygon(points: Iterable[tuple[float, float]]) -> FloatArray:
@@ -81,7 +81,7 @@ def make_circle(radius: float) -> FloatArray:
 def make_polygon_from_edges(
     corner_angles: Sequence[float], edge_lengths: Sequence[float], heading_deg: float
 ) -> FloatArray:
-    """Return the polygon with these interior angles and edge lengths, with its first corner at the origin.
+    """Return the polygon with these interior angles and edge lengths, starting at the origin.
 
     ``corner_angles`` are in degrees. ``heading_deg`` is the direction of the first edge from +z to +r, in
     degrees.
@@ -95,7 +95,7 @@ def make_polygon_from_edges(
 
 
 def find_nose_center(points: FloatArray, radius: float, corner_index: int = 0) -> FloatArray:
-    """Return the center of the circle with the given radius that touches both edges of a corner."""
+    """Return the center of a circle of the given radius that is tangent to both edges of a corner."""
     before, corner, after = (
         points[corner_index - 1],
         points[corner_index],

@@ -47,7 +47,7 @@ Point = tuple[float, float]
 class ToolShape:
     """The shape of one tool, in mm and degrees.
 
-    A value of 0 or an empty text means not specified; a standard size is then used.
+    A value of 0 or an empty string means not specified; a standard size is then used.
 
     ``tip`` is the quadrant 0 to 9 of the tip as seen from the nose center. For a rotating tool, it is the
     direction of its end: 7 (or 0) along the spindle toward the chuck, 8 across the spindle from the front,

@@ -83,7 +83,7 @@ class Cut(NamedTuple):
         return self.area > 0.0
 
     def combine(self, other: Cut) -> Cut:
-        """Return the total of both cuts."""
+        """Return the total of this cut and another cut."""
         if not self or not other:
             return self or other
         return Cut(

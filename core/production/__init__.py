@@ -1,1 +1,1 @@
-"""Production data of tools, which is the tool life by parts and by cutting time."""
+"""Production data of tools: tool life by parts and by cutting time."""

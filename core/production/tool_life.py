@@ -14,7 +14,7 @@ DEFAULT_WARNING_SHARE = 0.9  # share of the life at which a warning is shown
 
 
 class ToolLifeError(CodedError, ValueError):
-    """Error raised for invalid limits of a tool life, with a message that names the limit and the remedy."""
+    """Error raised for invalid tool life limits; the message names the limit and the remedy."""
 
 
 class ToolLifeState(Enum):
@@ -80,9 +80,9 @@ class ToolLife:
 
     @property
     def words(self) -> str:
-        """Return the used tool life as a text, such as ``50 of 50 parts`` or ``31 of 30 min``.
+        """Return the used tool life as text, such as ``50 of 50 parts`` or ``31 of 30 min``.
 
-        With two limits, the text is about the limit that will be reached first.
+        With two limits, the text refers to the limit that will be reached first.
         """
         by_parts = self.parts / self.limit_parts if self.limit_parts else -1.0
         by_time = self.seconds / self.limit_seconds if self.limit_seconds else -1.0

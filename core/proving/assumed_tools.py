@@ -108,10 +108,10 @@ class ToolUse:
 
     @property
     def first_rapid_position(self) -> TipMove | Block | None:
-        """Return the first position at the part of a tool that makes only rapids.
+        """Return the first position at the part, for a tool that makes only rapid moves.
 
-        The position is that of a rapid while the spindle or C is active. The result is None if the tool
-        feeds or if its rapids have another purpose.
+        The position is the end of a rapid made while the spindle or C is active. The result is None if the
+        tool feeds or if its rapids have another purpose.
         """
         if self.is_bar_stop:
             return None
@@ -154,8 +154,8 @@ class AssumedTool:
     def add_diameter(self, tool_use: ToolUse, bore_moves: Sequence[TipMove]) -> AssumedTool:
         """Return the tool with an assumed diameter if it is a round tool without a diameter.
 
-        The diameter of a drill is slightly less than the smallest diameter that ``bore_moves`` cut after
-        it.
+        The diameter of a drill is slightly less than the smallest diameter that the later ``bore_moves``
+        cut.
         """
         shape = self.tool_shape
         if shape is None or not shape.is_rotating or shape.diameter:
@@ -256,7 +256,7 @@ def _on_axis(cuts: Iterable[TipMove]) -> bool:
 def _has_plunge(cuts: Sequence[TipMove]) -> bool:
     """Return whether a tool cuts perpendicular to the axis inside the part.
 
-    Its cuts along Z must not be longer than those that clean a groove.
+    The result is False if a cut along Z is longer than one that cleans a groove.
     """
     if not cuts or any(move.kind is BlockKind.ARC for move in cuts):
         return False
@@ -282,7 +282,7 @@ def works_in_bore(moves: Sequence[TipMove]) -> bool:
 
 
 def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -> bool:
-    """Return whether the contour is that of a bore, because its radii decrease from the face to the chuck.
+    """Return whether the contour is that of a bore, with radii that decrease from face to chuck.
 
     This rule is used if the retracts do not give a decision.
     """
@@ -347,7 +347,7 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 
 def parse_tap_size(comment: str) -> tuple[float, float]:
-    """Return the diameter and the pitch in mm of a tap that a comment names, or 0 for a missing value.
+    """Return the diameter and pitch in mm of a tap named in a comment, with 0 for a missing value.
 
     Examples are 1/4-20, 10-32 and M6X1, or 1 4 20, 10 32 and 20 TPI with the characters of the control.
     """
@@ -402,7 +402,7 @@ def _plunges_outward(moves: Iterable[TipMove]) -> bool:
 
 
 def _find_tip_quadrant(use: ToolUse, *, rear: bool) -> int:
-    """Return the tip quadrant of the corner of the edge that is set.
+    """Return the tip quadrant of the edge corner to which the tool is set.
 
     This is the left corner unless a comment names the right corner.
     """
@@ -424,7 +424,7 @@ def _parse_diameter(comment: str) -> float:
 
 
 def _format_length(mm: float, use: ToolUse) -> str:
-    """Return a length as a text in the unit of the program."""
+    """Return a length as text, in the unit of the program."""
     return (
         Message("{unit} mm", unit=f"{mm:.2f}") if use.is_metric else Message("{mm} in", mm=f"{mm / 25.4:.3f}")
     )

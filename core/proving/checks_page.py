@@ -1,4 +1,4 @@
-"""Generator of the page about the checks, run by ``python -m core.proving.checks_page docs/checks.md``."""
+"""Generator of the checks page, run by ``python -m core.proving.checks_page docs/checks.md``."""
 
 from __future__ import annotations
 

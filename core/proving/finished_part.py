@@ -57,7 +57,7 @@ def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> 
 
 
 def _find_block_before_opening(history: PartHistory) -> list[int]:
-    """Return the number of the block before the collet last opens, or an empty list."""
+    """Return a list with the number of the block before the collet last opens, or an empty list."""
     for step in reversed(history.steps):
         if not isinstance(step, TipMove | LiveToolStep) and step.action == ColletSwitch(closed=False):
             return [max(step.n - 1, 0)]

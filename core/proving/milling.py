@@ -132,7 +132,7 @@ class MillingState:
         return part.mill_radial(move.path, radius, length, cone_height=point)
 
     def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
-        """Return whether a live tool moves along a face, so that it would hit material .001 in deeper."""
+        """Return whether a live tool follows a face that it would cut if it were .001 in deeper."""
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:

@@ -36,7 +36,7 @@ FEATURE_TOLERANCE_MM = 0.0012  # mm; smaller differences are ignored
 
 
 class FeatureKind(StrEnum):
-    """The kind of a straight line of a profile."""
+    """The kind of a straight line in a profile."""
 
     DIAMETER = "diameter"
     SHOULDER = "shoulder"
@@ -98,9 +98,9 @@ def _of(profile: ProfilePoints, along: FeatureKind, across: FeatureKind) -> Iter
 
 
 def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
-    """Return the end of straight ``k`` that has no fillet, which is the end next to the longer neighbor.
+    """Return the end of straight line ``k`` that has no fillet, next to its longer neighbor.
 
-    The nose radius at the other end belongs to the straight if it is within the tolerance of the profile.
+    The nose radius at the other end counts as part of the line if it is within the profile tolerance.
     """
     before = math.dist(profile[k - 1], profile[k]) if k else math.inf
     next_length = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf
@@ -201,7 +201,7 @@ def _tip_positions(setup: Setup) -> dict[int, tuple[float, float]]:
 def _find_unmatched(
     own_findings: Iterable[Diagnostic], there: Iterable[Diagnostic]
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Return the findings that exist on one side only, compared by line and code."""
+    """Return the findings that exist in only one of the two proofs, compared by line and code."""
 
     def key(each: Diagnostic) -> tuple[int, str]:
         return each.line, each.code

@@ -51,7 +51,7 @@ ReportProgress = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProgramSteps:
-    """All blocks of a program in their order, with the settings of the stock and the tools."""
+    """All blocks of a program in program order, with the settings of the stock and the tools."""
 
     block_groups: tuple[BlockGroup, ...]
     part_settings: PartSettings
@@ -59,7 +59,7 @@ class ProgramSteps:
 
 @dataclass(slots=True)
 class StepCollector:
-    """A collector of the blocks of one pass through a program, up to the limit for the operator screen."""
+    """A collector of the blocks of one program pass, up to the block limit of the operator screen."""
 
     part_settings: PartSettings
     _parts: list[BlockGroup] = field(default_factory=list)
@@ -79,7 +79,7 @@ class StepCollector:
 
     @property
     def overflow_reason(self) -> str:
-        """Return the reason why the part cannot be made, as a sentence, or an empty text."""
+        """Return the reason why the part cannot be made, as a sentence, or an empty string."""
         if self._blocks <= MAX_MOVES:
             return ""
         hint = "use 'turndesk prove --stock' for longer programs"
@@ -209,7 +209,7 @@ class PartHistory:
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
 
     def is_current(self, instant: PartInstant) -> bool:
-        """Return whether ``instant`` is the instant that was returned last, so that the part is unchanged."""
+        """Return whether ``instant`` was returned last, which means that the part has not changed since."""
         return instant is self._last
 
     def make_solid(self, instant: PartInstant) -> Solid | None:
@@ -368,7 +368,7 @@ def _round(shape: ToolShape | None, axial: bool) -> RoundAxis:
 
 
 def find_polyline_fraction(points: Sequence[Point], position: Point) -> float:
-    """Return the fraction of a polyline before its point that is nearest to ``position``."""
+    """Return the fraction of a polyline up to its point nearest to ``position``."""
     gone = best = 0.0
     least = math.inf
     total = sum(math.dist(a, b) for a, b in pairwise(points))

@@ -1,4 +1,4 @@
-"""The part at one time of a program: section, tool and collisions, and copies from which work can continue.
+"""The part at one time in a program: section, tool and collisions, and copies to continue from.
 
 All arrays are independent, so another thread may store them.
 """
@@ -100,7 +100,7 @@ class PartInstant(NamedTuple):
 
 
 def copy_material(part: TurnedPart | None) -> MaterialRadii | None:
-    """Return a copy of the present material, for a later comparison."""
+    """Return a copy of the current material, for a later comparison."""
     return None if part is None else (part.inner_radii.copy(), part.outer_radii.copy())
 
 
@@ -110,10 +110,7 @@ def find_hit(
     simulation: PartSimulation,
     previous_material: MaterialRadii | None,
 ) -> MaterialHit | None:
-    """Return the material that the last block hit according to one of its findings, or None.
-
-    ``previous_material`` is the material before that block.
-    """
+    """Return the material that the last block hit, or None if no finding of the block reports a hit."""
     if not is_serious(finding):
         return None
     if finding.check_name in _CLAMPING_CHECKS:
@@ -158,7 +155,7 @@ def _clamping_hit(
 def _removed_material_hit(
     finding: Diagnostic, previous_material: MaterialRadii, part: TurnedPart
 ) -> MaterialHit | None:
-    """Return the material that a block has removed, from the least to the greatest radius of each column."""
+    """Return the radius range of removed material in each column, or None if none was removed."""
     layers = len(previous_material[0])
     low, high = part.inner_radii[:layers], part.outer_radii[:layers]
     was = previous_material[1] > previous_material[0]
@@ -218,7 +215,7 @@ class PartCopies:
         return making
 
     def store_if_due(self, step_count: int, simulation: PartSimulation) -> None:
-        """Store a copy if the interval since the last copy has passed."""
+        """Store a copy at every multiple of the copy interval that has no copy yet."""
         if step_count % self._every == 0 and step_count not in self._copies:
             self.store_copy(step_count, simulation)
 

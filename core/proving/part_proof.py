@@ -1,4 +1,4 @@
-"""The proof of the part: the blocks of a program remove material from the stock, and faults are reported.
+"""The proof of the part: program blocks remove material from the stock, and faults are reported.
 
 All moves are collected first, because stock and tools that are not specified are derived from the moves.
 """
@@ -39,7 +39,7 @@ def prove_with_part(
     on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
     check_canceled: Callable[[float], None] | None = None,
 ) -> tuple[ProofReport, PartReport | None]:  # fmt: skip
-    """Return the proof of a program including the findings of its part.
+    """Return the proof of a program, with the findings about its part.
 
     The proof of a mill program includes no part. ``on_span`` receives each span, as in ``prove``.
     ``check_canceled`` may raise to cancel while the part is made.
@@ -63,7 +63,7 @@ def prove_with_part(
 
 
 def require_tool_offsets(report: ProofReport, setup: Setup) -> ProofReport:
-    """Return the report of ``prove`` with each missing tool offset as an error, if any offsets are known.
+    """Return the report of ``prove`` with missing tool offsets as errors, if any offsets are known.
 
     The machine would not start with a missing offset. The operator screen and the command ``run`` reject
     such a start themselves.
@@ -86,7 +86,7 @@ _WEAKER_CHECKS = {
 
 
 def _remove_weaker_findings(report: Iterable[Diagnostic], findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the report without warnings that an error of the part confirms.
+    """Return the diagnostics without the warnings that an error about the part confirms.
 
     The error must be on the line of the warning or on a later line.
     """

@@ -171,7 +171,7 @@ class PartSimulation:
         return turned + (milling.nbytes if milling is not None else 0)
 
     def _find_unspecified_data(self, required_data: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the data that are not specified for the active tool and on which a finding depends."""
+        """Return the unspecified data of the active tool on which a finding depends."""
         names = [STOCK] if STOCK in required_data and not self._stock_said else []
         assumed = self._tools.assumed_tools.get(self._tool)
         if assumed is not None and (
@@ -183,7 +183,7 @@ class PartSimulation:
         return tuple(names)
 
     def copy(self) -> PartSimulation:
-        """Return an independent copy of the simulation, which shares the constant data."""
+        """Return a copy of the simulation that shares only the constant data."""
         found = self.findings
         shared: tuple[object, ...] = (self._tools, self._stock, found.clamping, found.neighbors)
         shared += (*self._cutters.values(), *found.diagnostics)

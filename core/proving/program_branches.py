@@ -1,6 +1,6 @@
-"""All paths through a program: at M95 and M97, both states of the input are proved before the start.
+"""All paths through a program, with both states of the input proved at each M95 and M97.
 
-The first path uses the present inputs. At each conditional call, a copy of the pass is stored for the other
+The first path uses the current inputs. At each conditional call, a copy of the pass is stored for the other
 state. A path ends where it reaches a line in the same state as an earlier path, because the rest has
 already been proved. Paths that are not proved are listed.
 """
@@ -36,9 +36,9 @@ from core.proving.spindle_forecast import SETTLING_TIME_S
 
 
 class BranchFork(NamedTuple):
-    """The point at which another path leaves a path.
+    """A point at which a second path branches off.
 
-    It contains the number of blocks that were executed before, the time in seconds, and the other path.
+    It contains the number of blocks executed up to this point, the time in seconds, and the second path.
     """
 
     block_count: int
@@ -190,7 +190,7 @@ class InputChoice:
 
     @property
     def description(self) -> str:
-        """Return the choice as a text for the operator."""
+        """Return the choice as text for the operator."""
         name = "7" if self.terminal_name == "TB2-9" else self.terminal_name
         return Message(
             "input {number} is {state} at line {line}",
@@ -216,7 +216,7 @@ class _BranchPass:
 
 
 def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
-    """Return the message preceded by the last two input states of its path, which the operator can check."""
+    """Return the message after the last two input states of its path, for the operator to check."""
     if len(choices) == 1:
         return Message("If {input}: {message}", input=choices[0].description, message=message)
     return Message(
@@ -290,7 +290,7 @@ class BranchProof:
     # Called by the proof:
 
     def iter_spans(self, proof_pass: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
-        """Yield the spans of the present path while the path is executed."""
+        """Yield the spans of the current path while the path is executed."""
         if self.root_pass is None:
             yield from timeline.iter_spans()
             return
@@ -403,7 +403,7 @@ class BranchProof:
             )
 
     def _unproved_findings(self) -> Iterator[Diagnostic]:
-        """Yield a warning that names the paths that were not proved."""
+        """Yield a warning that names the unproved paths."""
         left = self._unproved + len(self._waiting)
         if not left:
             return

@@ -1,4 +1,4 @@
-"""A program on a time scale, where every elementary block has a start and an end, planned as in a run."""
+"""A program on a time scale with the start and end of each elementary block, planned as in a run."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ BlockGroup = list[Block] | StraightMoveSeries
 class PendingBlocks:
     """Blocks that have been passed to the planner but have no times yet.
 
-    Series remain whole if possible.
+    A series is divided only if necessary.
     """
 
     def __init__(self) -> None:
@@ -61,7 +61,7 @@ class PendingBlocks:
 
     @property
     def first_block(self) -> Block | None:
-        """Return the oldest pending block, or None."""
+        """Return the oldest pending block, or None if no block is pending."""
         return self._parts[0][0] if self._parts else None
 
     def append(self, blocks: Block | StraightMoveSeries) -> None:
@@ -113,7 +113,7 @@ class MotionSpan(NamedTuple):
 
     @property
     def last_block(self) -> Block | None:
-        """Return the last block that ends in the span, or None."""
+        """Return the last block that ends in the span, or None if no block ends in it."""
         return self.block_groups[-1][-1] if self.block_groups else None
 
     @property
@@ -135,7 +135,7 @@ class MotionSpan(NamedTuple):
                 yield each
 
     def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
-        """Yield the same values as ``iter_block_times``, but with each series as one item."""
+        """Yield the same items as ``iter_block_times``, but with each series as a single item."""
         shift, first = self.start_time_s - self.chunk.start_time_s, 0
         for part in self.block_groups:
             there = slice(first, first + len(part))
@@ -148,7 +148,7 @@ class MotionSpan(NamedTuple):
 
 
 class RestSpan(NamedTuple):
-    """A rest from ``start_time_s`` to ``end_time_s``.
+    """A period at rest from ``start_time_s`` to ``end_time_s``.
 
     ``block`` is a block without motion, or None for a wait before the next motion.
     """
@@ -163,7 +163,7 @@ class RestSpan(NamedTuple):
             yield self.block, self.start_time_s, self.end_time_s
 
     def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
-        """Yield the same values as ``iter_block_times``."""
+        """Yield the same items as ``iter_block_times``."""
         return self.iter_block_times()
 
 
@@ -296,7 +296,7 @@ class Timeline:
         self._back = each
 
     def _make_index_wait(self, block: Block) -> RestSpan:
-        """Return the wait until the axes may start in step with the spindle index, at most one revolution.
+        """Return the rest span until the axes may start at the spindle index, at most one revolution.
 
         The corresponding rule of the executor is in docs/decisions/0016-threads-follow-the-spindle.md.
         """
@@ -318,7 +318,7 @@ class Timeline:
         return span
 
     def _follow_css(self, rpm: float) -> None:
-        """Set the spindle speed to ``rpm``, which constant surface speed has reached.
+        """Set the spindle speed to ``rpm``, the value that constant surface speed has reached.
 
         If the spindle has not yet reached its speed, command a ramp to ``rpm``.
         """
@@ -328,7 +328,7 @@ class Timeline:
             self.spindle.set_speed(self.time_s, rpm)
 
     def _wait_for_speed(self) -> Iterator[RestSpan]:
-        """Yield the wait for the spindle to reach its speed before a feed."""
+        """Yield the rest span in which the spindle reaches its speed before a feed, if it must ramp."""
         if self._speed_wanted:
             self._speed_wanted = False
             yield self._rest(
@@ -336,7 +336,7 @@ class Timeline:
             )
 
     def _wait_seconds(self, seconds: float) -> float:
-        """Return the wait in seconds for a real machine, or 0 for an ideal machine."""
+        """Return the waiting time in seconds, which is 0 for an ideal machine."""
         return 0.0 if self._ideal else seconds
 
     def _rest(self, seconds: float, block: Block | None = None) -> RestSpan:
@@ -400,6 +400,6 @@ def iter_timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
 
 
 def iter_timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
-    """Yield the same values as ``iter_timed_blocks``, but with each series of moves as one item."""
+    """Yield the same items as ``iter_timed_blocks``, but with each series as a single item."""
     for span in timeline.iter_spans():
         yield from span.iter_group_times()

@@ -69,9 +69,9 @@ class PartSettings:
 
     @property
     def can_refuse_start(self) -> bool:
-        """Return whether an error of the part can be independent of assumptions.
+        """Return whether an error about the part can prevent a start.
 
-        This requires that the stock or the clamping is specified.
+        This is possible only if the stock or the clamping is specified, not assumed.
         """
         return self.stock is not None or self.clamping is not None
 
@@ -146,14 +146,14 @@ class ProgramTools:
             self.assumed_tools[number] = each.add_diameter(use, bore).add_width(use, threads)
 
     def find_shape(self, number: int) -> ToolShape | None:
-        """Return the shape of a tool, or None for a bar stop or if no cutting shape is known."""
+        """Return the shape of a tool, or None for a bar stop or an unknown cutting shape."""
         if number in self.assumed_tools:
             return self.assumed_tools[number].tool_shape
         return self._setting.shapes.get(number)
 
     @property
     def unsized_drills(self) -> list[int]:
-        """Return the T numbers of the drills and reamers of the program with an assumed diameter."""
+        """Return the T numbers of the program's drills and reamers whose diameter is assumed."""
         return [
             n
             for n, each in sorted(self.assumed_tools.items())
@@ -169,7 +169,7 @@ class ProgramTools:
         return has_releasing_tap_holder(self.tool_uses[number]) if number in self.tool_uses else False
 
     def make_cutter(self, number: int) -> Cutter | None:
-        """Return a cutter for the tool, or None.
+        """Return a cutter for the tool, or None if it has no cutting shape or is a radial live tool.
 
         Without a specified holder, only the edges of the tool are used.
         """
@@ -198,7 +198,7 @@ class ProgramTools:
 
     @property
     def part_off_z(self) -> float | None:
-        """Return the deepest Z of a parting tool that feeds toward the axis, or None."""
+        """Return the deepest Z of a parting tool that feeds toward the axis, or None if none does."""
         deepest: list[float] = []
         for number, use in self.tool_uses.items():
             shape = self.find_shape(number)
@@ -256,7 +256,7 @@ class ProgramTools:
 
     @property
     def longest_feed_away(self) -> TipMove | None:
-        """Return the longest feed away from the chuck if all feeds in total lead away from it, or None."""
+        """Return the longest feed away from the chuck, or None unless the feeds in total lead away."""
         feeds = [
             m for n, use in self.tool_uses.items() if self.find_shape(n) for m in use.moves if not m.is_fast
         ]
@@ -266,7 +266,7 @@ class ProgramTools:
         return feeds[along.index(max(along))]
 
     def assume_stock(self) -> Stock | None:
-        """Return the stock that the cuts of the tools suggest, or None."""
+        """Return the stock that the cuts of the tools suggest, or None if it cannot be derived."""
         outside: list[TipMove] = []
         bore: list[TipMove] = []
         for number, use in self.tool_uses.items():
@@ -350,7 +350,7 @@ def _cuts_face(move: TipMove) -> bool:
 
 
 def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: float) -> float:
-    """Return slightly more than the radius of the largest cut, but not so much that a rapid hits the bar.
+    """Return a bar radius slightly above the largest cut, but so small that no rapid hits the bar.
 
     If only grooves or faces are cut, the bar is slightly smaller than the start of the largest of these
     cuts.

@@ -73,7 +73,7 @@ def find_modulo_angle_range(minimum: float, maximum: float) -> ValueRange:
 class ProgramTotals:
     """Totals of lengths in mm, and ranges in the program's frame.
 
-    Blocks must be added in their order.
+    Blocks must be added in program order.
     """
 
     def __init__(self) -> None:
@@ -127,7 +127,7 @@ class ProgramTotals:
     def _add_series(self, parts: Sequence[StraightMoveSeries]) -> None:
         """Add series that are all rapids or all feeds.
 
-        No table of the values that are equal in all moves is created.
+        Values that are equal in all moves are not expanded into a table.
         """
         x0, z0, x, z = (np.concatenate([getattr(part, name) for part in parts]) for name in _ENDS)
         length = np.hypot(x - x0, z - z0)
@@ -240,7 +240,7 @@ class ProofPass:
 
     @property
     def checks(self) -> CuttingChecks:
-        """Return the cutting checks in their present state."""
+        """Return the cutting checks in their current state."""
         return self._checks
 
     def add_span(self, span: MotionSpan | RestSpan) -> None:
@@ -266,10 +266,7 @@ class ProofPass:
             self._evaluate_pending()
 
     def _evaluate_pending(self) -> None:
-        """Evaluate the collected blocks together.
-
-        This is faster for short motions.
-        """
+        """Evaluate the collected blocks together, which is faster for short motions."""
         parts, self._unseen, self._waiting = self._unseen, [], 0
         self._tally.add_blocks(parts)
         for part in parts:
@@ -350,7 +347,7 @@ class ProofPass:
     def _lathe_ranges(self, source: ProgramSource) -> ProgramRanges:
         """Return the ranges of a lathe program.
 
-        The C range of a SINUMERIK program is given as its C axis counts the angle.
+        The C range of a SINUMERIK program follows the angle count of its C axis.
         """
         reach = self._tally.ranges
         modulo = (
@@ -376,7 +373,7 @@ class ProofPass:
 def _weaken_to_warning(finding: Diagnostic) -> Diagnostic:
     """Return the finding as a warning if it is an error that depends on an assumed position.
 
-    A run would stop at such an error.
+    The hint states the assumption and that nothing after this point is proved.
     """
     if not finding.assumptions or finding.severity is not Severity.ERROR:
         return finding

@@ -70,7 +70,7 @@ class MillResults:
 
 @dataclass(frozen=True, slots=True)
 class BranchSummary:
-    """The paths through a program, which result from its inputs and from block delete on and off.
+    """The paths through a program that result from its inputs and from block delete on and off.
 
     ``cycle_time_range`` is the least and the greatest cycle time of the paths in seconds.
     ``unproved_count`` is the number of paths that were not proved.
@@ -85,7 +85,7 @@ class BranchSummary:
 class ProofReport:
     """The proof of one program.
 
-    If it has errors, the values cover only the part of the program that could be interpreted.
+    If the program has errors, the values cover only the part of the program that could be interpreted.
     """
 
     name: str

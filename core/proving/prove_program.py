@@ -1,6 +1,6 @@
 """Proof of a program, with block delete both on and off.
 
-Cycle Start uses the present position of the switch. A fault that occurs only in the other position is a
+Cycle Start uses the current position of the switch. A fault that occurs only in the other position is a
 warning, because the program is proved again when the switch position changes.
 """
 

@@ -113,7 +113,7 @@ class _SpanSampler:
         return speeds
 
     def _by_radius(self, block: Block, machine_x: float) -> float:
-        """Return the signed rpm that the surface speed of the block requires at the present position."""
+        """Return the signed rpm that the surface speed of the block requires at the current position."""
         modal, most = block.modal, self._spindle.max_rpm
         rpm = find_surface_rpm(
             block.css or 0.0, machine_x - block.offset_x, modal.min_css_rpm, modal.max_css_rpm or most

@@ -32,7 +32,7 @@ def calculate_max_orientation_time_s(spindle: SpindleModel, direction: int) -> f
 class SpindleForecast:
     """The forecast of the spindle speed over time, and of the times at which the spindle is at speed.
 
-    The speed is signed rpm while the drive ramps. Times must not decrease between calls of
+    The speed is in signed rpm and includes the ramps of the drive. Times must not decrease between calls of
     ``command_speed``.
     """
 

@@ -1,4 +1,4 @@
-"""Check of the first move of a start against the present part, up to the first known position.
+"""Check of the first move of a start against the current part, up to the first known position.
 
 The proof of a program starts at its first known position. The moves before this position depend on the axis
 positions at Cycle Start. For example, after an E-stop in a bore, the straight line to the first position
@@ -71,8 +71,8 @@ class FirstMove:
     X and Z at which the displayed tip is at part zero. It belongs to the tool that hits a body, or
     otherwise to the tool at the end of the move. ``hit_body`` is the body that ``tool`` hits at
     ``hit_z_mm`` (part's frame). If ``is_inside_at_start`` is True, the tool is inside the body before it
-    moves. ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or empty if no direction is
-    certain to be safe.
+    moves. ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or an empty string if no
+    direction is certain to be safe.
     """
 
     path: tuple[tuple[float, float, bool], ...]
@@ -105,7 +105,7 @@ def _is_known(one: Block, other: Block) -> bool:
 
 
 def make_unchecked_move(moves: Sequence[TipMove]) -> FirstMove:
-    """Return the first move that consists of the given moves, without a collision check."""
+    """Return a first move that consists of the given moves, without checking for collisions."""
     if not moves:
         return FirstMove(())
     legs = [(*_machine(moves[0].points[0], moves[0].part_zero), True)]
@@ -115,7 +115,7 @@ def make_unchecked_move(moves: Sequence[TipMove]) -> FirstMove:
 
 
 def _tip_position(axis_position: Point, zero: Point) -> Point:
-    """Return the Z and r in mm of the tip in the part's frame, with the axes at the given machine X and Z."""
+    """Return Z and r in mm of the tip in the part's frame, with the axes at this machine X and Z."""
     return axis_position[1] - zero[1], axis_position[0] - zero[0]
 
 
@@ -142,7 +142,7 @@ class StartCheck:
         start_state: StartState,
         check_canceled: CheckCanceled | None = None,
     ) -> FirstMove:
-        """Return the first move of a start with the body that it hits, if any."""
+        """Return the first move of a start, with the body that it hits, if any."""
         moves = find_first_moves(iter_blocks, start_state.axis_positions)
         making = self._making(start_state, check_canceled)
         known = making.milling is None and (making.part is not None or self.part_history.stock is None)
@@ -250,7 +250,7 @@ class StartCheck:
         return None
 
     def _is_intended_cut(self, body: CollisionBody, move: TipMove, start_state: StartState) -> bool:
-        """Return whether the move is intended to cut this material."""
+        """Return whether the move is intended to cut the material that it hits."""
         return (
             body is CollisionBody.PART
             and not start_state.starts_at_first_line

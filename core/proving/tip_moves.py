@@ -1,4 +1,4 @@
-"""The moves of a program in the part's frame, which are the path of the tool's control point."""
+"""The moves of a program in the part's frame, as the path of the tool's control point."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ motion.
 
 
 class StepConverter:
-    """A converter of the blocks of a program, in their order, to steps.
+    """A converter of the blocks of a program, in program order, to steps.
 
     A G92 before the first move of a tool specifies the position of part zero. A later G92 shifts the part,
     like G10.
@@ -175,7 +175,7 @@ def make_live_tool_move(step: LiveToolStep) -> TipMove:
 def is_rigid_tap(block: Block) -> bool:
     """Return whether the block is a rigid tap.
 
-    In a rigid tap, the engaged spindle turns in proportion to a move along Z on the axis.
+    In a rigid tap, the engaged spindle turns in proportion to a move along Z at the centerline.
     """
     turned = block.kind is BlockKind.FEED and block.c != block.c0 and block.z != block.z0
     return turned and block.modal.c_locked and block.x == block.x0 and abs(block.x) < _ON_AXIS

@@ -115,7 +115,7 @@ class ScopeRecord:
 
 
 def _is_unicode(text: str) -> bool:
-    """Return whether a text can be displayed and exported.
+    """Return whether a string can be displayed and exported.
 
     JSON can contain unpaired surrogates, which cannot be exported.
     """
@@ -155,7 +155,7 @@ def check_record(record: ScopeRecord) -> ScopeRecord:
 
 
 class RecordError(CodedError):
-    """Error raised if a record file cannot be used, with the file, the reason and a remedy as its text."""
+    """Error raised if a record file cannot be used; the text names the file, the reason and a remedy."""
 
 
 class AnalysisError(CodedError):

@@ -74,7 +74,7 @@ def _packed(record: ScopeRecord, channel: Channel) -> np.ndarray[tuple[int, ...]
 
 
 def open_record(path: Path) -> ScopeRecord:
-    """Return the record in a file, or the last minutes from the file of a ring buffer.
+    """Return the record in a record file, or the last minutes in a ring file.
 
     Raises RecordError if the file cannot be read or is damaged.
     """
@@ -182,7 +182,7 @@ def _record(header: dict[str, object], column: Callable[[str], object]) -> Scope
 def write_csv_lines(record: ScopeRecord, write: Callable[[str], object]) -> None:
     """Write a record as CSV lines.
 
-    Times are in seconds from the start of the record, and unknown values are empty.
+    Times are in seconds from the start of the record, and unknown values are empty fields.
     """
     names = [
         Message("{item} [{unit}]", item=each.name, unit=each.unit) if each.unit else each.name
@@ -216,9 +216,9 @@ def save_csv(record: ScopeRecord, path: Path) -> None:
 
 
 def _texts(column: FloatArray, *, whole: bool) -> list[str]:
-    """Return the values of a column as texts with all digits.
+    """Return the values of a column as strings with all digits.
 
-    Unknown values become empty texts.
+    Unknown values become empty strings.
     """
     if whole:
         return ["" if math.isnan(value) else str(int(value)) for value in column.tolist()]

@@ -1,7 +1,7 @@
 """The ring buffer of the scope in memory, with the samples of the last minutes.
 
-One thread writes and any thread reads without a lock. The ring consists of two buffers: one for samples at
-the driver's rate, and one for quantities of the control at each tick. A row is written before it is
+One thread writes and any thread may read without a lock. The ring consists of two buffers: one for samples
+at the driver's rate, and one for quantities of the control at each tick. A row is written before it is
 counted, and it ends with its number, so a partly written row is never used.
 """
 
@@ -93,7 +93,7 @@ class RingLayout:
 
     @property
     def description(self) -> dict[str, str]:
-        """Return the machine and the states as texts, for the description of a record."""
+        """Return the machine and the states as strings, for the description of a record."""
         return {"machine": self.machine_name, "states": "|".join(self.state_names)}
 
 
@@ -119,7 +119,7 @@ def pack_bits(names: tuple[str, ...], active_names: Collection[str]) -> list[flo
 class RowBuffer:
     """A ring buffer of rows of one kind.
 
-    One thread writes, and any thread reads without a lock. Column 0 is the time. ``memory`` has
+    One thread writes, and any thread may read without a lock. Column 0 is the time. ``memory`` has
     ``calculate_buffer_size(capacity, width)`` bytes and can be shared with another process.
     """
 
@@ -245,7 +245,7 @@ class ScopeRing:
 
     @classmethod
     def from_layout(cls, layout: RingLayout, memory: memoryview | None = None) -> ScopeRing:
-        """Return the ring in ``memory``, which has ``layout.size_bytes`` bytes, or a new and empty ring."""
+        """Return the ring in ``memory`` (``layout.size_bytes`` bytes), or an empty ring if it is None."""
         room, ticks = layout.row_capacities
         cut = calculate_buffer_size(room, layout.sample_width)
         return cls(
@@ -339,7 +339,7 @@ class _Source:
     def _worst(self, column: int) -> FloatArray:
         """Return the largest value of all ticks since the previous sample.
 
-        At standstill, samples are less frequent than ticks.
+        Several ticks can occur between two samples, because fewer samples are taken at standstill.
         """
         held = self._select_tick_values(column)
         known = np.flatnonzero(self._seen >= 0)

@@ -1,4 +1,4 @@
-"""The file of the scope's ring, with the samples of the last minutes on disk, which remain after a crash.
+"""The scope's ring file, which preserves the samples of the last minutes on disk after a crash.
 
 The file has its full size from the start, so a disk that becomes full later does not affect it. The file is
 written instead of memory-mapped, because a failing disk then raises an error instead of ending the process.

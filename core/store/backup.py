@@ -97,7 +97,7 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def back_up_store(folder: Path, target: Path) -> None:
-    """Copy the store of ``folder`` to ``target`` in its present state.
+    """Copy the store of ``folder`` to ``target`` in its current state.
 
     This is possible even while the store is being written. The copy contains the names and levels of the
     users, but no PINs, because anyone with the file could try all PINs. Raises StoreError if the folder has
@@ -199,7 +199,7 @@ def _is_there(target: Path) -> bool:
 
 
 def _save_old_store(path: Path) -> Path:
-    """Copy the store that is about to be replaced, intact or damaged, together with its log if one exists."""
+    """Copy the store that is about to be replaced, intact or damaged, with its log if one exists."""
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
@@ -276,8 +276,8 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
 class BackupVerdict(NamedTuple):
     """The result of checking a backup: its first problem, and its differences from the store.
 
-    ``first_problem`` is empty if the backup is intact. ``difference_counts`` contains the number of
-    changed, missing or new items for each table. ``is_older`` means that the backup has an older store
+    ``first_problem`` is an empty string if the backup is intact. ``difference_counts`` contains the number
+    of changed, missing or new items for each table. ``is_older`` means that the backup has an older store
     version without comparable checksums, so only its programs are compared.
     """
 
@@ -289,7 +289,7 @@ class BackupVerdict(NamedTuple):
 def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
     """Check a backup page by page and compare it with the open store.
 
-    The function writes to neither of them. It reads the whole file and may take some time.
+    Neither the backup nor the store is changed. Reading the whole file may take some time.
     """
     try:
         found = find_problems(path)

@@ -163,7 +163,7 @@ def find_damaged_rows(
 
 
 def find_damaged_history(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Return a message for each damaged row of a history table, and a message if the schema has changed.
+    """Return a message for each damaged row of a history table, and one if the schema has changed.
 
     These tables grow for years. They are checked completely only by the command ``verify``.
     """
@@ -181,7 +181,7 @@ def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tup
 
 
 def make_row_label(name: str, key: row_checksums.RowKey) -> str:
-    """Return the operator's name for a row of a table that has checksums."""
+    """Return the name that the operator sees for a row of a table with checksums."""
     table = next((each for each in OFFSET_TABLES.values() if each.name == name), None)
     if any(log.name == name for log in HISTORY_TABLES):
         return Message("entry {key} of the offset history", key=key)

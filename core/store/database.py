@@ -171,7 +171,7 @@ def _find_damage(connection: sqlite3.Connection) -> list[str]:
 def _rebuild_indexes(
     connection: sqlite3.Connection, path: Path, damage_messages: list[str]
 ) -> tuple[str, ...]:
-    """Rebuild the indexes if an index does not match its table, and return a message about the repair.
+    """Rebuild the indexes if one does not match its table, and return a message about the repair.
 
     Raises StoreError if the indexes cannot be rebuilt.
     """

@@ -76,7 +76,7 @@ class EventLog:
     def log_event(
         self, kind: str, text: str, line: int = 0, record: str = "", author: str = ""
     ) -> Future[None]:
-        """Log an event with the present time. The event is not lost if the disk is full."""
+        """Log an event with the current time. The event is not lost if the disk is full."""
         return self.log_events([EventRow(get_utc_now_text(), kind, text, line, record, author)])
 
     def log_events(self, events: Iterable[EventRow]) -> Future[None]:

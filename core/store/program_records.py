@@ -249,7 +249,7 @@ def record_complete_cycles(
 def record_proof(
     connection: sqlite3.Connection, program: str, result: str, cycle_time_s: float | None, proved_at: str
 ) -> None:
-    """Record the result of a proof at ``proved_at``, with its calculated cycle time in seconds or None."""
+    """Record the result of a proof at ``proved_at`` and its calculated cycle time (s), if known."""
     key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
@@ -258,7 +258,7 @@ def record_proof(
 
 
 def transfer_records(connection: sqlite3.Connection, old_name: str, new_name: str) -> None:
-    """Transfer the versions, counts, run records, settings and measured features to a new program name.
+    """Transfer the versions, counts, run records, settings and measured features to a new name.
 
     If the new name already has versions or features, these remain, and those of the old name are not
     transferred. Raises StoreError if the new name is invalid.
@@ -330,7 +330,7 @@ def _loaded(value: object) -> str:
 
 
 def assign_rows_to_text(connection: sqlite3.Connection, program: str) -> None:
-    """Assign rows that an older version stored by name to the text that was proved then, if it is known."""
+    """Assign rows that an older version stored by name to the text proved at that time, if known."""
     row = connection.execute(
         "SELECT sha256 FROM program_versions JOIN programs ON program = programs.id"
         " WHERE name = ?1 AND saved <= coalesce((SELECT proved FROM runs WHERE program = ?1), '')"

@@ -81,7 +81,7 @@ class TextBytes(bytes):
 def calculate_checksum(table: str, values: RowValues) -> str:
     """Return the SHA-256 of a row over all its columns in order.
 
-    Texts are included as bytes, and floats with every bit.
+    Text values are included as bytes, and floats with every bit.
     """
     if table not in _WITH_BLOBS:  # a blob in another table is a text whose type is damaged
         shown = [("blob", value) if type(value) is bytes else value for value in values]
@@ -97,7 +97,7 @@ _WITH_BLOBS = frozenset({"people"})
 
 
 def create_checksum_triggers(connection: sqlite3.Connection) -> None:
-    """Create triggers in this connection that update the checksum of every row that the connection writes."""
+    """Create connection triggers that update the checksum of every row that this connection writes."""
     connection.create_function("row_sum", -1, _row_sum, deterministic=True)
     for table, key in CHECKSUMMED_TABLES.items():
         if not list_checksummed_columns(connection, table):
@@ -159,14 +159,14 @@ def find_broken_rows(
 
 
 def read_intact_rows(connection: sqlite3.Connection, table: str) -> dict[RowKey, RowValues]:
-    """Return the rows that match their checksums, by key, with texts as bytes."""
+    """Return the rows that match their checksums, by key, with text values as bytes."""
     sums = _sums(connection, table)
     rows = _rows(connection, table).items()
     return {key: values for key, values in rows if sums.get(key) == calculate_checksum(table, values)}
 
 
 def read_intact_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValues | None:
-    """Return a row that matches its checksum, with texts as bytes, or None if it is missing or damaged."""
+    """Return a row that matches its checksum (text values as bytes), or None if missing or damaged."""
     found = read_row(connection, table, key)
     if found is None or read_saved_checksum(connection, table, key) != calculate_checksum(table, found):
         return None
@@ -176,8 +176,8 @@ def read_intact_row(connection: sqlite3.Connection, table: str, key: RowKey) -> 
 def read_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValues | None:
     """Return the columns of a row that its checksum covers, or None if the row is missing.
 
-    Texts are returned as bytes. The row is read without an index, because a damaged index can have wrong
-    keys.
+    Text values are returned as bytes. The row is read without an index, because a damaged index can have
+    wrong keys.
     """
     named = ", ".join(list_checksummed_columns(connection, table))
     found = query_raw_rows(
@@ -187,13 +187,13 @@ def read_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValu
 
 
 def read_saved_checksum(connection: sqlite3.Connection, table: str, key: RowKey) -> str:
-    """Return the saved checksum of a row, or an empty text if the row has no checksum."""
+    """Return the saved checksum of a row, or an empty string if it has none."""
     found = query_raw_rows(connection, "SELECT sha256 FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
     return "".join(_digest(raw_sum) for (raw_sum,) in found)
 
 
 def list_checksummed_columns(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
-    """Return the columns of a table that its checksums cover, in order, or () if the table does not exist."""
+    """Return the columns that a table's checksums cover, in order, or () if the table does not exist."""
     names = (each[1] for each in connection.execute(f"PRAGMA table_info({table})"))
     return tuple(name for name in names if name != _LEFT_OUT.get(table))
 
@@ -201,9 +201,9 @@ def list_checksummed_columns(connection: sqlite3.Connection, table: str) -> tupl
 def query_raw_rows(
     connection: sqlite3.Connection, query: str, values: tuple[ColumnValue, ...] = ()
 ) -> list[RowValues]:
-    """Run a query and return its rows with texts as bytes.
+    """Run a query and return its rows with text values as bytes.
 
-    A damaged text may not be valid UTF-8.
+    A damaged value may not be valid UTF-8.
     """
     before, connection.text_factory = connection.text_factory, TextBytes
     try:
@@ -213,7 +213,7 @@ def query_raw_rows(
 
 
 def decode_values(values: Iterable[ColumnValue]) -> list[int | float | str | None]:
-    """Return the values of an intact row with its texts decoded."""
+    """Return the values of an intact row with its text values decoded."""
     return [value.decode() if isinstance(value, bytes) else value for value in values]
 
 
@@ -264,9 +264,9 @@ def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _key(value: ColumnValue) -> RowKey:
-    """Return a key as an integer or a text.
+    """Return a key as an integer or a string.
 
-    A damaged key becomes a text that matches no other key.
+    A damaged key becomes a string that matches no other key.
     """
     if isinstance(value, TextBytes):
         return value.decode("utf-8", "backslashreplace")
@@ -279,8 +279,8 @@ def _sums(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _digest(value: ColumnValue) -> str:
-    """Return a saved checksum as a text.
+    """Return a saved checksum as a string.
 
-    A damaged checksum becomes a text that matches no row.
+    A damaged checksum becomes a string that matches no row.
     """
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)

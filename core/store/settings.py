@@ -1,4 +1,4 @@
-"""Settings of the store, which are values that JSON can represent, by key."""
+"""Settings of the store: JSON values by key."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The data store: one SQLite file, which any thread can read and a separate thread writes."""
+"""The data store: one SQLite file that any thread can read and a separate thread writes."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class Store:
 
     @property
     def write_error(self) -> str:
-        """Return the reason why the last write failed, or an empty text if it succeeded."""
+        """Return the reason why the last write failed, or an empty string if it succeeded."""
         return self._writer.last_error if self._writer else ""
 
     @property
@@ -172,7 +172,7 @@ class Store:
 
 @contextmanager
 def _read_transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    """Open a read-only transaction, which does not wait for a writer and does not block a writer."""
+    """Open a read-only transaction that neither waits for a writer nor blocks one."""
     connection.execute("BEGIN")
     try:
         yield connection

@@ -59,7 +59,7 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
 
 
 def _damaged() -> sqlite3.DatabaseError:
-    """Return the error that SQLite raises for a file with a schema that cannot be read."""
+    """Return the error that SQLite raises for a file with an unreadable schema."""
     error = sqlite3.DatabaseError("malformed database schema")
     error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
     return error
@@ -157,7 +157,7 @@ class WriterLock:
 
 
 def is_open_for_writing(folder: Path) -> bool:
-    """Return whether a process has the store of this folder open for writing, without locking the store."""
+    """Return, without locking the store of this folder, whether a process has it open for writing."""
     try:
         file = os.open(folder / _LOCK, os.O_RDONLY)
     except OSError:

@@ -1,4 +1,4 @@
-"""Errors of the data store, with the cause that is found from the error codes of SQLite and the system."""
+"""Errors of the data store, with causes derived from the error codes of SQLite and the system."""
 
 from __future__ import annotations
 
@@ -116,9 +116,9 @@ def get_system_error_text(error: Exception) -> str:
 
 
 def _trial(folder: Path) -> OSError | None:
-    """Write a temporary file to ``folder`` and return the system's error, or None if the write succeeds.
+    """Write a temporary file to ``folder``, and return the system's error, or None on success.
 
-    SQLite does not report the system's error.
+    The write is necessary because SQLite does not report the system's error.
     """
     from tempfile import TemporaryFile  # noqa: PLC0415  rarely wanted, and slow to load
 

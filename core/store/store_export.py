@@ -1,4 +1,4 @@
-"""Export of the store to plain text files in inches, for reading or for transfer to another control."""
+"""Export of the store to plain text files in inches, for reading or transfer to another control."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ _UNITS = {FieldType.METRIC_LENGTH: "mm", FieldType.ANGLE: "degrees", FieldType.M
 class RowField:
     """The name, the limits and the type of one field of a row.
 
-    ``minimum`` and ``maximum`` are in mm for a length, and numbers of characters for a text. A field is
+    ``minimum`` and ``maximum`` are in mm for a length, and numbers of characters for a string. A field is
     declared as the annotation of an attribute of the row. Commands and files use the name of this
     attribute.
     """
@@ -77,7 +77,7 @@ class RowField:
 
     @property
     def range_text(self) -> str:
-        """Return the accepted range as a text, in the unit in which the value is entered."""
+        """Return the accepted range as text, in the unit in which the value is entered."""
         if self.choices:
             return ", ".join(self.choices)
         if self.field_type is FieldType.LENGTH:
@@ -191,7 +191,7 @@ class ZeroRow(NamedTuple):
 
 
 class ShapeRow(NamedTuple):
-    """The shape of a tool, in mm and degrees, in which 0 or an empty text means not specified.
+    """The shape of a tool, in mm and degrees, in which 0 or an empty string means not specified.
 
     The nose radius and the tip quadrant are in the tool offset. ``length`` is the cutting length,
     ``stick_out`` is the distance from the holder to the tip, and ``entry`` is the entering angle of the
@@ -323,8 +323,8 @@ class EventOrigin(NamedTuple):
 class EventRow(NamedTuple):
     """One entry of the event log.
 
-    ``line`` is the program line, or 0. ``record`` is a file in the folder ``records``, or empty. ``who`` is
-    the user who made a change, if users log in.
+    ``line`` is the program line, or 0. ``record`` is a file in the folder ``records``, or an empty string.
+    ``who`` is the user who made a change, if users log in.
     """
 
     at: str
@@ -364,10 +364,10 @@ def convert_to_inches(mm: float) -> float:
 
 
 def get_utc_now_text() -> str:
-    """Return the present time as a UTC text with milliseconds."""
+    """Return the current time as a UTC string with milliseconds."""
     return format_utc(datetime.now(UTC))
 
 
 def format_utc(moment: datetime) -> str:
-    """Return a time as a UTC text in the stored format, whose alphabetical order is chronological."""
+    """Return a time as a UTC string in the stored format, whose alphabetical order is chronological."""
     return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

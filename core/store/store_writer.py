@@ -130,7 +130,7 @@ class UnwrittenEntries:
 
 
 def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
-    """Run an operation, and return the reason if the store can never accept it, otherwise an empty text.
+    """Run an operation. Return why the store can never accept it, or an empty string on success.
 
     A temporary disk error is raised, so that all entries are tried again later.
     """
@@ -192,7 +192,7 @@ class StoreWriter:
 
     @property
     def last_error(self) -> str:
-        """Return the reason why changes are not stored, or an empty text if all changes are stored."""
+        """Return the reason why changes are not stored, or an empty string if all changes are stored."""
         return self._trouble or self._hanging
 
     @property
@@ -209,7 +209,7 @@ class StoreWriter:
     def _hanging(self) -> str:
         """Return the message that the disk does not respond.
 
-        The text is empty while the oldest change is younger than ``SLOW_WRITE_S``.
+        The message is an empty string while the oldest change is younger than ``SLOW_WRITE_S``.
         """
         try:
             waited = self._clock() - self._posted[0]

@@ -1,4 +1,4 @@
-"""The columns of the public tables of the store and of its export, for the reference page and its tests."""
+"""The columns of the store's public tables and exports, for the reference page and its tests."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class UserList(NamedTuple):
         return bool(self.rows) or self.has_damaged_row
 
     def find_user(self, name: str) -> UserRow | None:
-        """Return the user with this name, or None.
+        """Return the user with this name, or None if the name is unknown.
 
         Case is ignored.
         """

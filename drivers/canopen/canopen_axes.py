@@ -86,7 +86,7 @@ class CanopenAxes:
         self.queue.reset_to(self._actual_positions())
 
     def run_cycle(self, now: float) -> None:
-        """Supervise the drives, continue a homing, and feed setpoints, without raising an exception.
+        """Supervise the drives, continue a homing, and feed setpoints; this method raises no exceptions.
 
         A fault stops all axes. In cyclic modes, ``advance`` feeds the setpoints at each SYNC instead.
         """
@@ -115,7 +115,7 @@ class CanopenAxes:
         return self._bus.clock.now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue, or the present time if the queue is empty."""
+        """Return the end time of the setpoint queue, or the current time if the queue is empty."""
         return self.queue.get_end_time(self.now())
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -135,7 +135,7 @@ class CanopenAxes:
         self.queue.splice_segments(segments, self.now())
 
     def sample(self) -> AxisSample:
-        """Return the state of the axes from the last replies; its time is that of their SYNC."""
+        """Return the state of the axes from the last replies, with the time of the SYNC before them."""
         actual, powered, seen = self._actual_positions(), self._powered(), self.drives.last_reply_s
         demand, velocity = self.queue.get_commanded_state(self.follower.get_path_time(seen))
         busy = self.active_homing is not None or self._given_up is not None
@@ -159,7 +159,7 @@ class CanopenAxes:
     def enable(self, is_on: bool) -> None:
         """Switch the power of the drives on or off, and wait until all drives have switched.
 
-        Raises DriverError that names the drives that do not switch on.
+        Raises DriverError with the names of the drives that do not switch on.
         """
         if not is_on:
             self._off(DriveState.SWITCH_ON_DISABLED)
@@ -174,7 +174,7 @@ class CanopenAxes:
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
-        """Stop all axes: on the path with RAMP_HOLD, otherwise by a command to all drives at one SYNC."""
+        """Stop all axes: on the path with RAMP_HOLD, otherwise by a stop command at one SYNC."""
         if mode is StopMode.RAMP_HOLD and self._powered():
             self._brake_on_path()
             return
@@ -183,9 +183,9 @@ class CanopenAxes:
             self.drives.exchange_sync()
 
     def home(self, axis: str) -> None:
-        """Start the homing of an axis by its drive.
+        """Start homing an axis with the homing function of its drive.
 
-        Raises DriverError if the power is off or an axis moves.
+        Raises DriverError if the power is off or an axis is moving.
         """
         require_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
@@ -199,8 +199,8 @@ class CanopenAxes:
     def clear_fault(self) -> None:
         """Clear the fault and reset the drives, which remain without power.
 
-        After a bus failure, the bus is also reopened and every node is configured again. Raises
-        DriverError.
+        After a bus failure, the bus is also reopened and every node is configured again. Raises DriverError
+        if this fails or if a fault remains.
         """
         if self._bus.failure:
             self.reconnect_bus()
@@ -211,7 +211,7 @@ class CanopenAxes:
         self.drives.reset_faults()
 
     def is_follower_idle(self, now: float) -> bool:
-        """Return whether neither the queue nor the drives contain setpoints that are still to be executed."""
+        """Return whether neither the queue nor any drive contains setpoints that are not executed yet."""
         return is_queue_finished(self.queue.get_end_time(now), now) and not self.follower.is_executing
 
     def reset_queue(self) -> None:
@@ -251,14 +251,14 @@ class CanopenAxes:
     def _check_braking_time(self, now: float) -> None:
         """Switch the drives off if a quick stop takes too long.
 
-        Otherwise a drive with a failed encoder, or an axis that runs away, would continue to apply force.
+        Otherwise a drive with a failed encoder, or with a runaway axis, would continue to apply force.
         """
         if self._braking and now > self._powerless_at:
             self._braking = False
             self.drives.set_goal_state(DriveState.SWITCH_ON_DISABLED)
 
     def _brake_on_path(self) -> None:
-        """Brake all axes on the path; during homing, the drive brakes with its own ramp."""
+        """Brake all axes on the path, or with the drive's own ramp if an axis is homing."""
         if self.active_homing is not None:
             self.active_homing.cancel()
             self.active_homing, self._given_up = None, self.active_homing
@@ -294,10 +294,7 @@ class CanopenAxes:
         return self._on and self.drives.is_powered
 
     def _actual_positions(self) -> tuple[float, ...]:
-        """Return the positions that the drives measure.
-
-        For an axis without a drive, the queued position is returned.
-        """
+        """Return the measured position of each axis, or the queued position of an axis without a drive."""
         p = list(self.queue.get_commanded_state(self.now())[0])
         for index, axis in zip(self.drives.axis_indices, self.drives.axes, strict=True):
             p[index] = axis.drive.position * axis.config.count

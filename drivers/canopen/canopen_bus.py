@@ -1,4 +1,4 @@
-"""CAN bus with one socket; the loop that owns the bus reads this socket without a separate thread."""
+"""CAN bus with one socket, which the loop that owns the bus reads without a separate thread."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ _ECHOING_INTERFACES = ("udp_multicast",)  # Receives its own frames, so another 
 
 
 class CanBus(canopen.Network):
-    """CAN bus whose frames are all sent and received by the loop that owns the bus.
+    """CAN bus on which only the loop that owns it sends and receives frames.
 
-    In tests, ``advance_time`` is called to advance the time while the bus waits.
+    In tests, the bus calls ``advance_time`` to advance the time while it waits.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class CanBus(canopen.Network):
         """Send the heartbeat when it is due, and process received frames.
 
         The method waits at most ``timeout_s`` seconds for the first frame. This loop deliberately sends the
-        heartbeat itself: a kernel task would continue to send heartbeats after the process has hung.
+        heartbeat itself: a kernel task would continue to send heartbeats even if the process hangs.
         """
         self.send_heartbeat()
         while self.bus is not None and not self.failure:
@@ -126,11 +126,11 @@ class CanBus(canopen.Network):
             ) from error
 
     def send_sync(self) -> None:
-        """Send one SYNC, at which the drives apply the frames that were sent before and reply."""
+        """Send one SYNC. The drives then apply the frames sent before the SYNC, and reply."""
         self.send_message(_SYNC, b"")
 
     def wait_until(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
-        """Process frames until ``is_ready`` returns true, and return whether it did.
+        """Process frames until ``is_ready`` returns true, and return True.
 
         Return False after ``timeout_s`` seconds of real time, or at once if the bus has failed.
         """
@@ -151,7 +151,7 @@ class CanBus(canopen.Network):
         return self._idle is not None
 
     def mark_failed(self, reason: str) -> None:
-        """Mark the bus as failed; if the bus has already failed, the first reason is retained."""
+        """Mark the bus as failed; if the bus has already failed, keep the first reason."""
         self.failure = self.failure or Fault(reason, "bus")
 
     def _wait_in_steps(self, ready: Callable[[], bool]) -> bool:
@@ -174,7 +174,7 @@ class CanBus(canopen.Network):
             self._deliver(message)
 
     def _deliver(self, message: can.Message) -> None:
-        """Pass a frame to its subscribers; after several invalid frames, mark the bus as failed."""
+        """Pass a frame to its subscribers, and mark the bus as failed after several invalid frames."""
         try:
             self.notify(message.arbitration_id, bytearray(message.data), self.clock.now())
         except (struct.error, IndexError, ValueError) as error:
@@ -227,7 +227,7 @@ class PollingSdoClient(SdoClient):
 
 
 class PollingNode(canopen.RemoteNode):
-    """Remote node whose SDO client does not need a thread that reads the bus."""
+    """Remote node whose SDO client reads the bus itself, without a receiving thread."""
 
     def add_sdo(self, rx_cobid: int, tx_cobid: int) -> PollingSdoClient:
         """Add an SDO channel and return its client."""
@@ -253,8 +253,8 @@ _OPEN_ERRORS = (
 def open_interface(config: CanopenTable) -> can.BusABC:
     """Open the CAN interface.
 
-    With the interface ``udp_multicast``, the channel may end in ``:port``. Two multicast groups with the
-    same port on one computer receive each other's frames. Raises DriverError if the interface cannot be
+    With the interface ``udp_multicast``, the channel may end in ``:port``. On one computer, multicast
+    groups with the same port receive each other's frames. Raises DriverError if the interface cannot be
     opened.
     """
     on_udp = config.interface in _ECHOING_INTERFACES

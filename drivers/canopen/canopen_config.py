@@ -15,7 +15,7 @@ from drivers.setpoint_queue import AxisProperties
 class AxisConfig(AxisProperties):
     """Configuration of one axis.
 
-    An axis without a ``node`` has no drive; only its commanded position is counted.
+    An axis without a ``node`` has no drive; the control only tracks its commanded position.
     """
 
     node: CanNode | None = None
@@ -43,8 +43,8 @@ class AxisConfig(AxisProperties):
 class SpindleConfig:
     """Spindle drive in profile velocity mode, with speeds in rpm and accelerations in rpm/s.
 
-    If ``is_c_axis`` is true, the drive also positions the C axis. A node without counts per revolution does
-    not provide an angle.
+    If ``is_c_axis`` is true, the drive also positions the C axis. If the counts per revolution of the node
+    are not specified, the drive does not provide an angle.
     """
 
     node: CanNode

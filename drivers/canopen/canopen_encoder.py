@@ -66,15 +66,15 @@ class CanEncoder:
         self._reads.clear()
 
     def start_node(self) -> None:
-        """Start the node by NMT.
+        """Start the node by NMT, unless the encoder is connected to a drive.
 
-        If the encoder is connected to a drive, the owner of the drive starts the node.
+        The owner of such a drive starts its node.
         """
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
     def record_sync(self, now_s: float, *, reply_expected: bool = True) -> None:
-        """Record that a SYNC was sent at time ``now``.
+        """Record that a SYNC was sent at time ``now_s``.
 
         With ``reply_expected``, the encoder must reply to this SYNC.
         """
@@ -93,7 +93,7 @@ class CanEncoder:
     def clear_fault(self) -> None:
         """Configure the encoder again after a fault.
 
-        If this fails, only the spindle is affected, not the axes.
+        If this fails, the encoder sets a fault that affects only the spindle, not the axes.
         """
         if not self.failure:
             return
@@ -111,14 +111,14 @@ class CanEncoder:
         return 60.0 * (turns1 - turns0) / (t1 - t0)
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time of the last reply in seconds and its revolutions.
+        """Return the time of the last encoder reply in seconds, and the revolutions at that time.
 
         Returns None before the first reply.
         """
         return self._reads[-1] if self._reads else None
 
     def read_fault(self) -> str:
-        """Return the reason why the measurement is invalid, or an empty text if it is valid."""
+        """Return the reason why the measurement is invalid, or an empty string if it is valid."""
         return self._bus.failure or self.failure
 
     def _check_counts(self) -> None:
@@ -215,8 +215,8 @@ def _setup_of(config: EncoderConfig, bus: CanBus) -> NodeSetup:
 class MeasuredSpindle:
     """``core.ports.Spindle`` of a bus that has no spindle drive.
 
-    The encoder measures the speed if the machine has one. If an inverter drives the spindle, its driver
-    replaces this object.
+    If the machine has an encoder, this object returns the measured speed. If an inverter drives the
+    spindle, the inverter driver replaces this object.
     """
 
     def __init__(self, encoder: CanEncoder | None) -> None:
@@ -233,16 +233,16 @@ class MeasuredSpindle:
         """Do nothing, because the bus has no spindle drive."""
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, signed, or 0 without an encoder."""
+        """Return the measured speed in rpm, signed, or 0 if the machine has no encoder."""
         return self._encoder.measure_rpm() if self._encoder is not None else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time in seconds and the revolutions of the last reply of the encoder.
+        """Return the time of the last encoder reply in seconds, and the revolutions at that time.
 
-        Return None without an encoder or before its first reply.
+        Return None before the first reply or if the machine has no encoder.
         """
         return self._encoder.read_angle() if self._encoder is not None else None
 
     def read_fault(self) -> str:
-        """Return the reason why the encoder measurement is invalid, or an empty text if it is valid."""
+        """Return the reason why the encoder measurement is invalid, or an empty string if it is valid."""
         return self._encoder.read_fault() if self._encoder is not None else ""

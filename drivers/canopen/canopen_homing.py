@@ -1,6 +1,6 @@
 """Homing by the drives.
 
-An axis homes on its switch, and the spindle on its index or at its present position.
+An axis homes on its switch. The spindle homes on its encoder index or at its current position.
 """
 
 from __future__ import annotations
@@ -113,9 +113,9 @@ class CanopenHoming:
         self.failure = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 
     def _write_parameters(self) -> None:
-        """Write the method, speeds, acceleration and home offset, if the drive has these objects.
+        """Write the method, and the speeds, acceleration and home offset if the drive has these objects.
 
-        Raises DriverError.
+        Raises DriverError if the drive rejects a value, or if it needs a home offset but lacks the object.
         """
         config, setup = self.config, self._drive.setup
         slow = config.home_latch_speed or config.home_speed / 10.0
@@ -164,16 +164,16 @@ class SpindleHoming:
     def start_index_search(self, now: float) -> None:
         """Start the search for the encoder index.
 
-        Raises DriverError.
+        Raises DriverError if the drive rejects the homing method.
         """
         self._limit, self._why = _INDEX_SEARCH_S, "no encoder index was found within one revolution"
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX_METHOD)
         self._begin(0, now)
 
     def start_position_setting(self, counts: int, now: float) -> None:
-        """Start a homing that sets the present position to ``counts``.
+        """Start a homing without motion that sets the current position to ``counts``.
 
-        Raises DriverError.
+        Raises DriverError if the drive rejects the homing method.
         """
         self._limit, self._why = _POWERED_MODE_CHANGE_S, "the drive does not accept its new position"
         try:
@@ -240,8 +240,8 @@ class IndexPhase:
     def track_position(self, position: int, *, ignore_jumps: bool) -> None:
         """Track the drive position; call this method once per cycle.
 
-        With ``ignore_jumps``, the change of the position is ignored, because homing sets the counter while
-        the spindle does not turn.
+        With ``ignore_jumps``, a change of the position does not count as rotation, because homing sets the
+        counter while the spindle does not turn.
         """
         moved = (position - self._last + 2**31) % 2**32 - 2**31
         self._last = position

@@ -75,7 +75,7 @@ class CanopenSamples:
 class CanopenMachine:
     """Machine on the CAN bus, which the constructor connects.
 
-    The constructor raises DriverError that names the first node that does not match the machine file.
+    The constructor raises DriverError with the name of the first node that does not match the machine file.
     """
 
     def __init__(self, config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
@@ -173,9 +173,9 @@ class CanopenMachine:
         return frozenset(found)
 
     def run_cycle(self) -> None:
-        """Run one cycle: receive frames, supervise the devices, feed setpoints, and send commands and SYNC.
+        """Run one cycle: receive frames, supervise devices, feed setpoints, and send commands and SYNC.
 
-        This method must be called every few milliseconds, or at the time that ``get_next_cycle_time``
+        This method must be called every few milliseconds, or at the times that ``get_next_cycle_time``
         returns.
         """
         if not self.axes.is_cyclic:
@@ -193,7 +193,7 @@ class CanopenMachine:
     def get_next_cycle_time(self) -> float | None:
         """Return the time of the next cycle, or None if a cycle must run every 5 ms.
 
-        The time is shortly before a SYNC if replies must be read, otherwise the time of the SYNC.
+        If replies must be read first, the time is shortly before the next SYNC, otherwise at that SYNC.
         """
         if not self.axes.is_cyclic:
             return None
@@ -202,7 +202,7 @@ class CanopenMachine:
         return schedule.due_time_s if self._looked else schedule.due_time_s - before
 
     def collect_warnings(self) -> Sequence[str]:
-        """Return a warning about late setpoints if there were any, at most once per second."""
+        """Return a warning if setpoints were late since the last warning, at most once per second."""
         follower, now = self.axes.follower, self.clock.now()
         if (
             not isinstance(follower, CyclicFollower)
@@ -248,9 +248,9 @@ class CanopenMachine:
             self.bus.mark_failed(str(error))
 
     def _wait_callback(self) -> float:
-        """Send SYNC and setpoints while the caller waits for a node.
+        """Send SYNC and setpoints when they are due, while the caller waits for a node.
 
-        Returns the time to the next SYNC in seconds.
+        Returns the time until the next SYNC in seconds.
         """
         left = self.axes.sync_schedule.due_time_s - self.clock.now()
         if left <= 0.0 and not self.bus.failure:
@@ -307,7 +307,7 @@ class CanopenMachine:
             self.bus.mark_failed(str(error))
 
     def get_idle_time(self, is_asleep: bool) -> float:
-        """Return the seconds for which the loop may wait until the next SYNC, heartbeat or reply is due.
+        """Return how many seconds the loop may wait until the next SYNC, heartbeat or reply is due.
 
         The result is 0 if ``is_asleep`` is false, while a drive moves, or after a bus failure. While the
         control is asleep, the drives must reply only ten times per second.
@@ -391,8 +391,7 @@ class CanopenMachine:
     def _record_sync(self, now: float, *, reply_expected: bool) -> None:
         """Record a SYNC for all devices.
 
-        With ``reply_expected``, slow devices must have replied once since the last SYNC with
-        ``reply_expected``.
+        With ``reply_expected``, slow devices must have replied once since the last such SYNC.
         """
         self.axes.drives.record_sync(now)
         if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:

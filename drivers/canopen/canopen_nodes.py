@@ -89,7 +89,7 @@ NODE_REFERENCE = TableReference(
 class CanTerminal:
     """Terminal on the bus: one bit of an object of an I/O module or axis drive.
 
-    If ``bit_number`` is -1, the terminal is the whole number in the object.
+    If ``bit_number`` is -1, the terminal is the complete value of the object.
     """
 
     node_name: str
@@ -100,7 +100,7 @@ class CanTerminal:
 
 
 def get_slow_reply_divisor(sync_period_s: float) -> int:
-    """Return the number of SYNCs from one reply with slow values to the next, which take about 10 ms."""
+    """Return how many SYNCs occur per reply with slow values, so that replies are about 10 ms apart."""
     return max(1, round(_SLOW_VALUE_PERIOD_S / sync_period_s))
 
 
@@ -142,7 +142,7 @@ def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
 
 
 def generate_input_addresses() -> Iterator[str]:
-    """Yield the input addresses of the first I/O module, bit by bit and without end."""
+    """Yield the input addresses of the first I/O module, bit by bit, as an endless sequence."""
     return (f"{FIRST_MODULE_ADDRESS}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
 
 
@@ -150,7 +150,7 @@ def generate_input_addresses() -> Iterator[str]:
 
 
 def read_nodes(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Read [canopen.nodes], and yield the findings in this table and in [canopen.sdo]."""
+    """Read [canopen.nodes], and yield the findings about this table and about [canopen.sdo]."""
     nodes, objects = file.raw(NODES), file.raw(SDO)
     yield from read_named_tables({} if nodes is None else nodes, CanNode, NODES, file.values)
     if objects is None:
@@ -170,7 +170,7 @@ def read_nodes(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _describe_bad_object(key: str, value: object) -> str:
-    """Return the reason why an entry of [canopen.sdo] is invalid, or an empty text for a valid entry."""
+    """Return the reason why an entry of [canopen.sdo] is invalid, or an empty string if it is valid."""
     address = parse_sdo_address(key)
     if address is None:
         return 'the key must be an object address with the index in hexadecimal, such as "6007:0"'
@@ -197,7 +197,7 @@ def read_sdo_objects(file: MachineFileReading, node: str) -> ObjectValues:
 
 
 def format_object_path(node: str, index: int, subindex: int) -> str:
-    """Return the path of an object of a node, as written in the machine file."""
+    """Return the path of an object of a node in the notation of the machine file."""
     return f'{SDO}.{node}."{index:04X}:{subindex}"'
 
 
@@ -214,10 +214,9 @@ def build_node(file: MachineFileReading, name: str) -> CanNode:
 
 
 def read_drive_family(file: MachineFileReading, name: str) -> str:
-    """Return the drive family of a node.
+    """Return the drive family of a node, or an empty string if the node is not a drive.
 
-    If the node does not specify a family, return the default family of all drives. If the node is not a
-    drive, return an empty text.
+    If the node does not specify a family, return the default family of all drives.
     """
     if read_node_profile(file, name) != DRIVE:
         return ""
@@ -226,7 +225,7 @@ def read_drive_family(file: MachineFileReading, name: str) -> str:
 
 
 def read_text(file: MachineFileReading, path: str) -> str:
-    """Return the text of a key, or an empty text if the key is missing or its value is invalid."""
+    """Return the text of a key, or an empty string if the key is missing or its value is invalid."""
     return file.values.text(path) if file.values.has_values(path) else ""
 
 
@@ -237,5 +236,5 @@ def read_node_profile(file: MachineFileReading, node: str) -> int:
 
 
 def list_module_names(file: MachineFileReading) -> list[str]:
-    """Return the names of the I/O modules in the order of the machine file."""
+    """Return the names of the I/O modules, in the same order as in the machine file."""
     return [name for name in file.list_table_keys(NODES) if read_node_profile(file, name) == MODULE]

@@ -114,7 +114,7 @@ def build_encoder_dictionary() -> ObjectDictionary:
 def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
     """Return the object dictionary of a drive and the profile of its drive family.
 
-    Raises DriverError.
+    Raises DriverError if the EDS file of the drive is unreadable or incomplete.
     """
     if not node.eds:
         profile = find_profile(node.drive, None, None)
@@ -127,7 +127,7 @@ def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile
 def load_dictionary(name: str, eds: str, build_standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
     """Load the dictionary from the EDS file, or build the standard dictionary if ``eds`` is empty.
 
-    Raises DriverError that names the node and the file.
+    Raises DriverError with the node and the file if the file is unreadable or incomplete.
     """
     if not eds:
         return build_standard()
@@ -264,7 +264,7 @@ _NEXT_CONTROL_WORDS = {
 def decode_state(status_word: int) -> DriveState:
     """Return the drive state that a status word encodes.
 
-    A status word that matches no mask means "not ready to switch on".
+    If the status word matches no mask, return "not ready to switch on".
     """
     for mask, bits, state in _STATE_MASKS:
         if status_word & mask == bits:

@@ -41,7 +41,7 @@ _MAX_BUS_LOAD = 0.75  # Fraction of the time; the rest is for SDO, heartbeats, E
 class BusLoad(NamedTuple):
     """Bus load in bits per SYNC period.
 
-    The load is split into the frames at each SYNC and the mean of the frames that are sent less often.
+    The load consists of the frames at each SYNC, and the mean load of the frames that are sent less often.
     """
 
     bits_per_sync: float
@@ -50,7 +50,7 @@ class BusLoad(NamedTuple):
 
     @property
     def used_fraction(self) -> float:
-        """Return the used fraction of the bus capacity."""
+        """Return the load as a fraction of the bus capacity."""
         return (self.bits_per_sync + self.slow_bits_per_sync) / self.capacity_bits
 
     @property
@@ -69,8 +69,8 @@ def calculate_cyclic_load(
 ) -> BusLoad:
     """Return the bus load in cyclic modes.
 
-    Each of the ``axis_count`` axis drives receives a command and sends a reply at every SYNC. At every
-    ``slow_divisor``-th SYNC, each axis drive sends a second reply, and each of the ``other_count`` other
+    Each of the ``axis_count`` axis drives receives a command and sends a reply at every SYNC. Once per
+    ``slow_divisor`` SYNCs, each axis drive also sends a second reply, and each of the ``other_count`` other
     devices exchanges two frames.
     """
     exchange_bits = get_max_frame_bits(_COMMAND) + get_max_frame_bits(_ANSWER)
@@ -137,7 +137,7 @@ def _queue(record: float, commit: float, values: FileValues) -> Iterator[FileFin
 
 
 def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about position queues and counts per revolution that the drive families require."""
+    """Yield findings if drives lack a position queue or counts per revolution that they require."""
     values, moved = file.values, file.axes
     queued = " or ".join(format_toml_value(name) for name in QUEUE_PROFILE_NAMES)
     for name in file.list_table_keys(NODES):
@@ -169,8 +169,8 @@ def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
 def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about cyclic setpoints.
 
-    The rules are about the SYNC period, which must be in whole milliseconds, the commit time and the bus
-    load.
+    The rules concern the SYNC period, which must be a whole number of milliseconds, the bus load and the
+    commit time.
     """
     values = file.values
     if read_text(file, "canopen.mode") not in CYCLIC_MODES or not values.has_values(
@@ -272,7 +272,7 @@ _C_REMEDY_TEXT = (
 
 
 def _check_drives(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about axes that have no drive or no homing method."""
+    """Yield findings about axes that lack a drive or a homing method."""
     values, nodes = file.values, file.list_table_keys(NODES)
     for axis in file.axes:
         if axis == "C" and not (values.has_values("axis.C.enabled") and values.read_flag("axis.C.enabled")):

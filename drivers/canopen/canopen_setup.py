@@ -1,4 +1,4 @@
-"""Setup of a node before it starts: checks, configuration with read-back, and PDO mapping."""
+"""Setup of a node before it starts: checks, verified configuration, and PDO mapping."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class NodeSetup:
     def warnings(self) -> tuple[str, ...]:
         """Return one sentence that lists all objects that the node lacks.
 
-        The tuple is empty if the node has all objects.
+        Return an empty tuple if the node has all objects.
         """
         if not self.missing_objects:
             return ()
@@ -108,7 +108,7 @@ class NodeSetup:
     def write_object_bytes(self, index: int, subindex: int, data: bytes) -> None:
         """Write the bytes of an object without reading them back.
 
-        Raises DriverError.
+        Raises DriverError if the node rejects the request or does not respond.
         """
         self._run_sdo(index, subindex, lambda: self.node.sdo.download(index, subindex, data))
 
@@ -118,10 +118,10 @@ class NodeSetup:
         file_objects: ObjectValues = (),
         required_objects: Iterable[int] = (),
     ) -> None:
-        """Write the values of TurnDesk and then those of the machine file to the objects that the node has.
+        """Write TurnDesk's values and then those of the machine file to the objects that the node has.
 
-        The objects that the node lacks are stored in ``missing_objects``. Raises DriverError that names all
-        missing objects if they are in ``required_objects``, or if they are in the machine file and not
+        ``missing_objects`` collects the objects that the node lacks. Raises DriverError with the names of
+        all missing objects that are in ``required_objects``, or that are in the machine file and not
         optional.
         """
         self.missing_objects = {}
@@ -158,7 +158,7 @@ class NodeSetup:
     def write_optional_object(self, index: int, subindex: int, value: int) -> bool:
         """Write an object if the node has it, and return whether the node has it.
 
-        Raises DriverError.
+        Raises DriverError if the node rejects the value or stores a different value.
         """
         if self.has_object(index, subindex):
             self.write(index, subindex, value)
@@ -167,7 +167,7 @@ class NodeSetup:
         return False
 
     def monitor_setpoints(self, period_s: float) -> None:
-        """Make the node detect a missing SYNC or setpoint, with the objects that the node supports."""
+        """Make the node detect a missing SYNC or setpoint, as far as its objects support this."""
         longest = max(round(1000 * _SYNCS_AWAY * period_s), _LEAST_AWAY)
         watched = False
         for index, sub, value in ((od.SYNC_PERIOD, 0, round(1e6 * period_s)), (od.COMMANDED, 5, longest)):
@@ -203,7 +203,7 @@ class NodeSetup:
             )
 
     def require_objects(self, *entries: PdoEntry) -> None:
-        """Raise DriverError that names all objects of ``entries`` that the node lacks."""
+        """Raise DriverError with the names of all objects in ``entries`` that the node lacks."""
         missing = [
             f"{entry.object_index:04X}:{entry.object_subindex}"
             for entry in entries
@@ -233,7 +233,7 @@ class NodeSetup:
     def require_counts_per_rev(self, counts: int) -> None:
         """Check the counts per motor revolution that result from the drive's objects.
 
-        Raises DriverError if the gear and feed objects of the drive result in other counts than ``counts``.
+        Raises DriverError if the drive's gear and feed objects do not result in ``counts`` per revolution.
         """
         places = [(od.GEAR, 1), (od.GEAR, 2), (od.FEED, 1), (od.FEED, 2)]
         if not all(self.has_object(*place) for place in places):
@@ -278,8 +278,8 @@ class NodeSetup:
     def _write_if_changed(self, index: int, sub: int, data: bytes, present_data: bytes | None) -> bool:
         """Write ``data`` unless the object already has this value, and return whether it was written.
 
-        All configuration uses this method, because many drives have objects that are read-only or locked
-        but already have the required value. Raises DriverError.
+        Many drives have read-only or locked objects that already have the required value, so all
+        configuration uses this method. Raises DriverError if the node rejects the value.
         """
         if present_data == data:
             return False
@@ -329,9 +329,9 @@ class NodeSetup:
     def map_sent_objects(
         self, pdo_number: int, on_reply: Callable[[PdoMap], None], *entries: tuple[int, int], every: int = 1
     ) -> None:
-        """Map the objects that the node sends in the PDO ``pdo_number``, once per ``every`` SYNCs.
+        """Map the objects that the node sends in the PDO ``pdo_number`` once per ``every`` SYNCs.
 
-        Each entry is a pair of (index + sub-index · 65536, bits). ``on_reply`` is called with each received
+        Each entry is a pair of (index + sub-index · 65536, bits). ``on_reply`` is called for each received
         PDO.
         """
         pdo = self._pdo(self.node.tpdo, pdo_number)
@@ -339,7 +339,7 @@ class NodeSetup:
         pdo.callbacks[:] = [on_reply]
 
     def _setup_error(self, text: str, *, reason: str = "", **values: object) -> DriverError:
-        """Return the error for a node that does not match.
+        """Return the error for a node that does not match the machine file.
 
         ``text`` may contain the fields {name} and {node}.
         """
@@ -358,9 +358,8 @@ class NodeSetup:
     def _configure_pdo(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
         """Map a PDO, unless it already has the required mapping.
 
-        The check is necessary because many modules have a fixed mapping. The method does not use
-        ``PdoMap.save`` of the library, because ``save`` writes no entries if the dictionary defines them as
-        an array.
+        The check is necessary because many modules have a fixed mapping. The library's ``PdoMap.save`` is
+        not used, because it writes no entries if the dictionary defines the entries as an array.
         """
         base = pdo.com_record.od.index
         pdo.clear()
@@ -388,7 +387,7 @@ class NodeSetup:
         self._put_number(index, 0, len(wanted), 1)
 
     def _read_mapping(self, index: int) -> list[int]:
-        """Return the present mapping of a PDO."""
+        """Return the current mapping of a PDO."""
         return [self.read(index, sub) for sub in range(1, self.read(index, 0) + 1)]
 
     def _put_number(self, index: int, sub: int, value: int, size: int) -> None:
@@ -447,7 +446,7 @@ def build_axis_objects(config: AxisConfig, bus: CanopenTable) -> ObjectValues:
 
 
 def build_stop_objects(bus: CanopenTable) -> ObjectValues:
-    """Return the objects that stop any drive when the heartbeat of TurnDesk is missing.
+    """Return the objects that make any drive stop when TurnDesk's heartbeat is missing.
 
     The drive makes a quick stop and then switches its power off.
     """
@@ -471,7 +470,7 @@ def build_monitoring_objects(bus: CanopenTable) -> ObjectValues:
 
 
 def build_travel_limit_objects(config: AxisConfig) -> ObjectValues:
-    """Return the software limits for the drive, which are valid only after homing."""
+    """Return the objects with the drive's software limits, which are valid only after homing."""
     if config.travel is None:
         return ()
     low, high = config.travel

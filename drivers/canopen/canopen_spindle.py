@@ -1,9 +1,8 @@
 """Spindle drive on the bus in profile velocity mode, which may also serve as the C axis.
 
-The drive changes between both modes at standstill. As the spindle, the drive generates its own ramps. As C,
-it is one more axis that is powered, fed and stopped together with the others. C starts at the last position
-that the control counted. With orientation, the spindle first turns until this position is also correct
-relative to the index.
+The drive changes between both modes at standstill. As the spindle, the drive generates its own ramps. As
+the C axis, it is powered, fed and stopped together with the other axes. C starts at the last position that
+the control counted. With orientation, the spindle first turns to that position relative to the index.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ _POWER_ON_S = 1.0  # Seconds in which the drive must switch on.
 class CanopenSpindle:
     """``core.ports.Spindle`` of a CiA 402 drive.
 
-    The drive has power only while the spindle turns or must turn.
+    The drive has power only while the spindle turns or is commanded to turn.
     """
 
     def __init__(self, config: SpindleConfig, bus: CanBus) -> None:
@@ -51,7 +50,7 @@ class CanopenSpindle:
     def connect(self) -> None:
         """Configure the drive.
 
-        Raises DriverError.
+        Raises DriverError if the drive does not match the machine file.
         """
         config = self._config
         queue = self.drive.profile.record_queue if config.is_c_axis else None
@@ -95,7 +94,7 @@ class CanopenSpindle:
     def _check_drive(self, is_power_lost: bool) -> None:
         """Switch the drive off after a loss of power, or set a fault if the drive does not switch on.
 
-        The method must not wait for the power, because the spindle would then start when the power returns.
+        The method must not wait for the power to return, because the spindle would then start unexpectedly.
         """
         drive, now = self.drive, self._bus.clock.now()
         if is_power_lost:
@@ -110,7 +109,7 @@ class CanopenSpindle:
             drive.goal_state = DriveState.SWITCH_ON_DISABLED
 
     def set_speed(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed; 0 stops the spindle.
+        """Turn the spindle at the signed speed ``rpm``, or stop the spindle if ``rpm`` is 0.
 
         Raises DriverError if ``rpm`` is not 0 while a fault is active or the drive is engaged as C.
         """
@@ -154,7 +153,7 @@ class CanopenSpindle:
     def clear_fault(self) -> None:
         """Clear the fault without switching the power on.
 
-        A drive that has restarted is configured again. Raises DriverError.
+        A drive that has restarted is configured again. Raises DriverError if this configuration fails.
         """
         if self.drive.has_restarted or self.drive.missing_reply_count:
             self.connect()
@@ -167,7 +166,7 @@ class CanopenSpindle:
         return 0.0 if self.is_used_as_c else float(self.drive.measured_speed)
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time in seconds and the revolutions of the last reply.
+        """Return the time of the last drive reply in seconds, and the revolutions at that time.
 
         Return None if the counts per revolution are not specified.
         """
@@ -182,12 +181,12 @@ class CanopenSpindle:
         return self.drive.last_reply_s, self._counts / self.counts_per_rev
 
     def accept_counter_jump(self) -> None:
-        """Accept a counter value that homing has set, without counting the jump as rotation."""
+        """Accept a counter value that homing has set, so that the jump does not count as rotation."""
         if self.is_counter_ignored:
             self._last, self.is_counter_ignored = self.drive.position, False
 
     def read_fault(self) -> str:
-        """Return the fault of the drive or the bus, or an empty text."""
+        """Return the fault of the drive or the bus, or an empty string if there is no fault."""
         return self._bus.failure or (self.drive.failure and Fault(self.drive.failure, "spindle"))
 
 
@@ -215,7 +214,7 @@ class CanopenCStep(Enum):
 class CanopenSpindleC:
     """``core.ports.SpindleCAxis`` of the spindle drive.
 
-    A fault stops all axes. ``update`` must be called once per bus cycle.
+    A fault stops all axes. ``advance_mode_change`` must be called once per bus cycle.
     """
 
     def __init__(self, axes: CanopenAxes, spindle: CanopenSpindle, name: str) -> None:
@@ -240,7 +239,7 @@ class CanopenSpindleC:
     # --- the port ----------------------------------------------------------------------------------------
 
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
-        """Engage the drive as the C axis, or release the drive as the spindle.
+        """Engage the drive as the C axis, or release it for use as the spindle.
 
         With ``should_orient``, the spindle first turns to its position relative to the index. Raises
         DriverError if the drive cannot be engaged now.
@@ -339,9 +338,9 @@ class CanopenSpindleC:
             self._enter(CanopenCStep.POWER_ON, now)
 
     def _is_homing_done(self, now: float) -> bool:
-        """Return whether the homing is complete.
+        """Return whether the homing is complete; raise DriverError if it has failed.
 
-        If C axis mode is no longer requested, the homing is canceled. Raises DriverError.
+        If C axis mode is no longer requested, the homing is canceled.
         """
         if self._wanted:
             return self._homing.is_done(now)
@@ -397,7 +396,7 @@ class CanopenSpindleC:
         return self._demand() if self._goal is None else self._goal
 
     def _angle_to_position(self) -> float:
-        """Return the angle from the spindle to its C position by the shortest path, in degrees."""
+        """Return the shortest angle, in degrees, through which the spindle must turn to its C position."""
         if not self._orient or self._phase.counts is None:
             return 0.0
         off = self._place() - self._phase.counts * self._axis.config.count

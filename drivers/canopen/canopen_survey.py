@@ -37,7 +37,7 @@ class SurveyResult(NamedTuple):
 class _SilentBus(CanBus):
     """CAN bus that sends no heartbeat.
 
-    Nodes would start to monitor the heartbeat and then report a fault when it stops.
+    Otherwise nodes would start to monitor the heartbeat, and report a fault when the survey ends.
     """
 
     def send_heartbeat(self, *, force: bool = False) -> None:
@@ -49,8 +49,8 @@ def identify_nodes(
 ) -> list[SurveyResult]:
     """Identify every node of the machine file, in the order of the file.
 
-    ``advance_time`` is passed to the bus and advances the time in tests. Raises DriverError if the bus
-    cannot be opened.
+    In tests, the bus calls ``advance_time`` to advance the time. Raises DriverError if the bus cannot be
+    opened.
     """
     bus = _SilentBus(config.bus_settings, clock, advance_time)
     axes = {axis.name: axis for axis in config.axes}
@@ -97,7 +97,7 @@ def _asked(bus: CanBus, config: CanNode, axis: AxisConfig | None, mode: str) -> 
 def _list_mismatches(
     setup: NodeSetup, family: DriveProfile, axis: AxisConfig | None, mode: str, bus: CanBus
 ) -> Iterator[str]:
-    """Yield the mode in which the drive would run, and the objects that it lacks.
+    """Yield the mode in which the drive would run, and then the objects that the drive lacks.
 
     Raises DriverError if the drive does not support the mode.
     """

@@ -83,7 +83,7 @@ class CanopenTable:
 
     @property
     def slow_reply_divisor(self) -> int:
-        """Return the number of SYNCs from one reply with slow values to the next, which take about 10 ms."""
+        """Return how many SYNCs occur per reply with slow values, so that replies are about 10 ms apart."""
         return get_slow_reply_divisor(self.sync)
 
     @property

@@ -74,8 +74,8 @@ class Cia401Module:
     def connect(self, safe_values: bytes, retained_bits: bytes) -> None:
         """Configure the PDO mapping, and the output states that apply if this computer fails.
 
-        ``safe_values`` holds the states as bits, and ``retained_bits`` the outputs that must not change.
-        Raises DriverError.
+        ``safe_values`` contains the states as bits; the outputs in ``retained_bits`` must not change.
+        Raises DriverError if the module rejects a value.
         """
         inputs, outputs, words = self.terminal_counts.values()
         for i in range(outputs):
@@ -121,7 +121,7 @@ class Cia401Module:
 
     @property
     def is_silent(self) -> bool:
-        """Return whether too many replies or heartbeats are missing, so that the inputs may be outdated."""
+        """Return whether so many replies or heartbeats are missing that the inputs may be outdated."""
         return self.missing_reply_count > _SYNCS or self._without_beat > _BEATS * self._bus.config.heartbeat
 
     @property
@@ -197,7 +197,7 @@ class CanopenIO:
     def connect(self) -> None:
         """Configure every module, including the safe states of its outputs.
 
-        Raises DriverError.
+        Raises DriverError if a module or drive does not match the machine file.
         """
         for where in self._required_terminals():
             drive = self._drives.get(where.node_name)
@@ -222,7 +222,7 @@ class CanopenIO:
             self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
 
     def _required_terminals(self) -> Iterator[CanTerminal]:
-        """Yield all terminals of the machine file, including those of drives."""
+        """Yield all terminals in the machine file, including the terminals of drives."""
         config = self._config
         yield from config.inputs.values()
         yield from (output.terminal for output in config.outputs.values())
@@ -236,7 +236,7 @@ class CanopenIO:
     def run_cycle(self, now: float) -> str:
         """Supervise the modules, and send the outputs.
 
-        Returns the first fault, or an empty text without a fault.
+        Returns the first fault, or an empty string if there is no fault.
         """
         fault_text: str = ""
         for module in self.modules.values():
@@ -248,7 +248,7 @@ class CanopenIO:
     def clear_fault(self) -> None:
         """Configure all modules again if a module has restarted or did not respond.
 
-        Raises DriverError.
+        Raises DriverError if a module cannot be configured.
         """
         if any(module.failure for module in self.modules.values()):
             self.connect()
@@ -272,7 +272,7 @@ class CanopenIO:
     def write(self, name: str, is_on: bool) -> None:
         """Switch one output; the module receives the change at the next tick.
 
-        Raises DriverError.
+        Raises DriverError if the output does not exist, or if it is to be switched on during a fault.
         """
         output = find_output(name, self._config.outputs)
         module = self._module(output.terminal)
@@ -296,7 +296,7 @@ class CanopenIO:
                 module.send_outputs(self._bus.clock.now())
 
     def read_state(self) -> StationState:
-        """Return the state of the operator station; its age is the age of the oldest module reply."""
+        """Return the state of the operator station, whose age is that of the oldest module reply."""
         now = self._bus.clock.now()
         age = max((now - module.last_reply_s for module in self.modules.values()), default=0.0)
         return build_station_state(
@@ -308,7 +308,7 @@ class CanopenIO:
         )
 
     def _update_wheel_counts(self) -> int:
-        """Return the handwheel counts since power-up.
+        """Update and return the handwheel counts since power-up.
 
         The 16-bit counter wraps around, so it must change by less than half of its range between two calls.
         """
@@ -351,7 +351,7 @@ _INPUT_DELAY_SYNCS = 2  # SYNCs: a module replies with its inputs of the previou
 class CanopenProbe(FirstTouchInput):
     """Touch input that is evaluated from the module replies to each SYNC.
 
-    The position latch of the drives (object 60B8h) is not used, because its input is rarely free.
+    The position latch of the drives (object 60B8h) is not used, because its input is usually occupied.
     """
 
     def __init__(self, axes: CanopenAxes, io: CanopenIO, sync_period_s: float) -> None:

@@ -44,9 +44,9 @@ _REQUIRED_OBJECTS = (
 class Cia402Drive:
     """CiA 402 drive with its commanded and reported values.
 
-    ``goal_state``, ``commanded_mode``, ``mode_bits`` and ``target_value`` are the commanded values, which
-    ``send_command`` sends. ``target_value`` is a position, or a speed for a spindle. ``reported_values``
-    contains the values of optional objects by their index.
+    ``send_command`` sends the commanded values ``goal_state``, ``commanded_mode``, ``mode_bits`` and
+    ``target_value``. ``target_value`` is a position, or a speed for a spindle. ``reported_values`` contains
+    the values of optional objects by their index.
     """
 
     def __init__(
@@ -93,10 +93,7 @@ class Cia402Drive:
 
     @property
     def is_silent(self) -> bool:
-        """Return whether too many replies to SYNC are missing.
-
-        If so, the reported values may be outdated.
-        """
+        """Return whether so many SYNC replies are missing that the reported values may be outdated."""
         return self.missing_reply_count > self._patience
 
     @property
@@ -123,7 +120,7 @@ class Cia402Drive:
         return _NAN if self.is_silent else self._load
 
     def connect(self, setup_data: DriveSetupData) -> None:
-        """Check and configure the drive and map its PDOs, all in the state PRE-OPERATIONAL.
+        """Check and configure the drive and map its PDOs while it is in the state PRE-OPERATIONAL.
 
         Raises DriverError if the drive does not match the machine file.
         """
@@ -167,7 +164,7 @@ class Cia402Drive:
         )
 
     def _map_torque(self) -> None:
-        """Map the torque for the scope if the drive has this object; an error does not prevent operation."""
+        """Map the torque for the scope if the drive has this object; ignore an error."""
         self._load = _NAN
         if self.setup.has_object(od.ACTUAL_TORQUE, 0):
             every = min(_RARER * self.bus.config.slow_reply_divisor, _MOST_RARE)
@@ -200,7 +197,7 @@ class Cia402Drive:
         self.bus.send_message(0x300 + self.node_id, record)
 
     def reset_fault(self) -> None:
-        """Start to reset a fault and switch the power of the drive off."""
+        """Start to reset a fault, and switch off the power of the drive."""
         self.goal_state, self.mode_bits, self._resetting = DriveState.SWITCH_ON_DISABLED, 0, True
 
     def supervise(self, heartbeat_timeout_s: float) -> None:
@@ -291,9 +288,9 @@ def _to_object_address(entry: PdoEntry) -> tuple[int, int]:
 
 @dataclass(frozen=True, slots=True)
 class DriveSetupData:
-    """Configuration of a drive: modes as bits of object 6502h, objects to be written, and the queue object.
+    """Configuration of a drive: modes as bits of object 6502h, objects to write, and queue object.
 
-    Without the objects in ``required_objects``, the drive cannot be used. ``setpoint_period_s`` is the
+    A drive that lacks an object in ``required_objects`` cannot be used. ``setpoint_period_s`` is the
     setpoint period in seconds that the drive must monitor.
     """
 

@@ -48,7 +48,7 @@ class DriveQueue(NamedTuple):
 class DriveProfile:
     """Profile of a drive family.
 
-    With ``uses_rpm``, the units of the family are rpm and rpm/s, so that the counts per revolution are
+    If ``uses_rpm`` is true, the family uses rpm and rpm/s as units, so the counts per revolution are
     required.
     """
 
@@ -105,7 +105,7 @@ RPM_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.
 def find_profile(name: str, vendor_id: int | None, product_name: str | None) -> DriveProfile:
     """Return the profile of the drive family with this name.
 
-    If ``name`` is empty, find the family by the vendor and product in the EDS file.
+    If ``name`` is empty, the vendor and product in the EDS file determine the family.
     """
     if name:
         return PROFILES[name]

@@ -60,7 +60,7 @@ def unpack_epos2_record(data: bytes) -> tuple[int, int, int]:
 def pack_copley_segment(segment_number: int, duration_ms: int, velocity: float, position: float) -> bytes:
     """Pack one Copley segment of format 0: number, time, position, and velocity in 0.1 counts/s.
 
-    Raises ValueError if the position or velocity exceeds 24 bits, or the time exceeds 255 ms.
+    Raises ValueError if the position or velocity does not fit in 24 bits, or if the time exceeds 255 ms.
     """
     speed, place = round(_COPLEY_VELOCITY_SCALE * velocity), round(position)
     if abs(speed) > _MAX_SIGNED_24_BIT or abs(place) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
@@ -89,7 +89,7 @@ class RecordQueue:
     def clear_records(self) -> None:
         """Clear the queue in the drive.
 
-        Raises DriverError.
+        Raises DriverError if the drive rejects the request or does not respond.
         """
         self._pushed = 0
         if self.drive_queue.record_format is RecordFormat.COPLEY:
@@ -124,7 +124,7 @@ def _signed(data: bytes) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MotionMode:
-    """Motion mode: the CiA 402 mode and the object for setpoints.
+    """Motion mode, with its CiA 402 mode number and the object that receives setpoints.
 
     If ``is_cyclic`` is true, one setpoint is sent per SYNC.
     """
@@ -146,7 +146,7 @@ MOTION_MODES = {  # By the mode in the machine file.
 class DrivenAxis:
     """Axis with its drive.
 
-    If ``is_homed`` is true, the counts of the drive are machine positions.
+    If ``is_homed`` is true, the drive's counts correspond to machine positions.
     """
 
     config: AxisConfig
@@ -205,7 +205,7 @@ class DriveSet:
     def configure_drives(self) -> None:
         """Configure every drive before the nodes are started by NMT.
 
-        Raises DriverError.
+        Raises DriverError if a drive does not match the machine file.
         """
         for axis in self.axes:
             self._connect(axis)
@@ -226,7 +226,7 @@ class DriveSet:
             axis.drive.record_sync(now)
 
     def exchange_sync(self) -> None:
-        """Send the commands to all drives and then a SYNC, immediately."""
+        """Immediately send the commands to all drives, and then a SYNC."""
         self._sent = self._bus.clock.now()
         self.send_commands()
         self.record_sync(self._sent)
@@ -235,9 +235,9 @@ class DriveSet:
     def poll_axes(self) -> list[DrivenAxis]:
         """Process received frames and return the axes.
 
-        If all drives have replied to the last SYNC, or the reply is overdue, send the next commands and
-        SYNC. A caller that waits for the drives repeats this method. In cyclic modes, the SYNC continues
-        independently.
+        If all drives have replied to the last SYNC, or a reply is overdue, also send the next commands and
+        a SYNC. A caller that waits for the drives calls this method repeatedly. In cyclic modes, SYNC is
+        sent independently.
         """
         if self._how.is_cyclic and not self._bus.has_stepped_time:
             return self.axes  # The wait of the bus continues the SYNC.
@@ -255,8 +255,8 @@ class DriveSet:
     def power_on(self) -> None:
         """Switch all drives on, and wait until all of them have power.
 
-        If a drive does not switch on, all drives are switched off, and DriverError names the drives that
-        failed.
+        If a drive does not switch on, switch all drives off again and raise DriverError with the names of
+        the drives that failed.
         """
         for axis in self.axes:
             axis.drive.commanded_mode, axis.drive.goal_state = (
@@ -309,7 +309,7 @@ class DriveSet:
             axis.is_homed = axis.config.absolute
 
     def supervise(self) -> str:
-        """Supervise the drives, and return the first fault, or an empty text without a fault."""
+        """Supervise the drives, and return the first fault, or an empty string if there is no fault."""
         fault_text: str = ""
         for axis in self.axes:
             axis.drive.supervise(3.0 * self._bus.config.heartbeat)
@@ -319,9 +319,9 @@ class DriveSet:
         return fault_text
 
     def update_moving_axes(self, now: float) -> None:
-        """Determine which axes move by comparing their positions in two replies.
+        """Determine which axes are moving by comparing their positions in two consecutive replies.
 
-        A silent drive is treated as stopped after the time that its own stop reaction takes.
+        A silent drive is treated as stopped once its own stop reaction must have ended.
         """
         speaking = [axis for axis in self.axes if not axis.drive.is_silent]
         for axis in self.axes:

@@ -27,7 +27,7 @@ from drivers.setpoint_queue import SetpointQueue
 class SetpointFollower(ABC):
     """Base class of objects that make the drives follow the setpoint queue.
 
-    The drives start from their present positions.
+    The drives start from their current positions.
     """
 
     drive_mode: int  # Mode of CiA 402.
@@ -47,7 +47,7 @@ class SetpointFollower(ABC):
         return False
 
     def get_path_time(self, time_s: float) -> float:
-        """Return the time in the setpoint queue that the drives had reached at time ``t``."""
+        """Return the time in the setpoint queue that the drives had reached at time ``time_s``."""
         return time_s
 
     def check_segments(self, segments: MotionSegments) -> None:
@@ -57,10 +57,10 @@ class SetpointFollower(ABC):
         """
 
     def handle_braking(self, brake_time_s: float) -> None:
-        """React to a queue that was replaced by braking from time ``brake_time_s`` on.
+        """Handle a queue whose setpoints from time ``brake_time_s`` on were replaced by braking.
 
         This default implementation does nothing, because the next call of ``feed_setpoints`` transfers the
-        braking.
+        braking setpoints.
         """
 
     @abstractmethod
@@ -68,12 +68,12 @@ class SetpointFollower(ABC):
         """Transfer setpoints; call this method once per tick before the commands are sent."""
 
     def prepare_targets(self) -> None:
-        """Set the targets to the present positions before the drives are switched on."""
+        """Set the targets to the current positions before the drives are switched on."""
         for axis in self._axes:
             axis.drive.target_value = axis.drive.position
 
     def abort_transfer(self) -> None:
-        """Stop transferring setpoints, because the drives stop without setpoints."""
+        """Stop transferring setpoints; the drives stop on their own, without setpoints."""
         self.failure = ""
 
 
@@ -84,7 +84,7 @@ _ACKNOWLEDGE_TIMEOUT_S = 0.2  # Seconds in which a drive must acknowledge a targ
 
 
 class ProfiledFollower(SetpointFollower):
-    """Follower that sends each drive the end of the queue as its target.
+    """Follower that sends the end position of the queue to each drive as its target.
 
     Each drive also receives the speed of the path. Only straight moves are possible, because each drive
     plans its own motion.
@@ -99,11 +99,11 @@ class ProfiledFollower(SetpointFollower):
 
     @property
     def is_executing(self) -> bool:
-        """Return whether a target has not been sent or not been acknowledged yet."""
+        """Return whether a target has not been sent yet or has not been acknowledged yet."""
         return self._pending is not None or self._told >= 0.0
 
     def check_segments(self, segments: MotionSegments) -> None:
-        """Store a straight move as the next target.
+        """Store the end of a straight move as the next target.
 
         Raises DriverError if the path is not straight.
         """
@@ -125,16 +125,16 @@ class ProfiledFollower(SetpointFollower):
         self._pending = (float(segments.start_times_s[0]), segments)
 
     def handle_braking(self, brake_time_s: float) -> None:
-        """Schedule the new end of the queue as the target, with the maximum deceleration."""
+        """Make the new end of the queue the pending target, with the maximum deceleration."""
         self._pending = (brake_time_s, None)
 
     def prepare_targets(self) -> None:
-        """Discard the pending target and set the targets to the present positions."""
+        """Discard the pending target and set the targets to the current positions."""
         self._pending = None
         super().prepare_targets()
 
     def abort_transfer(self) -> None:
-        """Discard the pending target and its acknowledgment."""
+        """Discard the pending target, and stop waiting for an acknowledgment."""
         self._pending, self._told, self.failure = None, -1.0, ""
         for axis in self._axes:
             axis.drive.mode_bits &= ~(NEW | AT_ONCE)
@@ -188,7 +188,7 @@ _START_TIMEOUT_S = 0.3  # Seconds in which a drive must start to interpolate.
 
 
 class SyncSchedule:
-    """Schedule of the SYNCs, whose times stay in phase even if one SYNC is late."""
+    """Schedule of SYNC times, which stays in phase even if one SYNC is late."""
 
     def __init__(self, period_s: float, now: float) -> None:
         self.period_s = period_s
@@ -197,9 +197,9 @@ class SyncSchedule:
         self._late = 0.0  # Delay of the last SYNC.
 
     def record_sync(self, now: float) -> float:
-        """Record a SYNC at time ``now`` and return the additional seconds that the drives have waited.
+        """Record a SYNC at time ``now``, and return the additional seconds that the drives waited for it.
 
-        The result is 0 if a drive tolerates the delay, and when the SYNCs return to the schedule.
+        The result is 0 if the drives tolerate the delay, and while the SYNCs return to the schedule.
         """
         late = max(now - self.due_time_s, 0.0)
         self.max_delay_s = max(self.max_delay_s, late)
@@ -235,13 +235,13 @@ class CyclicFollower(SetpointFollower):
 
     @property
     def is_executing(self) -> bool:
-        """Return whether the path is delayed and has not ended yet."""
+        """Return whether the path is delayed, so that it has not ended yet."""
         return self.lag_s > 0.0 and not is_queue_finished(
             self._queue.get_end_time(-1e9), self.get_path_time(self.schedule.due_time_s)
         )
 
     def get_path_time(self, time_s: float) -> float:
-        """Return the time in the setpoint queue at time ``t``, which is earlier by the lag."""
+        """Return the time in the setpoint queue at ``time_s``, which is ``time_s`` minus the lag."""
         return time_s - self.lag_s
 
     def abort_transfer(self) -> None:
@@ -253,7 +253,7 @@ class CyclicFollower(SetpointFollower):
     def delay_path(self, waited_s: float) -> None:
         """Delay the path by the seconds that the drives have waited at a setpoint.
 
-        A delay that is too long in total sets a fault.
+        If the total delay is too long, a fault is set.
         """
         if is_queue_finished(
             self._queue.get_end_time(-1e9), self.get_path_time(self.schedule.due_time_s) - waited_s
@@ -270,7 +270,7 @@ class CyclicFollower(SetpointFollower):
             )
 
     def feed_setpoints(self, now: float) -> None:
-        """Set the targets for the next SYNC, which the drives reach one SYNC later."""
+        """Set the targets for the next SYNC; the drives reach these targets one SYNC later."""
         standing = is_queue_finished(self._queue.get_end_time(-1e9), self.get_path_time(now))
         self.lag_s = 0.0 if standing else max(self.lag_s - _RECOVERY_FRACTION * self.schedule.period_s, 0.0)
         self._fed = self.get_path_time(self.schedule.due_time_s + self.schedule.period_s)

@@ -1,4 +1,4 @@
-"""Interpolated position mode with PVT records, which each drive stores in a queue that ends at rest."""
+"""Interpolated position mode with PVT records; the record queue of each drive ends at rest."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def fit_longest_piece(
 ) -> PathPiece:
     """Return the longest piece whose cubic curve deviates from the path by at most half a count.
 
-    The piece starts at time ``t`` and takes at most ``max_duration_ms``. ``count_sizes`` is the distance
-    per count of each axis. The shortest possible piece is used even if its deviation is larger.
+    The piece starts at ``start_time_s`` and takes at most ``max_duration_ms``. ``count_sizes`` is each
+    axis's distance per count. The shortest possible piece is returned even if its deviation is larger.
     """
     ms = max_duration_ms
     while True:
@@ -61,7 +61,7 @@ def find_max_deviation(
 ) -> float:
     """Return the largest deviation from the path, in counts of the axis that deviates most.
 
-    The cubic curve runs from time ``t`` to ``t + dt``.
+    The cubic curve starts at time ``start_time_s`` and takes ``duration_s`` seconds.
     """
     p0, v0 = motion_at(start_time_s)
     p1, v1 = motion_at(start_time_s + duration_s)
@@ -110,11 +110,10 @@ class _Phase(Enum):
 
 
 class PvtFollower(SetpointFollower):
-    """Follower that fills the queues of the drives a fixed time ahead.
+    """Follower that keeps the queues of the drives filled for a fixed time ahead.
 
-    The records of all axes have the same times.
-
-    The duration of each record is a whole number of milliseconds.
+    All axes have records with the same times. The duration of each record is a whole number of
+    milliseconds.
     """
 
     drive_mode = IP
@@ -155,7 +154,7 @@ class PvtFollower(SetpointFollower):
             axis.drive.mode_bits &= ~NEW
 
     def feed_setpoints(self, now: float) -> None:
-        """Start the record queues, fill them, or let them end, depending on the path."""
+        """Start the record queues, fill them, or let them run out, depending on the path."""
         if self._phase is _Phase.REST and not is_queue_finished(self._queue.get_end_time(now), now):
             self._start_queues(now)
         elif self._phase is _Phase.PLAYING:
@@ -166,7 +165,7 @@ class PvtFollower(SetpointFollower):
             self.must_send_now = True  # The drives must detect the fall of bit 4 before it rises again.
 
     def _start_queues(self, now: float) -> None:
-        """Send records at rest, and then start all drives at one SYNC from their present positions."""
+        """Send records at rest, and then start all drives from their current positions at one SYNC."""
         if any(self._queue.get_commanded_state(now)[1]):
             self.failure = Fault("the drives started late, after the path had begun", "queue-dry")
             return

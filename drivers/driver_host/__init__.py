@@ -1,1 +1,1 @@
-"""The driver host: a separate process that owns the bus and the queue and survives a crash of the control."""
+"""The driver host: a process that owns the bus and the queue and survives a crash of the control."""

@@ -40,12 +40,12 @@ _MAX_BATCHES = 200  # Maximum number of sample batches waiting for the recorder.
 class HostLink(Protocol):
     """A connection that transports requests and replies.
 
-    ``end_signals`` are files that become readable when the connection ends.
+    ``end_signals`` are file descriptors that become readable when the connection ends.
     """
 
     @property
     def end_signals(self) -> Sequence[int]:
-        """Return the files that become readable when the connection ends."""
+        """Return the file descriptors that become readable when the connection ends."""
         ...
 
     def send_request(self, message: Message) -> Message:
@@ -138,7 +138,7 @@ class HostConnection:
             self.wakeup_bell.wake()
 
     def enter_sleep(self) -> None:
-        """Let the driver host send a wake-up for each change, until the next other request.
+        """Let the driver host send a wake-up for each change, until the control sends another request.
 
         Raises DriverError if the request fails.
         """
@@ -152,7 +152,7 @@ class HostConnection:
 
     @property
     def end_signals(self) -> Sequence[int]:
-        """Return the files of the connection, which become readable only when the connection ends."""
+        """Return the file descriptors that become readable only when the connection ends."""
         return self._link.end_signals
 
     def poll_state(self, *, is_forced: bool = False) -> Mapping[str, object]:
@@ -240,7 +240,7 @@ class HostConnection:
         self._link.disconnect()
 
     def close(self) -> None:
-        """Close the connection, which ends the driver host."""
+        """Close the connection, which also ends the driver host."""
         self._link.close()
 
 
@@ -297,7 +297,7 @@ class SocketLink:
 
     @property
     def end_signals(self) -> tuple[int, ...]:
-        """Return the file of the socket, which becomes readable when the driver host ends."""
+        """Return the socket's file descriptor, which becomes readable when the driver host ends."""
         return (self._socket.fileno(),)
 
     def send_request(self, message: Message) -> Message:

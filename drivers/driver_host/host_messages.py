@@ -120,7 +120,7 @@ def number(head: Mapping[str, object], key: str) -> float:
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """Return a text from the head of a message, or an empty text if it is missing."""
+    """Return a string from the head of a message, or an empty string if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
@@ -169,5 +169,5 @@ def make_fault_entries(key: str, fault: str, default_code: FaultCode) -> Mapping
 
 
 def parse_texts(value: object) -> list[str]:
-    """Return the texts of a JSON list, ignoring other values."""
+    """Return the strings of a JSON list, ignoring other values."""
     return [one for one in parse_list(value) if isinstance(one, str)]

@@ -72,7 +72,7 @@ class HostAxes(_HostPort):
         return tuple(numbers[:half]), tuple(numbers[half:])
 
     def sample(self) -> AxisSample:
-        """Return the present state of the axes.
+        """Return the current state of the axes.
 
         A lost driver host is a fault of all axes.
         """
@@ -159,7 +159,7 @@ class HostSpindle(_HostPort):
         return t, turns
 
     def read_fault(self) -> str:
-        """Return the fault of the spindle, or an empty text."""
+        """Return the fault of the spindle, or an empty string."""
         return self._line.fault or read_fault(self._line.poll_state(), "spindle", "spindle")
 
 
@@ -261,7 +261,7 @@ class HostStation(_HostPort):
     """The ``core.ports.Station`` of the driver host."""
 
     def read_state(self) -> StationState:
-        """Return the present state of the station.
+        """Return the current state of the station.
 
         After a loss of the driver host, no button is pressed and the age is inf.
         """
@@ -279,7 +279,7 @@ class HostTouch(_HostPort):
         self._line.send_command("arm")
 
     def read_latch(self) -> TouchLatch | None:
-        """Return the first touch since ``arm_latch``, or None."""
+        """Return the first touch since ``arm_latch``, or None without a touch."""
         shown = self._line.poll_state().get("latch")
         if shown is None or self._line.is_lost:
             return None

@@ -1,4 +1,4 @@
-"""The functions that the driver host has switched off, until the control acknowledges it."""
+"""The guard of the functions that a trip has switched off, until the trip is acknowledged."""
 
 from __future__ import annotations
 

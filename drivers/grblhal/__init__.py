@@ -1,4 +1,4 @@
-"""Driver for grblHAL controllers on a serial port or TCP connection, which plan their own motion.
+"""Driver for grblHAL controllers, which plan their own motion, on a serial or TCP connection.
 
 See docs/decisions/0027-grblhal.md.
 """

@@ -1,4 +1,4 @@
-"""Axes of a grblHAL controller, which do not accept setpoints because the controller plans its own motion."""
+"""Axes of a grblHAL controller; they accept no setpoints, because it plans its own motion."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class GrblAxes:
         return self._c.clock.now()
 
     def horizon(self) -> float:
-        """Return the present time, because no setpoints are queued."""
+        """Return the current time as the end time, because no setpoints are queued."""
         return self.now()
 
     def splice(self, segments: MotionSegments) -> None:  # noqa: ARG002  the port's
@@ -62,9 +62,9 @@ class GrblAxes:
         )
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
-        """Return the present positions and zero velocities.
+        """Return the current positions and zero velocities.
 
-        If the exact end of the last block is known, the positions are this end.
+        If the exact end of the last block is known, the positions are those of this end.
         """
         return self._places(), (0.0,) * len(self.axes)
 
@@ -152,7 +152,7 @@ class GrblAxes:
     def _is_known(self, name: str) -> bool:
         """Return whether the position of an axis is known.
 
-        If homing is enabled in the controller, its report decides, otherwise the machine file.
+        If homing is enabled in the controller, its report decides. Otherwise the machine file decides.
         """
         is_homed = self._c.is_homed(name)
         known = self._known[name] if is_homed is None or name not in self._wired else is_homed
@@ -169,6 +169,6 @@ class GrblAxes:
         return tuple(places)
 
     def _position_tolerance(self, name: str) -> float:
-        """Return half a motor step of the axis in mm, plus the rounding of the reports."""
+        """Return half a motor step of the axis plus the rounding error of the reports, in mm."""
         steps = self._c.read_axis_setting(_STEPS, name)
         return max(_REPORT_TOLERANCE_MM, 0.5 / steps + 0.001) if steps else _REPORT_TOLERANCE_MM

@@ -55,7 +55,7 @@ class GrblBlocks:
     def is_listening(self) -> bool:
         """Return whether the controller reads and executes lines.
 
-        This is not the case during a jog or a feed hold.
+        It does not read lines during a jog or a feed hold.
         """
         return self._c.is_ready and not self._jogs.is_active and self._c.state not in {"Jog", "Hold"}
 
@@ -63,10 +63,10 @@ class GrblBlocks:
     def capabilities(self) -> frozenset[str]:
         """Return the requirements that the controller meets, with the names of ``machine_requirements``.
 
-        Threads need an encoder at the controller, which appears as a third speed in its reports. Constant
-        surface speed needs a spindle with variable speed, or a spindle that the controller does not drive.
-        During a thread, the spindle override is set to 100 %, so a spindle that the controller drives
-        cannot follow the radius.
+        Threads need an encoder at the controller; its speed appears as the third speed in the reports.
+        Constant surface speed needs a spindle with variable speed, or a spindle that the controller does
+        not drive. During a thread, the spindle override is fixed at 100 %, so a spindle that the controller
+        drives cannot follow the radius.
         """
         report, own = self._c.report, self._c.config.has_own_spindle
         able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
@@ -91,15 +91,15 @@ class GrblBlocks:
     def prepare_css(self, max_rpm: float) -> None:
         """Store the highest spindle speed in rpm for constant surface speed.
 
-        A value of 0 means a constant spindle speed.
+        If the value is 0, the spindle speed is constant instead.
         """
         self.max_css_rpm = max_rpm
 
     @property
     def is_at_standstill(self) -> bool:
-        """Return whether the axes are at rest and nothing is pending.
+        """Return whether the axes are at rest and no command is pending.
 
-        Lines that require a standstill can be sent in this state.
+        In this state, lines that require a standstill can be sent.
         """
         return self._settled and not self._c.is_busy
 
@@ -135,7 +135,7 @@ class GrblBlocks:
     def state(self) -> BlockState:
         """Return the state of the blocks.
 
-        The state is the result of the last report and of the lines that were sent after that report.
+        The state results from the last report and the lines that were sent after that report.
         """
         c = self._c
         resting = self.is_at_standstill or c.is_lost or (c.fault != "" and self._is_motion_ended())
@@ -144,14 +144,13 @@ class GrblBlocks:
         )
 
     def describe_start_refusal(self) -> str:
-        """Return the reason why no block can start, or an empty text."""
+        """Return the reason why no block can start, or an empty string if a block can start."""
         return self._c.start_refusal
 
     def hold_on_path(self) -> None:
         """Start a feed hold immediately (byte 82h).
 
-        This method must not be called during a thread pass, because the controller would stop within the
-        cut.
+        This method must not be called during a thread pass, because the axes would stop in the cut.
         """
         self._holds.start_hold()
 
@@ -168,7 +167,7 @@ class GrblBlocks:
     def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Set the feed and rapid overrides as fractions.
 
-        ``send_pending`` sends the overrides to the controller and verifies them.
+        ``send_pending`` later sends the overrides to the controller and verifies the reported values.
         """
         self.overrides.set_feed_and_rapid(feed_fraction, rapid_fraction)
 
@@ -279,7 +278,7 @@ class GrblBlocks:
         self._holds.process_report(report)
 
     def _update_tickets(self, report: StatusReport) -> None:
-        """Mark all blocks as complete."""
+        """Mark all tickets as complete."""
         if self._target is not None and report.state == "Idle":
             self.last_block_end = self._target
         self._target = None
@@ -289,7 +288,7 @@ class GrblBlocks:
         self._jogs.handle_standstill()
 
     def _discard_tickets(self) -> None:
-        """Discard all tickets after a stop, reset or alarm, so that the position is the reported position."""
+        """Discard all tickets after a stop, reset or alarm; then only the reported position is valid."""
         self._done, self._active, self._target, self.last_block_end = self._last, 0, None, None
         self._threads.clear()
         self._settled = False

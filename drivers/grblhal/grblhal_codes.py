@@ -143,9 +143,9 @@ _EQUAL_RAPID_RATIO = 1.01  # Rapids that differ by less than this ratio are equa
 
 
 def number(value: float) -> str:
-    """Return a number as text with at most five decimals and without trailing zeros.
+    """Return a number as text with up to five decimals and without trailing zeros.
 
-    The fifth decimal of a millimeter is a tenth of the finest step.
+    In mm, the fifth decimal is a tenth of the finest step.
     """
     text = f"{value:.5f}".rstrip("0").rstrip(".")
     return "0" if text in {"-0", ""} else text
@@ -187,16 +187,16 @@ def format_block(
 
 
 def format_jog(axis_letter: str, target: float, speed: float) -> str:
-    """Return the line of a jog to an absolute position in machine coordinates."""
+    """Return the line that jogs to an absolute position in machine coordinates."""
     return f"$J=G53G21G90{axis_letter}{number(target)}{_feed(speed)}"
 
 
 def _format_arc(op: ArcOperation) -> str:
     """Return G2 or G3, or G1 for a very short arc.
 
-    Angles count from the first axis of the plane, Z, to the second axis, X, so G3 turns from Z+ to X+. A
-    very short arc is sent as G1, because the controller treats an arc whose angle rounds to zero or less as
-    a full circle.
+    Angles count from the first axis of the plane, Z, to the second axis, X, so G3 turns from Z+ to X+. The
+    controller treats an arc whose angle rounds to zero or less as a full circle, so a very short arc is
+    sent as G1.
     """
     if _is_point(op):
         return "G1"
@@ -204,7 +204,7 @@ def _format_arc(op: ArcOperation) -> str:
 
 
 def _is_point(op: ArcOperation) -> bool:
-    """Return whether the two ends of an arc almost coincide and the arc is shorter than half a circle."""
+    """Return whether an arc is shorter than half a circle and its two ends almost coincide."""
     if math.hypot(op.x - op.start_x, op.z - op.start_z) >= _MIN_ARC_MM:
         return False
     turned = (op.start_z - op.center_z) * (op.x - op.center_x) - (op.start_x - op.center_x) * (
@@ -214,7 +214,7 @@ def _is_point(op: ArcOperation) -> bool:
 
 
 def _format_center(op: ArcOperation) -> str:
-    """Return the I and K words of an arc, relative to its start; I is a radius in mode G7 too."""
+    """Return the I and K words of an arc, relative to its start; I is a radius even in mode G7."""
     return "" if _is_point(op) else f"I{number(op.center_x - op.start_x)}K{number(op.center_z - op.start_z)}"
 
 

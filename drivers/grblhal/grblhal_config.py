@@ -13,7 +13,7 @@ class GrblAxis:
     """One axis of the machine file, in mm and seconds.
 
     ``is_wired`` is true if the controller has the axis. If ``home_position_mm`` is a number, homing sets
-    the present position to this value without motion; with None, the controller homes on a switch.
+    the current position to this value without motion. If it is None, the axis homes on a switch.
     """
 
     name: str
@@ -40,7 +40,7 @@ ESTOP, HARDWARE = "estop", "hardware"  # Terminal of an E-stop that only cuts th
 
 @dataclass(frozen=True, slots=True)
 class GrblInput:
-    """Input with its terminal; ``pn.E`` means the letter E of the pins in a status report.
+    """Input with its terminal; ``pn.E`` means the letter E in the pin field of a status report.
 
     The terminal "hardware", for the E-stop only, means that the controller does not report this input.
     """
@@ -54,7 +54,7 @@ class GrblConfig:
     """Configuration of the controller with its axes, spindle and terminals.
 
     ``has_own_spindle`` is true if the controller drives the spindle. Otherwise an inverter drives the
-    spindle, and the controller may only measure the speed.
+    spindle, and the controller can at most measure the speed.
     """
 
     table: GrblhalTable

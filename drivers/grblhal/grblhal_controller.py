@@ -1,6 +1,6 @@
 """Communication with one grblHAL controller: lines, report requests and timeouts.
 
-``GrblController.run_cycle`` must be called at least once per tick of the executor and never waits.
+``GrblController.run_cycle`` never waits, and must be called at least once per tick of the executor.
 """
 
 from __future__ import annotations
@@ -90,9 +90,9 @@ class GrblController(ReportedState):
         )
 
     def send_line(self, line: str, ticket: int = 0) -> SentLine:
-        """Queue a line for the controller, and return its entry.
+        """Queue a line for the controller, and return the entry of the line in the queue.
 
-        A later call of ``run_cycle`` completes the entry.
+        Later calls of ``run_cycle`` send the line and complete its entry.
         """
         return self.line_sender.send_line(line, self.listened_s, ticket)
 
@@ -108,13 +108,13 @@ class GrblController(ReportedState):
         return self.script_runner.purpose
 
     def expect_driver_reset(self) -> None:
-        """Treat the next startup message of the controller as the result of a reset by the driver."""
+        """Treat the controller's next startup message as the result of the driver's own reset."""
         self.is_reset_expected = True
 
     def set_override_reports(self, enabled: bool) -> None:
-        """Select whether plain reports, which contain the overrides, are requested.
+        """Select whether to request plain reports, which contain the overrides.
 
-        A full report always contains the offsets, and then the controller omits the overrides.
+        A full report always contains the offsets, and the controller then omits the overrides.
         """
         self._sees_overrides = enabled
 
@@ -180,8 +180,8 @@ class GrblController(ReportedState):
     def halt_motion(self) -> None:
         """Stop the motion if ``run_cycle`` is no longer called; any thread may call this method.
 
-        The first call sends a jog cancel and a feed hold. The next call, when the axes are at rest, resets
-        the controller, which also stops spindle and coolant. The bytes bypass all buffers.
+        The first call sends a jog cancel and a feed hold. A second call, when the axes are at rest, resets
+        the controller, which also stops the spindle and coolant. The bytes bypass all buffers.
         """
         self._wire.write(
             bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
@@ -197,7 +197,7 @@ class GrblController(ReportedState):
 
     @property
     def start_refusal(self) -> str:
-        """Return the reason why no motion can start now, or an empty text."""
+        """Return the reason why no motion can start now, or an empty string if motion can start."""
         if self.fault:
             return self.fault
         if self.alarm_number == grblhal_codes.HOMING_REQUIRED_ALARM and not self.is_busy:
@@ -235,7 +235,7 @@ class GrblController(ReportedState):
     def handle_line(self, line: str) -> None:
         """Handle one complete line from the controller.
 
-        An unknown line that begins with ``[`` is passed on as a message.
+        An unknown line that begins with ``[`` is treated as a message.
         """
         if line.startswith("<"):
             self._reported(parse_report(line), line)
@@ -270,10 +270,10 @@ class GrblController(ReportedState):
         return last is not None and (last.moves or (last.state == "Idle" and not self.are_blocks_settled()))
 
     def handle_invalid_line(self, line: str) -> None:
-        """Handle an invalid line, which may have been a damaged reply.
+        """Handle an invalid line, which may be a damaged reply.
 
-        The driver never guesses which line the controller acknowledged. It sets a fault if a reply may be
-        missing.
+        The driver never guesses which line the controller acknowledged. If a reply may be missing, it sets
+        a fault.
         """
         now = self.clock.now()
         self._garbage.append(now)
@@ -350,10 +350,7 @@ class GrblController(ReportedState):
         self.on_status_report(report)
 
     def _check_report(self, report: StatusReport) -> None:
-        """Handle an event that the state in a report shows.
-
-        The event is handled even if the message about it was missed.
-        """
+        """Handle events that the state in a report shows, even if their messages were missed."""
         if report.state != "Alarm":
             self.alarm_number = 0
         if self.is_busy:
@@ -387,7 +384,7 @@ class GrblController(ReportedState):
             self._gone(error)
 
     def _reopen(self, opening: ConnectionAttempt[GrblTransport]) -> None:
-        """Complete the opening of the connection, and discard all data of the previous connection."""
+        """Finish reopening the connection, and discard all data of the previous connection."""
         try:
             wire = opening.take_connection()
         except DriverError as error:
@@ -467,7 +464,7 @@ class GrblController(ReportedState):
         """Set a fault if the controller does not respond in time.
 
         The timeout is longer while a thread waits for the spindle index. A reply to a line also counts as a
-        response, because lines may delay a report request.
+        response, because the controller may execute lines before it answers a report request.
         """
         if self.is_busy:
             return

@@ -1,4 +1,4 @@
-"""Machine that a grblHAL controller runs: its connection and the ports for the executor."""
+"""Machine run by a grblHAL controller, with its connection and the ports for the executor."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class GrblMachine:
     """Connected and verified grblHAL controller with its ports.
 
     The constructor raises DriverError if the controller does not respond or is not suitable. ``transport``
-    and ``advance_time`` are for tests, in which the clock does not advance automatically.
+    and ``advance_time`` are for tests, in which the clock advances only when the driver advances it.
     """
 
     def __init__(
@@ -99,9 +99,9 @@ class GrblMachine:
         return ALL_UNKNOWN_PARTS if self.controller.is_silent else frozenset()
 
     def get_active_trip(self) -> DriverHostTrip | None:
-        """Return the spindle and outputs that were still on after the controller was silent, or None.
+        """Return the spindle and outputs that were still on after the controller was silent.
 
-        The driver has switched them off after the silence.
+        Return None if nothing was on. The driver has switched them off since then.
         """
         found = self.controller.active_at_silence
         if found is None:
@@ -121,7 +121,7 @@ class GrblMachine:
             self._trips, self.controller.active_at_silence = self._trips + 1, None
 
     def _reopen(self) -> ConnectionAttempt[GrblTransport]:
-        """Start to reopen the connection, after closing the old connection to release the port."""
+        """Close the old connection, which releases the port, and begin to reopen the connection."""
         close, config = self.controller.close, self.controller.config
 
         def opened() -> GrblTransport:
@@ -231,7 +231,7 @@ class GrblMachine:
 
 
 def _group_texts(items: Mapping[str, str], one: str, several: str) -> list[str]:
-    """Return one sentence for each reason, with all names that have this reason.
+    """Return one sentence per reason, with all names to which this reason applies.
 
     A name without a reason is omitted.
     """

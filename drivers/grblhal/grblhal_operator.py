@@ -43,9 +43,9 @@ def encode_override_steps(
 
 
 def _encode_steps(reported_percent: int, percent: int, moves: list[int]) -> bytes:
-    """Return the coarse steps and then the fine steps.
+    """Return the bytes of the coarse steps, followed by those of the fine steps.
 
-    If a coarse step would exceed a limit, the fine steps are first.
+    If a coarse step would exceed a limit, the fine steps come first.
     """
     up_10, down_10, up_1, down_1 = moves
     tens, ones = divmod(abs(percent - reported_percent), 10)
@@ -58,9 +58,9 @@ def _encode_steps(reported_percent: int, percent: int, moves: list[int]) -> byte
 
 
 def round_rapid_override(fraction: float) -> int:
-    """Return the largest rapid override of the controller that does not exceed ``fraction``, in percent.
+    """Return the controller's largest rapid override, in percent, that does not exceed ``fraction``.
 
-    The result is at least 25 %.
+    If ``fraction`` is below 0.25, the result is 25 %.
     """
     return 100 if fraction >= 1.0 else 50 if fraction >= 0.5 else 25
 
@@ -71,9 +71,9 @@ def limit_override_percent(fraction: float) -> int:
 
 
 class GrblOverrides:
-    """Commanded overrides, which are compared with the reported overrides.
+    """Commanded overrides, which the driver compares with the reported overrides.
 
-    If they differ, override steps are sent.
+    If they differ, the driver sends override steps.
     """
 
     def __init__(self, write: Callable[[bytes], None], set_fault: Callable[[str, FaultCode], None]) -> None:
@@ -103,10 +103,10 @@ class GrblOverrides:
         return reported is not None and list(reported[:3]) == self.commanded_percents
 
     def send_differences(self, reported: tuple[int, ...] | None, report_count: int, now: float) -> None:
-        """Send override steps for the differences to a report that is newer than the last steps.
+        """Send override steps if the commanded and reported overrides differ.
 
-        ``report_count`` is the number of reports with overrides. If no such report arrives, the steps are
-        sent again.
+        Steps are sent only after a report that is newer than the last steps, or again if no such report
+        arrives. ``report_count`` is the number of reports with overrides.
         """
         if reported is None or self.are_confirmed(reported) or reported != self._last:
             self._since = None  # A spindle that follows the radius changes continuously.
@@ -147,7 +147,7 @@ _MAX_STALE_REPORTS = 3  # Reports that may still show the state before a hold or
 
 
 class FeedHolds:
-    """Feed holds (byte 82h) and their ends (byte 81h), tracked from report to report."""
+    """Feed holds (byte 82h) and resumes (byte 81h), whose effects are tracked from report to report."""
 
     def __init__(self, controller: GrblController) -> None:
         self._c = controller
@@ -223,8 +223,8 @@ _MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 class GrblJogs:
     """Sender of jog lines (``$J``), which waits for the acknowledgment of each line.
 
-    The target at any time is the position that an axis at full speed since the start would reach one lease
-    later. The remaining travel is therefore at most lease · velocity plus the braking distance.
+    The target at any time is the position that an axis at full speed since the start of the jog would reach
+    one lease later. The remaining travel is therefore at most lease · velocity plus the braking distance.
     """
 
     def __init__(self, controller: GrblController) -> None:
@@ -254,13 +254,13 @@ class GrblJogs:
         return True
 
     def start_step(self, axis: str, target: float, speed: float) -> None:
-        """Jog an axis from rest to ``target``, where it stops."""
+        """Jog an axis from rest to ``target``, and stop it there."""
         self._begin(axis, speed, self._c.clock.now())
         self._wanted, self.is_active = target, True
         self.send_travel()
 
     def send_travel(self) -> None:
-        """Send the additional travel if the last line has been acknowledged."""
+        """Send the travel that is still due, if the last line has been acknowledged."""
         if not self.is_active or (self._ask is not None and not self._ask.is_done):
             return
         added = abs(self._wanted - self._sent)

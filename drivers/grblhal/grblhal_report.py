@@ -14,9 +14,9 @@ _STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Che
 
 
 class StatusReport(NamedTuple):
-    """Status report, in which a missing field is None.
+    """Status report; a field that the report does not contain is None.
 
-    Positions are in mm, with X as a radius or diameter, as the controller counts it.
+    Positions are in mm. X is a radius or a diameter, as in the controller.
     """
 
     state: str
@@ -43,12 +43,12 @@ class StatusReport(NamedTuple):
 
     @property
     def measured(self) -> float | None:
-        """Return the spindle speed in rpm that an encoder measures, or None without an encoder."""
+        """Return the spindle speed in rpm as measured by an encoder, or None if there is no encoder."""
         return self.speeds[2] if self.speeds is not None and len(self.speeds) > 2 else None
 
 
 def parse_report(line: str) -> StatusReport | None:
-    """Parse a line and return its status report, or None if the line is damaged."""
+    """Parse a line as a status report, and return the report, or None if the line is damaged."""
     if not (line.startswith("<") and line.endswith(">")):
         return None
     head, *fields = line[1:-1].split("|")
@@ -144,10 +144,10 @@ class ControllerIdentity(NamedTuple):
     )
 
     def has_pin(self, letter: str) -> bool:
-        """Return whether the board has an input with this letter, if the controller reports its inputs.
+        """Return whether the board has the input with this letter, as far as the controller reports it.
 
-        The control inputs are in [SIGNALS:…], which firmware before 2024 omits; then each of them is
-        assumed to exist. The limit switches follow from the axes.
+        Control inputs are listed in [SIGNALS:…]. Firmware before 2024 omits this list, and then each of
+        them is assumed to exist. A limit switch exists if its axis exists.
         """
         if letter in _AXES:
             return letter in self.axis_letters

@@ -1,6 +1,6 @@
 """Scripts for tasks with several requests: connect, verify modes, stop, clear an alarm and home.
 
-Each script is a generator, which ``GrblController.update`` advances. A script that fails raises
+Each script is a generator, which ``GrblController.run_cycle`` advances. A script that fails raises
 ScriptError.
 """
 
@@ -39,8 +39,8 @@ def request_full_report(controller: GrblController, timeout_s: float = REPLY_TIM
 def synchronize_controller(controller: GrblController) -> Script:
     """Synchronize with the controller.
 
-    The script clears a partial line and a stored error, and waits for the reply to ``$G``. From this reply
-    on, replies are counted again.
+    The script clears a partial line and a stored error, and waits for the reply to ``$G``. After this
+    reply, the driver assigns each reply to a line again.
     """
     # The controller reads these lines before ``$G``.
     slow = max(
@@ -69,7 +69,7 @@ def _ready_by(c: GrblController, ready: Callable[[], bool], deadline_s: float) -
 def query_line(
     controller: GrblController, line: str, timeout_s: float = REPLY_TIMEOUT_S
 ) -> Generator[ScriptStep, None, list[str]]:
-    """Send a line, wait for the reply ``ok``, and return the lines that were received before this reply.
+    """Send a line, wait for the reply ``ok``, and return the lines received before the ``ok``.
 
     Raises ScriptError if the controller rejects the line.
     """
@@ -118,7 +118,7 @@ def send_modes(controller: GrblController) -> Script:
 
 
 def _mode_stem(word: str) -> str:
-    """Return the basic code of a word, such as G43 for ``G43.1`` and G51 for ``G51:X``."""
+    """Return the basic code of a word, for example G43 for ``G43.1`` or G51 for ``G51:X``."""
     return word.partition(":")[0].partition(".")[0]
 
 
@@ -129,7 +129,7 @@ def _read_modes(c: GrblController) -> Generator[ScriptStep, None, list[str]]:
 
 
 def require_hardware(controller: GrblController, identity: ControllerIdentity) -> None:
-    """Raise ScriptError if the controller does not have all axes of the machine file or the E-stop input."""
+    """Raise ScriptError if the controller lacks an axis of the machine file or the E-stop input."""
     missing = [axis.name for axis in controller.wired_axes if axis.name not in identity.axis_letters]
     if missing:
         raise ScriptError(
@@ -170,8 +170,8 @@ def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
     """Brake the axes, and then reset the controller to clear its queue.
 
     The position is lost only if an axis does not come to rest. ``in_thread_pass`` means that a thread pass
-    is running, which may wait for its index at rest. In this case, byte 18h would lose the position, but
-    byte 19h acts as a reset. An active alarm is not changed.
+    is running, which may be waiting at rest for the index. In this case, byte 18h would lose the position,
+    so byte 19h is used, which then acts as a reset. An active alarm is not changed.
     """
     if controller.state != "Home":  # Only a reset ends the state Home.
         yield from _brake(controller)
@@ -223,7 +223,7 @@ def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
 def _stopping_time(c: GrblController) -> float:
     """Return the seconds that the slowest axis needs to brake.
 
-    If the controller has reported its settings, they are used in addition to the machine file.
+    If the controller has reported its settings, both the settings and the machine file are considered.
     """
     ramps = [axis.max_velocity / axis.max_acceleration for axis in c.wired_axes]
     for axis in c.wired_axes:
@@ -292,11 +292,11 @@ def reconnect_controller(controller: GrblController) -> Script:
 
 
 def check_restart(controller: GrblController) -> Script:
-    """Detect whether the controller has restarted while it was silent.
+    """Detect whether the controller restarted while it was silent.
 
     After a restart, the modes differ from those of TurnDesk, because ``gc_init`` of grblHAL selects G17.
-    The position also counts from 0 after a restart, so any other position proves that the controller has
-    not restarted.
+    The position also counts from 0 then, so any other position proves that the controller has not
+    restarted.
     """
     by = controller.clock.now() + _MODES_TIMEOUT_S
     controller.request_modes()
@@ -436,7 +436,7 @@ def recover_from_alarm(controller: GrblController) -> Script:
 
 
 def home_axis(controller: GrblController, axis_letter: str) -> Script:
-    """Home one axis on its switch, or set the home position at the present position."""
+    """Home one axis on its switch, or set the current position to the home position."""
     axis = next(axis for axis in controller.config.axes if axis.name == axis_letter)
     yield from synchronize_controller(controller)
     if axis.home_position_mm is not None:
@@ -470,7 +470,7 @@ def _look_for_switch(c: GrblController, letter: str) -> Script:
 def finish_jog(controller: GrblController) -> Script:
     """Wait until the axes are at rest after a canceled jog, and then verify the modes.
 
-    The check is necessary because the controller has discarded lines.
+    The check is necessary because the controller discards lines when a jog is canceled.
     """
     began = controller.report_count
     yield (
@@ -486,12 +486,12 @@ def finish_jog(controller: GrblController) -> Script:
 
 
 def _is_door_open(c: GrblController) -> bool:
-    """Return whether the safety door is open, so that the controller does not read lines."""
+    """Return whether the safety door is open; the controller then does not read lines."""
     return c.report is not None and c.report.state == "Door"
 
 
 def _present_alarm(c: GrblController) -> int:
-    """Return the alarm number of the last report, or 0 without an alarm."""
+    """Return the alarm number in the last report, or 0 if no alarm is active."""
     if c.report is None or c.report.state != "Alarm":
         return 0
     return c.report.sub or c.alarm_number or grblhal_codes.LOCKED_ALARM

@@ -1,4 +1,4 @@
-"""The settings of a controller: the required values, and their comparison with the reported ones."""
+"""Settings of a controller: the required values and their comparison with the reported values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
 
 
 def find_required_settings(c: GrblController, there: Mapping[int, str]) -> dict[int, float | str]:
-    """Return the required settings, given the reported ones."""
+    """Return the required settings for a controller that reports these settings."""
     wanted: dict[int, float | str] = dict(c.config.table.settings)
     always = c.identity is not None and c.identity.is_lathe_mode and _MODE not in there
     if always and wanted.get(_MODE) == _LATHE:
@@ -27,13 +27,13 @@ def find_required_settings(c: GrblController, there: Mapping[int, str]) -> dict[
 
 
 def parse_settings(lines: list[str]) -> dict[int, str]:
-    """Return the settings that the lines report."""
+    """Return the settings in the lines that the controller sent."""
     pairs = (line[1:].split("=", 1) for line in lines if line.startswith("$") and "=" in line)
     return {int(n): value for n, value in pairs}
 
 
 def is_same_setting(present_value: str | None, required_value: float | str) -> bool:
-    """Return whether a setting is equal to the required value, rounded to the reported decimals."""
+    """Return whether a setting equals the required value, rounded to the decimals of the report."""
     if present_value is None or isinstance(required_value, str):
         return present_value == required_value
     decimals = len(present_value.partition(".")[2])

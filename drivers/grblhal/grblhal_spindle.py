@@ -27,9 +27,9 @@ _STANDSTILL_RPM = 30.0  # Rpm, between two reports of a spindle that reverses.
 
 
 class GrblEncoder:
-    """Encoder that is connected to the controller, for a spindle that another device drives.
+    """Encoder connected to the controller, for a spindle that another device drives.
 
-    The encoder does not report the direction.
+    The encoder does not report the direction of rotation.
     """
 
     def __init__(self, controller: GrblController) -> None:
@@ -46,8 +46,8 @@ class GrblEncoder:
     def speed(self) -> float:
         """Return the measured speed in rpm, with the sign of the speed that the spindle drive reports.
 
-        At a reported speed of 0, the previous sign remains valid, for example while the spindle coasts.
-        While the controller is silent, the speed that the drive reports is returned.
+        If the drive reports a speed of 0, for example while the spindle coasts, the previous sign remains
+        valid. While the controller is silent, the speed that the drive reports is returned.
         """
         reported_rpm, report = self.get_reported_rpm(), self._c.report
         if self._c.is_silent:
@@ -70,7 +70,7 @@ class _SpeedSign:
         self._sign, self._least = 1.0, math.inf
 
     def apply_sign(self, rpm: float, commanded_rpm: float) -> float:
-        """Return the speed ``rpm`` with its sign, which follows the sign of ``commanded_rpm``."""
+        """Return ``rpm`` with a sign that follows the sign of ``commanded_rpm``."""
         rpm = abs(rpm)
         if math.copysign(1.0, commanded_rpm) == self._sign:
             self._least = math.inf
@@ -99,11 +99,11 @@ class GrblSpindle:
         self._unlike_since: float | None = None  # Start of a difference between reported and expected speed.
 
     def set_speed(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed; 0 stops the spindle.
+        """Turn the spindle at the signed speed ``rpm``, or stop the spindle if ``rpm`` is 0.
 
         The speed is limited to the maximum of the machine. Raises DriverError if the controller does not
-        accept lines, or if the speed exceeds the limit of the controller, which would reduce the speed
-        without a message.
+        accept lines, or if the speed exceeds the controller's limit, because the controller would reduce
+        the speed without a message.
         """
         if rpm:
             require_spindle_ready(self._blocks.describe_start_refusal())
@@ -145,7 +145,7 @@ class GrblSpindle:
         return None
 
     def read_fault(self) -> str:
-        """Return an empty text, because the axes report all alarms of the controller."""
+        """Return an empty string, because the axes report all alarms of the controller."""
         return ""
 
     def handle_reset(self) -> None:
@@ -214,8 +214,8 @@ class GrblSpindle:
     def _check_clipping(self) -> None:
         """Set a fault if the controller limits the speed without a message.
 
-        A changed setting $30 may take effect only after a restart of the controller. The commanded speed in
-        the reports is the speed after this limit.
+        A change of setting $30 may take effect only after the controller restarts. The commanded speed in
+        the reports is the speed after limiting.
         """
         c = self._c
         now, reported_speeds = c.clock.now(), c.report.speeds if c.report is not None else None
@@ -255,7 +255,7 @@ class GrblSpindle:
             self._blocks.stop_jog()  # A line would be rejected; M5 follows when the axes rest.
 
     def _abort_start_wait(self) -> bool:
-        """Return whether M3 or M4 has not been acknowledged yet, and abort a long wait.
+        """Return whether M3 or M4 has not been acknowledged yet, and abort the wait if it is too long.
 
         While the firmware waits for the spindle speed, it does not read M5 and ignores the spindle toggle.
         Only an abort with a reset can then stop the spindle.

@@ -84,7 +84,7 @@ class ReportedState:
 
     @property
     def state(self) -> str:
-        """Return the state in the last report, or an empty text before the first report."""
+        """Return the state in the last report, or an empty string before the first report."""
         return self.report.state if self.report is not None else ""
 
     def store_report(self, report: StatusReport) -> None:
@@ -110,10 +110,10 @@ class ReportedState:
         self._before_alarm = self._before_alarm if report.state == "Alarm" else report
 
     def is_plausible(self, report: StatusReport) -> bool:
-        """Return whether every axis could have moved to its reported position.
+        """Return whether every axis could have reached its reported position since the last report.
 
-        The available time starts when the last report was created. A report may be created long before it
-        is read, because this computer may be delayed.
+        The available time starts when the last report was created, not when it was read. This computer may
+        be delayed and read a report long after its creation.
         """
         if self.report is None or self.is_diameter_mode:
             return True
@@ -133,7 +133,7 @@ class ReportedState:
         return self.identity.axis_letters if self.identity is not None else "XYZ"
 
     def has_pin(self, letter: str) -> bool:
-        """Return whether the board has an input with this letter, if the controller reports its inputs."""
+        """Return whether the board has the input with this letter, as far as the controller reports it."""
         return self.identity is None or self.identity.has_pin(letter)
 
     @property
@@ -149,7 +149,7 @@ class ReportedState:
     def read_axis_setting(self, group_start: int, letter: str) -> float:
         """Return the setting of an axis, or 0 if it is not reported.
 
-        The setting is in the group of axis settings that starts at number ``group_start``.
+        ``group_start`` is the number of the first setting in the group of axis settings.
         """
         index = self.reported_axis_letters.find(letter)
         return float(self.settings.get(group_start + index, "0")) if index >= 0 else 0.0
@@ -162,9 +162,9 @@ class ReportedState:
         return self.read_axis_setting(110, letter) / 60.0
 
     def get_max_wait(self, line: str) -> float:
-        """Return the maximum time in seconds that the controller waits when it executes a line.
+        """Return the maximum seconds for which the controller waits when it executes a line.
 
-        The controller waits for the spindle or for coolant.
+        The controller may wait for the spindle or for the coolant.
         """
         return get_max_firmware_wait(line, self.settings)
 
@@ -195,7 +195,7 @@ class ReportedState:
     def _confirms_jump(self, report: StatusReport, first_report: StatusReport) -> bool:
         """Return whether ``report`` continues from the implausible position in ``first_report``.
 
-        In this case, a delayed controller has caught up, and its position is correct.
+        If it does, the controller was only delayed and has caught up, and its position is correct.
         """
         before, now = self._places(first_report), self._places(report)
         near = ((axis, now.get(axis.name), before.get(axis.name)) for axis in self.config.axes)

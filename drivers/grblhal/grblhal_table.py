@@ -66,7 +66,7 @@ def _is_setting(value: object) -> bool:
 
 
 def _read_settings(file: MachineFileReading) -> dict[int, float | str]:
-    """Return the valid entries of the settings table by setting number."""
+    """Return the valid entries of the settings table, with the setting numbers as keys."""
     table = file.raw(_SETTINGS)
     entries = table.items() if isinstance(table, dict) else ()
     return {int(key): value for key, value in entries if key.isdecimal() and _is_setting(value)}
@@ -97,7 +97,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_guard(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding if a guard that stops the cycle uses an input that is read only at standstill."""
+    """Yield a finding if a cycle-stopping guard uses an input that is readable only at standstill."""
     values, path = file.values, "interlocks.guard_stops"
     stops = values.has_values(path, _GUARD) and values.read_flag(path)
     if stops and values.text(_GUARD).startswith("in."):
@@ -110,7 +110,7 @@ def _check_guard(file: MachineFileReading) -> Iterator[FileFinding]:
 def _check_travel(
     file: MachineFileReading, settings: Mapping[int, float | str], axis: str
 ) -> Iterator[FileFinding]:
-    """Yield findings for an axis whose limits exceed the limits in the controller's settings."""
+    """Yield findings about axes whose limits exceed the limits in the controller's settings."""
     values, offset = file.values, _AXES[axis]
     for first, key, factor, unit in _LIMITS:
         path = f"axis.{axis}.{key}"

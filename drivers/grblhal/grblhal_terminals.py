@@ -1,4 +1,4 @@
-"""Inputs, outputs and probe of a grblHAL controller, named as in the machine file."""
+"""Inputs, outputs and probe of a grblHAL controller, with the names of the machine file."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _REQUEST_INTERVAL_S = 0.2  # Seconds between two requests.
 class GrblInputs:
     """Inputs of the controller: pins, which each report contains, and auxiliary inputs.
 
-    ``M66 P… L0`` reads one auxiliary input, and the next full report contains the result. The controller
-    executes this line only at standstill, so the last state applies while anything moves.
+    ``M66 P… L0`` reads one auxiliary input, and the next full report contains its state. The controller
+    executes this line only at standstill, so the last known state applies during motion.
     """
 
     def __init__(self, controller: GrblController, blocks: GrblBlocks) -> None:
@@ -52,7 +52,7 @@ class GrblInputs:
         return states
 
     def list_missing_inputs(self) -> dict[str, str]:
-        """Return the names of the inputs that the controller does not have, and the reason for each."""
+        """Return the names of the inputs that the controller lacks, each with the reason."""
         have = self._c.identity.input_count if self._c.identity is not None else 0
         missing: dict[str, str] = {}
         for name, wired in self._c.config.inputs.items():
@@ -129,7 +129,7 @@ class GrblIO:
     def get_outputs(self) -> Mapping[str, bool]:
         """Return the states of the outputs by name, without outputs that the controller does not have.
 
-        A coolant output has the reported state, starting 1 s after its last command. An auxiliary output
+        From 1 s after its last command, a coolant output has the reported state. An auxiliary output always
         has the commanded state, because the controller does not report it.
         """
         accessory_report = self._c.reported_accessories
@@ -146,8 +146,8 @@ class GrblIO:
     def write(self, name: str, is_on: bool) -> None:
         """Switch an output.
 
-        Raises DriverError if the machine file does not define the output, or if an output that the
-        controller does not have is to be switched on.
+        Raises DriverError if the machine file does not define the output, or if the output is to be
+        switched on and the controller does not have it.
         """
         find_output(name, self._wanted)
         why = self.describe_missing_output(name)
@@ -196,7 +196,7 @@ class GrblIO:
     def list_usable_terminals(self) -> frozenset[str]:
         """Return the inputs and outputs that a program may use.
 
-        Their names are those of ``machine_requirements``.
+        The names are those that ``machine_requirements`` defines.
         """
         outputs = {
             Message("output {name}", name=name)
@@ -208,9 +208,9 @@ class GrblIO:
         return frozenset(outputs | {Message("input {name}", name=name) for name in names})
 
     def handle_reset(self) -> None:
-        """Record that a stop or reset has switched coolant off.
+        """Record that a stop or reset has switched the coolant off.
 
-        Auxiliary outputs may or may not change.
+        Auxiliary outputs are not recorded as off, because they may or may not have changed.
         """
         self._asks.clear()
         for name, output in self._c.config.outputs.items():
@@ -245,9 +245,9 @@ class GrblIO:
             self._c.send_line(f"M{64 if on else 65}P{terminal.removeprefix('out.')}")
 
     def _coolant_off_lines(self) -> list[str]:
-        """Return the lines that switch one kind of coolant off.
+        """Return the lines that switch off either flood or mist.
 
-        M9 switches flood and mist off, so the other kind is then switched on again.
+        M9 switches off both, so the other output is then switched on again if it was on.
         """
         on = [
             _COOLANT[output.terminal]
@@ -265,10 +265,10 @@ _TOUCH_POLLING_S = 0.5  # Seconds after a touch with more frequent requests.
 
 
 class GrblProbe(FirstTouchInput):
-    """Touch input that is evaluated from reports, which are requested more often while the probe is armed.
+    """Touch input evaluated from reports, which are requested more often while the probe is armed.
 
-    G38.2 is not used, because its motion would continue after a loss of the host. A jog ends when its
-    motion lease expires.
+    G38.2 is not used, because its motion would continue if the host were lost. A jog, in contrast, ends
+    when its motion lease expires.
     """
 
     def __init__(self, controller: GrblController, axes: GrblAxes, inputs: GrblInputs) -> None:
@@ -278,14 +278,14 @@ class GrblProbe(FirstTouchInput):
         self._at = controller.clock.now()  # Time of the last evaluated report.
 
     def arm_latch(self) -> None:
-        """Clear the latched touch and request reports more often."""
+        """Clear the latched touch, and request reports more often from now on."""
         super().arm_latch()
         self._c.fast_polling_until = self._c.clock.now() + _ARMED_POLLING_S
 
     def check_touch(self) -> None:
         """Check a new report for a touch.
 
-        Call this method once per cycle, after the cycle of the controller.
+        Call this method once per cycle, after the controller's ``run_cycle``.
         """
         now, report = self._c.clock.now(), self._c.report
         if report is self._report or report is None:

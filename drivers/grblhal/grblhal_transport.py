@@ -156,9 +156,9 @@ class GrblTcpTransport:
             raise TransportLostError(str(error)) from error
 
     def close(self) -> None:
-        """Close the connection after receiving the remaining bytes.
+        """Receive the remaining bytes, and then close the connection.
 
-        Otherwise, a simulator would fail.
+        If bytes remained, a simulator on the other side would fail.
         """
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)
@@ -179,9 +179,9 @@ _MAX_LINE_BYTES = 256  # bytes of a line
 
 @dataclass(slots=True)
 class SentLine:
-    """Line that was sent to the controller, and the lines that were received before its reply.
+    """Line that was sent to the controller, with the lines that were received before its reply.
 
-    ``error_code`` is 0 if the reply is ``ok``.
+    If the reply is ``ok``, ``error_code`` is 0.
     """
 
     text: str
@@ -241,9 +241,9 @@ class LineSender:
             self._write(ask.text.encode("ascii") + b"\n")
 
     def handle_reply(self, error_code: int) -> SentLine | None:
-        """Assign a reply to its line and return the line, or None if no line is pending.
+        """Assign a reply to the line that caused it.
 
-        ``error_code`` is the error code of the reply, or 0 for ``ok``.
+        Return that line, or None if no line is pending. ``error_code`` is 0 for the reply ``ok``.
         """
         if not self.unacknowledged_lines:
             return None
@@ -274,7 +274,7 @@ Script = Generator[ScriptStep, None, None]
 
 
 class ScriptError(DriverError):
-    """Failure of a script; its text and code become the fault of the controller."""
+    """Failure of a script, whose text and code become the fault of the controller."""
 
     def __init__(self, text: str, code: FaultCode = "controller-refuses", **values: object) -> None:
         super().__init__(text, code, reason="", **values)
@@ -302,13 +302,13 @@ class ScriptRunner:
         self._step, self._until = (lambda: True, 0.0, ""), now_s
 
     def cancel_script(self) -> None:
-        """Cancel the script; if a step of the script is being executed, the script ends after this step."""
+        """Cancel the script; a step that is being executed is completed first."""
         if self._script is not None and not self._inside:
             self._script.close()
         self._script = None
 
     def advance_script(self, now: float) -> str:
-        """Advance the script as far as possible, and return the reason if it fails, or an empty text."""
+        """Advance the script as far as possible; return the reason for a failure, or an empty string."""
         while self._script is not None:
             until, _, why = self._step
             if not until():

@@ -1,4 +1,4 @@
-"""The axes on HAL, whose setpoint queue is here; the bridge and HAL play it."""
+"""The axes on HAL, with the setpoint queue that the bridge and HAL play."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ class HalAxes:
     def _handle_power_loss(self) -> None:
         """Handle a loss of power after an E-stop or a drive fault.
 
-        Axes without an absolute encoder lose their home.
+        Axes without an absolute encoder lose their home position.
         """
         self._forget()
         for index in self._driven:
@@ -211,7 +211,7 @@ class HalAxes:
         return self._now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue in seconds, or the present time if the queue is empty."""
+        """Return the end time of the setpoint queue in seconds, or the current time for an empty queue."""
         return self.queue.get_end_time(self._now())
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:

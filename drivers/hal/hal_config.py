@@ -23,7 +23,7 @@ class HalAxis(AxisProperties):
 
     @property
     def switch_key(self) -> str:
-        """Return the key of the switch pin that homing searches for, or an empty text."""
+        """Return the key of the switch pin that homing searches for, or an empty string."""
         needs = (
             REQUIRED_PINS_BY_HOMING_METHOD.get(self.home_method, ())
             if not self.absolute and self.pins is not None
@@ -52,7 +52,7 @@ class HalOutput:
     """An output with its pin and its safe state; None leaves the output unchanged.
 
     ``is_lamp`` marks a lamp of the signal tower. Such a lamp indicates an open E-stop chain, so an open
-    chain does not switch it to its safe state. Only a silent bridge does.
+    chain does not switch it to its safe state. Only a silent bridge switches it to that state.
     """
 
     pin_name: str
@@ -99,7 +99,7 @@ class HalConfig:
 
     @property
     def probe_input(self) -> HalInput | None:
-        """Return the input of a probe or tool setter, which is sampled with the axes, or None."""
+        """Return the probe or tool setter input that is sampled with the axes, or None without one."""
         return self.inputs.get(PROBE_INPUT)
 
     @property

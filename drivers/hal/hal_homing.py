@@ -37,7 +37,7 @@ class HomingAxes(Protocol):
     def horizon(self) -> float:
         """Return the end time of the setpoint queue in seconds.
 
-        Returns the present time if the queue is empty.
+        Returns the current time if the queue is empty.
         """
         ...
 
@@ -133,7 +133,7 @@ class HalHoming:
         self._on = is_switch_on
 
     def continue_homing(self, now: float) -> None:
-        """Continue the homing with its next step, if the present step is complete."""
+        """Start the next step of the homing if the current step is complete."""
         rests = is_queue_finished(self._slides.horizon(), now)
         acts = {
             _Step.START: self._begin,

@@ -112,7 +112,7 @@ class HalLink:
 
     @property
     def failure_reason(self) -> Fault | str:
-        """Return the reason why the state of the machine is unknown, or an empty text."""
+        """Return the reason why the state of the machine is unknown, or an empty string."""
         silent = self.report_age_s
         if self.failure or silent <= _BRIDGE_TIMEOUT_S:
             return self.failure
@@ -130,7 +130,7 @@ class HalLink:
 
     @property
     def are_inputs_stale(self) -> bool:
-        """Return whether HAL's inputs are old because the board is not reachable."""
+        """Return whether HAL's inputs are stale because the board is not reachable."""
         return self.last_report.get("stale") is True
 
     @property
@@ -152,7 +152,7 @@ class HalLink:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Return the warnings of the present HAL session."""
+        """Return the warnings of the current HAL session."""
         return self._link.warnings if self._link is not None else ()
 
     def send_heartbeat(self) -> None:
@@ -233,7 +233,7 @@ class HalLink:
 
 
 def parse_bridge_fault(report: Mapping[str, object]) -> Fault | str:
-    """Return the fault that the bridge reports, or an empty text."""
+    """Return the fault that the bridge reports, or an empty string."""
     words = text(report, "fault")
     code: FaultCode = next((each for each in get_args(FaultCode) if each == report.get("code")), "axis")
     return Fault(words, code) if words else ""

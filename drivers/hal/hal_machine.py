@@ -79,7 +79,7 @@ class HalTerminals:
         self._written[name] = on, self._link.send_command("out", name=name, on=on)
 
     def read_state(self) -> StationState:
-        """Return the state of the operator station, whose age is that of the inputs."""
+        """Return the state of the operator station, with the age of its inputs."""
         return build_station_state(
             self.inputs(),
             self._config.pots,
@@ -89,7 +89,7 @@ class HalTerminals:
         )
 
     def _read_analog(self, name: str) -> float:
-        """Return the value of an analog pin, in which 1 is the end of a pot's range.
+        """Return the value of an analog pin, where 1 is the end of a pot's range.
 
         The result is 0 if the pin is not connected.
         """
@@ -115,7 +115,7 @@ class HalSamples:
 class HalMachine:
     """A machine on HAL, to which the constructor connects.
 
-    The constructor raises DriverError, which names the first pin that does not match the machine file.
+    The constructor raises DriverError if a pin does not match the machine file, and names the pin.
     """
 
     def __init__(
@@ -195,7 +195,7 @@ class HalMachine:
 def _create_spindle_c(
     config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink
 ) -> HalSpindleCAxis | None:
-    """Create the C axis of the spindle drive, or return None if C has its own drive or does not exist."""
+    """Create the C axis of the spindle drive, or return None if C is absent or has its own drive."""
     number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
     if number is None:
         return None

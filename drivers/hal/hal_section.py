@@ -223,7 +223,7 @@ def _add_estop(border: HalSection, config: HalConfig) -> None:
 
 
 def _reached_signal(border: HalSection, config: HalConfig) -> str:
-    """Return the signal that is on while the E-stop is released and its input is current.
+    """Return the signal that is on while the E-stop is released and its input is up to date.
 
     An E-stop input that is frozen counts as pressed.
     """
@@ -404,9 +404,9 @@ def _terminals(border: HalSection, config: HalConfig) -> None:
 def insert_section(machine_text: str, section: HalSection, thread_name: str, source_name: str) -> str:
     """Return the machine's HAL file with TurnDesk's section inserted.
 
-    A component can be loaded only once. If both parts use a component, their instances are loaded together
-    at the first load line. ``source_name`` is the name of the file. Raises DriverError if the line
-    ``#turndesk`` is missing.
+    A component can be loaded only once. If the file and the section use the same component, their instances
+    are loaded together at the first load line. ``source_name`` is the name of the file. Raises DriverError
+    if the line ``#turndesk`` is missing.
     """
     lines = machine_text.splitlines()
     place = next(

@@ -1,4 +1,4 @@
-"""A session of HAL: halrun with the machine's file and TurnDesk's section, and a socket to the bridge.
+"""A session of HAL: halrun with the machine's file and TurnDesk's section, and a bridge socket.
 
 The owner of a session locks its folder, so a folder without a lock belongs to a control that was killed.
 The bridge of such a session detects the loss and shuts down the machine. A new session can begin only after
@@ -149,7 +149,7 @@ class PinVerdict(NamedTuple):
 
 
 class BridgeLink(Protocol):
-    """A packet connection to a bridge, whose methods never wait."""
+    """A packet connection to a bridge, with methods that never block."""
 
     warnings: tuple[str, ...]
 

@@ -101,7 +101,7 @@ class HalSpindle:
     def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
-        Raises DriverError with a fault or an open chain if the speed is not 0.
+        A speed other than 0 raises DriverError if a fault is active or the chain is open.
         """
         if rpm:
             self.require_ready()
@@ -143,8 +143,8 @@ class HalSpindle:
     def read_angle(self) -> tuple[float, float] | None:
         """Return the time and the revolutions of the spindle encoder, or None without an encoder.
 
-        With an index, whole revolutions are at the index. Before the index is known, an old reading is
-        returned, so that a thread waits for a new reading.
+        With an index, the number of revolutions is whole at the index. Before the index is known, an old
+        reading is returned, so that a thread waits for a new reading.
         """
         if not self._config.has_encoder or self._axes.spindle_sample is None:
             return None
@@ -156,7 +156,7 @@ class HalSpindle:
         return t, turns - self._axes.index_rev
 
     def read_fault(self) -> str:
-        """Return the fault of the spindle, or an empty text."""
+        """Return the fault of the spindle, or an empty string."""
         if why := self._link.failure_reason:
             return why
         if self.spindle_index.failure:
@@ -265,8 +265,8 @@ class HalSpindleCAxis:
     ) -> None:
         """Create the C axis.
 
-        ``position_mode_pin`` is the bridge bit that reports position mode, or an empty text without such a
-        pin.
+        ``position_mode_pin`` is the bridge bit that reports position mode, or an empty string without such
+        a pin.
         """
         self._axes, self._spindle, self._link = axes, spindle, link
         self._axis, self._told = axis, position_mode_pin

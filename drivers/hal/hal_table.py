@@ -413,7 +413,7 @@ def _check_homing(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _axis_with_same_switch(file: MachineFileReading, axis: str) -> str:
-    """Return the key of another axis with its home switch on the same input, or an empty text."""
+    """Return the key of another axis whose home switch uses the same input, or an empty string."""
     values = file.values
     homes = {each: f"{_AXES}.{each}.home" for each in file.list_table_keys(_AXES)}
     pins = {each: values.text(path) for each, path in homes.items() if values.has_values(path)}

@@ -1,4 +1,4 @@
-"""Monitoring of an inverter, with the detection of ignored commands and the comparison with the encoder."""
+"""Monitoring of an inverter: detection of ignored commands, and comparison with the encoder."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class CommandMonitor:
     """A monitor that checks whether an inverter follows its commands.
 
     ``record_command`` records a command, and ``check_poll`` checks a poll. On a slow line, a poll is as old
-    as its exchange is long. The permitted second therefore starts after the exchange, and a decreasing
-    speed is compared with the first poll after the command. ``setpoint_step_hz`` is the resolution of the
-    reported setpoint in Hz.
+    as the duration of its exchange. The permitted second therefore starts after the exchange, and a
+    decreasing speed is compared with the first poll after the command. ``setpoint_step_hz`` is the
+    resolution of the reported setpoint in Hz.
     """
 
     def __init__(self, setpoint_step_hz: float = 0.01) -> None:
@@ -54,7 +54,7 @@ class CommandMonitor:
         """Return the reason why the inverter has not followed its command for too long.
 
         The permitted time is one second plus ``exchange_s``, the duration of one exchange in seconds. The
-        result is empty while the inverter may still follow the command.
+        result is an empty string while the inverter may still follow the command.
         """
         if self._unseen:  # The motor may still have accelerated when the command was sent.
             self._lowest, self._unseen = max(self._lowest, state.output_hz), False
@@ -111,7 +111,7 @@ class CommandMonitor:
         )
 
     def _describe_rotation_error(self, state: InverterState) -> str:
-        """Return a description of a wrong output, or an empty text.
+        """Return a description of a wrong output, or an empty string.
 
         The speed must decrease toward a lower setpoint or before a reversal.
         """
@@ -158,7 +158,7 @@ class SpeedComparison:
         self._off_since: float | None = None
 
     def compare_speeds(self, measured_rpm: float, reported_rpm: float, time_s: float) -> str:
-        """Return a fault if the speeds have differed for 1 s, or an empty text.
+        """Return a fault text if the speeds have differed for 1 s, or an empty string.
 
         Both speeds are in rpm, with their signs. They are compared only at a constant inverter output other
         than 0.

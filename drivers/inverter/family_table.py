@@ -1,4 +1,4 @@
-"""An inverter family as a table: line, registers, commands, reported values, fault codes and parameters.
+"""An inverter family as a table: line, registers, commands, polled values, faults and parameters.
 
 ``family_files.py`` reads these tables from TOML files, whose keys are declared here.
 """

@@ -34,7 +34,7 @@ _MAX_TRIES = 2
 class HuanyangInverter:
     """A Huanyang HY inverter, which reports its state only in the response to a command.
 
-    Each poll therefore repeats the present command.
+    Each poll therefore repeats the current command.
     """
 
     required_response_count = 10
@@ -121,7 +121,7 @@ class HuanyangInverter:
         return int.from_bytes(self._send_request(_READ, head + b"\0\0", head)[1:], "big")
 
     def _send_request(self, function: int, data: bytes, begins: bytes) -> bytes:
-        """Send a request, and return the data of the response, which begins with ``begins``.
+        """Send a request, and return the data of the response, which must begin with ``begins``.
 
         Raises NoResponseError without a valid response.
         """

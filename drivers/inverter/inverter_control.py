@@ -168,7 +168,7 @@ class InverterControl:
     def discard_state(self) -> None:
         """Discard the known state of the inverter.
 
-        The next poll may take a few seconds.
+        A new state may not be available for a few seconds.
         """
         self.clear_fault()
         self._told, self.last_poll, self.silence_allowed_until = (

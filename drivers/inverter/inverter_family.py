@@ -36,9 +36,9 @@ class InverterFamily(Protocol):
     """An inverter on its line.
 
     Methods that communicate raise NoResponseError, RequestRejectedError or WireError. ``is_stop_pending``
-    returns whether a stop is pending. It is called between requests, so that other requests are canceled.
-    It is also called directly before each frame that can start the motor. If a stop is pending, the frame
-    is not sent and RequestWithheldError is raised.
+    returns whether a stop is pending. It is called between requests, so that a stop cancels the remaining
+    requests. It is also called directly before each frame that can start the motor. If a stop is pending,
+    the frame is not sent and RequestWithheldError is raised.
     """
 
     required_response_count: int  # Consecutive valid responses before the inverter is trusted.
@@ -100,7 +100,7 @@ class RequiredParameter(NamedTuple):
     purpose: str
 
     def describe_difference(self, read_value: ReadParameter) -> str:
-        """Return a message if the inverter has a different value, or an empty text.
+        """Return a message if the inverter has a different value, or an empty string.
 
         The parameter is not written.
         """
@@ -134,7 +134,7 @@ def write_and_check(
 ) -> list[str]:
     """Write the parameters that may be written, and return a message for each wrong parameter.
 
-    ``comm_timeout_s`` is in seconds, and ``max_hz`` is in Hz. Raises NoResponseError or WireError.
+    ``comm_timeout_s`` is in seconds, ``max_hz`` in Hz. Raises NoResponseError or WireError on failure.
     """
     known = (
         [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_timeout_s)]
@@ -181,7 +181,7 @@ def _apply_setting(
 
 
 def _check_max_frequency(parameter: TopKeys, highest: float, read: ReadParameter) -> str:
-    """Return a message if the inverter limits its output below ``highest`` Hz, or an empty text."""
+    """Return a message if the inverter limits its output below ``highest`` Hz, or an empty string."""
     try:
         there = read(parameter.register)
     except RequestRejectedError as error:

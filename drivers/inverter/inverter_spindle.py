@@ -1,4 +1,4 @@
-"""A spindle with an inverter, whose methods never wait for the serial line."""
+"""The spindle port of an inverter, with methods that never wait for the serial line."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SpindleEncoder(Protocol):
         ...
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time and the revolutions of the encoder, or None."""
+        """Return the time and the revolutions of the encoder, or None if no reading is valid."""
         ...
 
 
@@ -141,7 +141,7 @@ class InverterSpindle:
         return self._encoder.read_angle()
 
     def read_fault(self) -> str:
-        """Return the fault with the instruction for the operator, or an empty text.
+        """Return the fault with the instruction for the operator, or an empty string.
 
         This method is called continuously, so an E-stop also cancels the commanded speed.
         """
@@ -213,9 +213,9 @@ def create_inverter_control(
 ) -> InverterControl:
     """Create the control of an inverter without opening its line.
 
-    ``open_wire`` opens the line and raises WireError. ``family_folder`` contains the file of a family that
-    is not shipped with TurnDesk. Raises DriverError if the family cannot be read or does not fit the
-    machine.
+    ``open_wire`` opens the line, or raises WireError if this fails. ``family_folder`` contains the file of
+    a family that is not shipped with TurnDesk. Raises DriverError if the family cannot be read or does not
+    fit the machine.
     """
     table = load_family(config.family, family_folder)
     highest = config.rpm_max * config.hz_per_rpm

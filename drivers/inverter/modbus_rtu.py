@@ -69,7 +69,7 @@ def encode_loopback(value: int) -> bytes:
 
 
 def find_response(buffer: bytes, unit: int, function: int) -> bytes | None:
-    """Return the first complete response to ``function`` in the buffer, or None.
+    """Return the first complete response to ``function`` in the buffer, or None if there is none.
 
     Noise before and after the response is ignored.
     """
@@ -126,8 +126,8 @@ def return_false() -> bool:
 class ModbusMaster:
     """A Modbus RTU master.
 
-    ``is_stop_pending`` returns whether a stop is pending, which ends the retries of a read. A write with
-    ``yields_to_stop`` is then not sent or repeated, and raises RequestWithheldError.
+    ``is_stop_pending`` returns whether a stop is pending; a pending stop ends the retries of a read. A
+    write with ``yields_to_stop`` is then not sent or repeated, and raises RequestWithheldError.
     """
 
     def __init__(
@@ -150,7 +150,7 @@ class ModbusMaster:
     def read_registers(self, address: int, count: int = 1) -> list[int]:
         """Read holding registers (03).
 
-        Raises NoResponseError, RequestRejectedError or WireError, as all methods do.
+        All methods raise NoResponseError, RequestRejectedError or WireError if the exchange fails.
         """
         frame = self._send_read(encode_read(READ_REGISTERS, address, count), 2 * count)
         return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]

@@ -135,7 +135,7 @@ class RegisterInverter:
     def _describe_trip(self, words: Mapping[int, int]) -> str:
         """Return the text of the fault code.
 
-        In a family without a fault state, code 0 means no fault, and the text is empty.
+        In a family without a fault state, code 0 means no fault, and the result is an empty string.
         """
         table = self._registers
         register = table.fault_code.register

@@ -50,7 +50,7 @@ class SimAxes(_PlantPort):
         return self._plant.clock.now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue in seconds, or the present time if the queue is empty."""
+        """Return the end time of the setpoint queue in seconds, or the current time for an empty queue."""
         with self._plant.lock:
             return self._plant.setpoint_queue.get_end_time(self._plant.clock.now())
 
@@ -183,7 +183,7 @@ class SimSpindlePort(_PlantPort):
             return self._plant.spindle.time_s, self._plant.spindle.counted_revolutions
 
     def read_fault(self) -> str:
-        """Return the fault text of the inverter, or an empty text without a fault."""
+        """Return the fault text of the inverter, or an empty string without a fault."""
         return self._plant.spindle.faults.fault_text
 
 
@@ -255,7 +255,7 @@ class SimTouch(_PlantPort):
                 self._plant.terminals.setter.kept = None
 
     def read_latch(self) -> TouchLatch | None:
-        """Return the first touch since ``arm_latch``, or None."""
+        """Return the first touch since ``arm_latch``, or None without a touch."""
         with self._plant.lock:
             self._plant.advance()
             setter = self._plant.terminals.setter
@@ -267,7 +267,7 @@ class SimStation(_PlantPort):
     """The ``core.ports.Station`` of the simulated machine."""
 
     def read_state(self) -> StationState:
-        """Return the present state of the operator station."""
+        """Return the current state of the operator station."""
         plant = self._plant
         with plant.lock:
             state, _ = plant.read_station(plant.clock.now())
@@ -276,7 +276,7 @@ class SimStation(_PlantPort):
 
 
 class Simulation(NamedTuple):
-    """The ports for the executor, and the controls that a test or the operator uses to act on the machine."""
+    """The ports for the executor, and the controls with which a test or operator acts on the machine."""
 
     ports: MachinePorts
     machine: PlantControls

@@ -1,4 +1,4 @@
-"""The table [sim] of the machine file: pace, random seed and scheduled faults of the simulated machine."""
+"""The table [sim] of the machine file: pace, random seed and scheduled faults of the simulation."""
 
 from __future__ import annotations
 

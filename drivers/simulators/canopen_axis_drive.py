@@ -54,7 +54,7 @@ class PowerStateMachine:
 
     @property
     def is_powered(self) -> bool:
-        """Return whether the motor has current."""
+        """Return whether the drive supplies current to the motor."""
         return self.state in _POWERED_STATES
 
     @property
@@ -64,7 +64,7 @@ class PowerStateMachine:
 
     @property
     def status_word(self) -> int:
-        """Return the bits of the status word for the present state."""
+        """Return the status word bits that represent the current state."""
         return _STATUS_BITS[self.state] | _VOLTAGE | _REMOTE
 
     def apply_control_word(self, word: int) -> None:
@@ -98,11 +98,11 @@ class PowerStateMachine:
             self.state = DriveState.SWITCH_ON_DISABLED
 
     def enter_fault(self) -> None:
-        """Enter the fault state; if the motor has power, brake first."""
+        """Enter the fault state, after braking if the motor has power."""
         self.state = DriveState.FAULT_REACTION_ACTIVE if self.is_powered else DriveState.FAULT
 
     def end_braking(self) -> None:
-        """End the braking at standstill, and enter the fault state after a fault, or switch off otherwise."""
+        """End the braking at standstill: enter the fault state after a fault, otherwise switch off."""
         self.state = (
             DriveState.FAULT
             if self.state is DriveState.FAULT_REACTION_ACTIVE
@@ -177,10 +177,7 @@ class AxisDrive:
     # --- objects ------------------------------------------------------------------------------------------
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return the value of an object that the drive calculates.
-
-        Return None if the stored value of the object applies.
-        """
+        """Return the calculated value of an object, or None if the stored value is to be used."""
         reader = self._readers.get(index)
         if reader is not None:
             return reader()
@@ -211,9 +208,9 @@ class AxisDrive:
             self.record_queue.clear()
 
     def handle_host_loss(self) -> None:
-        """React to the loss of the host as the abort connection option defines.
+        """React to the loss of the host as the abort connection option specifies.
 
-        The options 1 and 2 cause a fault, and option 3 causes a quick stop.
+        Options 1 and 2 cause a fault, and option 3 causes a quick stop.
         """
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
             self.power_states.start_quick_stop()
@@ -221,7 +218,7 @@ class AxisDrive:
             self.power_states.enter_fault()
 
     def reset(self) -> None:
-        """Clear the volatile values, and the reference of an incremental encoder, as a restart does."""
+        """Clear the volatile values and the home reference of an incremental encoder, as a restart does."""
         self.power_states.switch_off()
         self.operation_mode, self.is_playing, self._homing, self._going = 0, False, False, False
         self.is_interpolating = False
@@ -247,7 +244,7 @@ class AxisDrive:
 
     @property
     def is_idle(self) -> bool:
-        """Return whether the drive stays unchanged until a frame arrives or the axis is moved externally."""
+        """Return whether the drive will not change until a frame arrives or the axis is moved externally."""
         servo = self.servo_axis
         if servo.v or self.setpoint_velocity:
             return False
@@ -395,7 +392,7 @@ class AxisDrive:
             self.setpoint_position += self.setpoint_velocity * dt
 
     def _search_home(self, dt: float) -> None:
-        """Move to the home switch at the first homing speed, and set the reference after a standstill."""
+        """Move to the home switch at the first homing speed, and set the reference at standstill."""
         remaining_travel = self.servo_axis.switch - self.setpoint_position
         speed = (
             max(self.values.get((od.HOME_SPEEDS, 1), 0), 1) * self.velocity_scale * self.servo_axis.axis.count
@@ -423,7 +420,7 @@ class AxisDrive:
             self.power_states.end_braking()
 
     def _hold_position(self) -> None:
-        """Set the setpoint to the present position and clear the queue after power-up."""
+        """Set the setpoint to the current position, and clear the queue after power-up."""
         self.setpoint_position, self.setpoint_velocity = self.servo_axis.reading, 0.0
         self.record_queue.clear()
 

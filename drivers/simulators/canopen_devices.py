@@ -53,10 +53,7 @@ class SimulatedIoModule:
                 self.output_bytes[model.terminal.subindex - 1] |= 1 << model.terminal.bit_number
 
     def read(self, index: int, subindex: int) -> int | None:
-        """Return the value of an object that the module calculates.
-
-        Return None if the stored value of the object applies.
-        """
+        """Return the calculated value of an object, or None if the stored value is to be used."""
         if index == od.DEVICE_TYPE:
             return 0x000F0191
         if index == od.DIGITAL_IN and subindex:
@@ -140,7 +137,7 @@ ENCODER_REVOLUTION_COUNT = 4096  # Number of revolutions after which the positio
 class SimulatedEncoder:
     """Simulated CiA 406 encoder on the spindle.
 
-    ``stuck`` is the position of the encoder while its coupling is detached, otherwise None.
+    ``stuck`` is the position of the encoder while its coupling is detached, and None while it is attached.
     """
 
     def __init__(self, plant: SimulatedPlant, counts_per_rev: int) -> None:
@@ -158,10 +155,7 @@ class SimulatedEncoder:
         }
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return the value of an object that the encoder calculates.
-
-        Return None if the stored value of the object applies.
-        """
+        """Return the calculated value of an object, or None if the stored value is to be used."""
         reader = self._readers.get(index)
         return None if reader is None else reader()
 
@@ -199,7 +193,7 @@ class CanopenPlant(SimulatedPlant):
         self._at = clock.now()
 
     def advance(self) -> float:
-        """Advance the model step by step to the present time of the clock.
+        """Advance the model step by step to the current time of the clock.
 
         Returns this time in seconds.
         """
@@ -227,7 +221,7 @@ class CanopenPlant(SimulatedPlant):
             self.spindle.set_cutting(self._at, is_cutting=self.is_cutting())
 
     def _are_drives_idle(self) -> bool:
-        """Return whether all drives stay unchanged until a frame arrives or the operator acts."""
+        """Return whether no drive will change until a frame arrives or the operator acts."""
         if self.spindle.faults.belt_slip_fraction or (
             self.spindle_drive is not None and not self.spindle_drive.is_idle
         ):
@@ -235,13 +229,13 @@ class CanopenPlant(SimulatedPlant):
         return all(drive.is_idle for drive in self.axis_drives.values())
 
     def trip_drives(self, fault: str) -> None:
-        """Trip the drive whose name is before the colon in ``fault``, and send its EMCY frame."""
+        """Trip the drive that ``fault`` names before its colon, and send the EMCY frame of this drive."""
         name = fault.partition(":")[0]
         self.axis_drives[name].power_states.enter_fault()
         self.axis_drives[name].send_emergency(0x4210)
 
     def press_estop(self) -> None:
-        """Activate STO, so that the axes brake and lose power and the spindle coasts."""
+        """Activate STO: the axes brake and then lose power, and the spindle coasts."""
         with self.action_lock:
             now = self.advance()
             self.station_panel.estop = True
@@ -302,7 +296,7 @@ class CanopenDevices:
                 node.handle_frame(can_id, data)
 
     def cable(self, *, is_disconnected: bool) -> None:
-        """Disconnect or reconnect the bus cable in both directions."""
+        """Disconnect or reconnect the bus cable, for both directions of transfer."""
         self.is_cable_disconnected = is_disconnected
         for node in self.nodes.values():
             node.is_silent = is_disconnected

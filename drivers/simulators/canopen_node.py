@@ -27,10 +27,7 @@ class NodeDevice(Protocol):
     """Device that provides and receives the values of a node's objects."""
 
     def read(self, index: int, subindex: int, /) -> int | None:
-        """Return the value of an object that the device calculates.
-
-        Return None if the stored value of the object applies.
-        """
+        """Return the calculated value of an object, or None if the stored value is to be used."""
         ...
 
     def write(self, index: int, subindex: int, value: int, /) -> None:
@@ -49,7 +46,7 @@ class NodeDevice(Protocol):
 class DeviceNetwork(canopen.Network):
     """CANopen network without a receiving thread and without periodic tasks.
 
-    ``CanopenDevices.process_frames`` receives the frames, and ``DeviceNode.update`` sends the heartbeats.
+    ``CanopenDevices.process_frames`` receives frames, and ``DeviceNode.run_cycle`` sends heartbeats.
     """
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
@@ -61,7 +58,7 @@ class DeviceNetwork(canopen.Network):
             self.bus.send(frame)
 
     def send_periodic(self, *_: object, **__: object) -> _NoTask:
-        """Return a task that does nothing, because ``DeviceNode.update`` sends the heartbeat."""
+        """Return a task that does nothing, because ``DeviceNode.run_cycle`` sends the heartbeat."""
         return _NoTask()
 
 
@@ -252,7 +249,7 @@ class DeviceNode:
     def _encode_value(self, index: int, sub: int, size: int, _signed: bool) -> bytes:
         """Return the value of an object as bytes.
 
-        This method is faster than the node of the canopen library.
+        This method is faster than the corresponding method of the canopen library.
         """
         value = self.device.read(index, sub)
         if value is None:

@@ -37,18 +37,18 @@ class SpindleServo(SimulatedServo):
         return self._motor.revolutions * _DEGREES_PER_REV - self._zero
 
     def adopt_motor_angle(self) -> None:
-        """Set the axis position to the angle of the motor after the spindle has turned."""
+        """Set the axis position to the motor angle; call this method after the spindle has turned."""
         self.p, self.v = self.place, 0.0
 
     def set_switch_position(self, homing_method: int) -> None:
-        """Set the home position: the next index for an index method, otherwise the present position."""
+        """Set the home position: the next index for an index method, otherwise the current position."""
         ahead = (math.floor(self._motor.revolutions + 1e-9) + 1) * _DEGREES_PER_REV - self._zero
         self.switch = ahead if homing_method in _INDEX else self.p
 
     def follow_setpoint(self, position: float, velocity: float, _dt: float) -> bool:
-        """Move the spindle exactly to position ``p`` with velocity ``v``, and return False.
+        """Move the spindle exactly to ``position`` with ``velocity``, and return False.
 
-        The simulated spindle never trips because of a following error.
+        False means no trip: the simulated spindle never trips because of a following error.
         """
         self.p, self.v = position, velocity
         self._motor.revolutions = (position + self._zero) / _DEGREES_PER_REV
@@ -58,7 +58,7 @@ class SpindleServo(SimulatedServo):
         """Do nothing, because the spindle motor advances separately."""
 
     def reference(self) -> None:
-        """Set the count at the present position to ``offset`` degrees."""
+        """Set the count so that the current position is ``offset`` degrees."""
         self._zero += self.p - self.offset
         self.p = self.offset
 
@@ -108,10 +108,7 @@ class SimulatedSpindleDrive:
         return self.operation_mode in {IP, HM}
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return the value of an object that the drive calculates.
-
-        Return None if the stored value of the object applies.
-        """
+        """Return the calculated value of an object, or None if the stored value is to be used."""
         reader = self._readers.get(index)
         return None if reader is None else reader()
 
@@ -144,7 +141,7 @@ class SimulatedSpindleDrive:
     def _change_mode(self, mode: int) -> None:
         """Change the mode of operation if the drive is at rest.
 
-        The spindle must be at standstill, and the drive must not be executing positions.
+        The spindle must be at standstill, and the drive must not be executing position setpoints.
         """
         if mode == self.operation_mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
             return
@@ -177,7 +174,7 @@ class SimulatedSpindleDrive:
     def advance(self, now: float) -> None:
         """Command the motor speed that the mode and the power state require.
 
-        Braking ends when the motor is at standstill.
+        At standstill of the motor, braking ends.
         """
         dt, self.last_step_s = now - self.last_step_s, now
         if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:

@@ -27,7 +27,7 @@ class PtyConnection:
         self.device_name = os.ttyname(self._theirs)
 
     def transfer_bytes(self, firmware: GrblFirmware, timeout_s: float = 0.0) -> None:
-        """Transfer bytes in both directions, after waiting at most ``timeout_s`` seconds for input."""
+        """Transfer bytes in both directions, after waiting up to ``timeout_s`` seconds for input."""
         ready, _, _ = select.select([self._ours], [], [], timeout_s)
         if ready:
             firmware.receive_bytes(os.read(self._ours, 4096))
@@ -44,7 +44,7 @@ class PtyConnection:
 class TcpConnection:
     """Controller side of a TCP port that accepts one host at a time.
 
-    The controller continues to run without a host.
+    The controller continues to run while no host is connected.
     """
 
     def __init__(self, host: str, port: int) -> None:
@@ -58,7 +58,7 @@ class TcpConnection:
         self._host: socket.socket | None = None
 
     def transfer_bytes(self, firmware: GrblFirmware, timeout_s: float = 0.0) -> None:
-        """Transfer bytes in both directions, after waiting at most ``timeout_s`` seconds for input."""
+        """Transfer bytes in both directions, after waiting up to ``timeout_s`` seconds for input."""
         ends = [self._listener] + ([self._host] if self._host else [])
         ready, _, _ = select.select(ends, [], [], timeout_s)
         if self._listener in ready:
@@ -98,9 +98,9 @@ class TcpConnection:
 def run_simulator(
     connection: PtyConnection | TcpConnection, firmware: GrblFirmware, should_continue: Callable[[], bool]
 ) -> None:
-    """Connect the simulator to the host while ``should_continue`` returns true.
+    """Run the simulator with its connection as long as ``should_continue`` returns true.
 
-    The connection is closed at the end.
+    Afterward, the connection is closed.
     """
     try:
         while should_continue():

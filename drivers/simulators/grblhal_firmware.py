@@ -19,7 +19,7 @@ _OVERRIDE_STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
 
 
 def execute_realtime_byte(firmware: GrblFirmware, byte: int) -> None:
-    """Execute a real-time byte, which bypasses the receive buffer, immediately."""
+    """Immediately execute a real-time byte, which bypasses the receive buffer."""
     if byte == 0x18:
         firmware.reset()
     elif byte == 0x19:
@@ -142,7 +142,7 @@ def _home(m: GrblFirmware, until: float, axes: int) -> None:
 
 
 def _waits_for_index(m: GrblFirmware, block: PlannedBlock) -> bool:
-    """Return whether a thread is waiting for its start, which is at the second index after the request.
+    """Return whether a thread is waiting to start at the second spindle index after its request.
 
     The controller processes no bytes during this wait. If the index is missing for 5 s, alarm 14 is raised.
     """
@@ -170,9 +170,9 @@ _BUSY_STATES = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 class ReportGenerator:
     """Generator of status reports, which decides when a report includes offsets and overrides.
 
-    Both are included at intervals and after a change. If both are due, the offsets follow in the next
-    report. A full report includes both. Firmware of 2023 delayed the overrides and never included them in a
-    full report.
+    Both are included at intervals and after a change. If both are due at once, the next report includes the
+    offsets. A full report includes both. Firmware of 2023 delayed the overrides and never included them in
+    a full report.
     """
 
     reports_until_offsets: int = 0
@@ -255,7 +255,7 @@ _MIN_FREE_BYTES = 100  # With this many free bytes or fewer, the simulator reads
 class GrblFirmware:
     """Simulated grblHAL controller.
 
-    ``receive_bytes`` receives bytes from the host, and ``pop_output`` returns bytes for the host.
+    The host's bytes enter through ``receive_bytes``, and ``pop_output`` returns the bytes for the host.
     ``send_buffer`` contains bytes for the host, and ``receive_buffer`` contains received bytes that are not
     interpreted yet.
     """
@@ -312,7 +312,7 @@ class GrblFirmware:
         return b"" if self.behavior.sends_nothing else data
 
     def advance(self) -> None:
-        """Advance the controller to the present time of the clock."""
+        """Advance the controller to the current time of the clock."""
         now, idle = self.clock.now(), self._is_idle
         while self.time_s + _STEP_S <= now + 1e-9:
             self.time_s += _STEP_S
@@ -340,7 +340,7 @@ class GrblFirmware:
         self.restart(moved)
 
     def power_cycle(self) -> None:
-        """Switch the power off and on, so that the position becomes 0 and the axes are no longer homed."""
+        """Switch the power off and on; the position is then 0, and the axes are no longer homed."""
         self.alarm_number, self.homed_axes = 0, 0
         self.is_door_open = self.is_reset_required = False
         self.motion.position = (0.0, 0.0)
@@ -375,7 +375,7 @@ class GrblFirmware:
                 self.receive_buffer.append(byte)
 
     def restart(self, position_lost: bool) -> None:
-        """Restart the controller; with ``position_lost``, raise alarm 3 because the position is lost."""
+        """Restart the controller; if ``position_lost`` is true, raise alarm 3."""
         self.abrupt_stop_count += self.motion.is_moving
         self.stop_all_functions()
         self.is_reset_required = False
@@ -410,7 +410,7 @@ class GrblFirmware:
 
     @property
     def state(self) -> str:
-        """Return the state with the name that status reports use."""
+        """Return the name of the state as in status reports."""
         if self.alarm_number:
             return f"Alarm:{self.alarm_number}"
         if self.homing_end_and_axes is not None:
@@ -424,9 +424,9 @@ class GrblFirmware:
         return "Idle"
 
     def format_state(self, full: bool) -> str:
-        """Return the state as it is reported.
+        """Return the state in the format of status reports.
 
-        An alarm includes its number in a full report, or if setting ``$10`` requires it.
+        An alarm includes its number in a full report, or if setting ``$10`` requires the number.
         """
         numbered = full or int(self.registers[10]) & 0x400
         return self.state if numbered else self.state.replace(f"Alarm:{self.alarm_number}", "Alarm")
@@ -438,7 +438,7 @@ class GrblFirmware:
 
     @property
     def is_reading(self) -> bool:
-        """Return whether the controller reads lines at present."""
+        """Return whether the controller currently reads lines."""
         held = (self.is_in_hold or self.is_door_open) and not self.alarm_number
         return not (self.is_waiting_for_index or self.homing_end_and_axes is not None or held)
 
@@ -451,7 +451,7 @@ class GrblFirmware:
         return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.programmed_rpm)
 
     def raise_alarm(self, number: int) -> None:
-        """Stop immediately and raise an alarm; the present block remains in the planner."""
+        """Stop immediately and raise an alarm; the current block remains in the planner."""
         self.alarm_number = number
         self.abrupt_stop_count += self.motion.is_moving
         self.motion.speed = 0.0
@@ -462,7 +462,7 @@ class GrblFirmware:
         self.send_text(f"ALARM:{number}\r\n")
 
     def start_homing(self, axis_mask: int) -> None:
-        """Start to home the axes in the bit mask ``axes``, which takes 0.5 s in the simulator."""
+        """Start to home the axes in the bit mask ``axis_mask``; homing takes 0.5 s in the simulator."""
         self.homing_end_and_axes = self.time_s + 0.5, axis_mask
 
     def read_next_line(self) -> str | None:

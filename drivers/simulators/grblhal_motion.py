@@ -72,10 +72,10 @@ def make_line_path(start: Position, end: Position) -> Shape:
 def make_arc_path(
     start: Position, end: Position, center: Position, *, counterclockwise: bool
 ) -> Shape | None:
-    """Return the length in mm and the path of an arc in the ZX plane, or None if ``end`` is not on the arc.
+    """Return the length in mm and path of an arc in the ZX plane, or None if ``end`` is off the arc.
 
-    The angle counts from Z to X. A sweep that is zero or has the wrong sign is changed by one revolution,
-    so an arc whose angle rounds to zero becomes a full circle.
+    The angle counts from Z to X. If the sweep is zero or has the wrong sign, one revolution is added or
+    subtracted, so an arc whose angle rounds to zero becomes a full circle.
     """
     radius = math.dist(start, center)
     off = abs(math.dist(end, center) - radius)
@@ -115,7 +115,7 @@ class GrblMotion:
 
     @property
     def has_started(self) -> bool:
-        """Return whether the first block has started; a block in feed hold has also started."""
+        """Return whether the first block has started; a block remains started during a feed hold."""
         return self._s > 0.0 or self.speed > 0.0
 
     @property
@@ -172,7 +172,7 @@ class GrblMotion:
         return speed if block.is_jog or block.is_thread else min(speed * self.feed_override, max_speed)
 
     def _limit_in_direction(self, first: int, heading: Position) -> float:
-        """Return the limit along a direction from the settings of X and Z.
+        """Return the limit along a direction that results from the settings of X and Z.
 
         The calculation is the same as in ``planner.c`` of grblHAL. ``first`` is the number of the setting
         for X.
@@ -183,9 +183,9 @@ class GrblMotion:
         return min(along_x, along_z) if x or z else self._registers[first]
 
     def _allowed_speed(self, accel: float, turns_per_s: float) -> float:
-        """Return the highest speed that permits all corners ahead, in mm/s.
+        """Return the highest speed in mm/s that permits slowing down for all corners ahead.
 
-        The speed also permits the stop at the end of the path. ``accel`` is the acceleration in the present
+        The speed also permits stopping at the end of the path. ``accel`` is the acceleration in the current
         block in mm/s².
         """
         before = self.block_queue[0]

@@ -88,7 +88,7 @@ _PLAIN_CODES = frozenset(("G4", "G10", "G49", "G53", "G54", "G92.1"))
 
 @dataclass(slots=True)
 class ModalState:
-    """Modal state of the controller; the default values apply after a reset or stop."""
+    """Modal state of the controller; the default values are those after a reset or stop."""
 
     motion: str = "G0"
     plane: str = "G17"
@@ -101,7 +101,7 @@ class ModalState:
     is_hold_disabled: bool = False  # M53 P0
 
     def apply_code(self, code: str, *, is_lathe_mode: bool) -> int:
-        """Apply a G word, and return its error code, or 0 without an error."""
+        """Apply a G word, and return its error code, or 0 if the word is valid."""
         if code in _LATHE_CODES and not is_lathe_mode:
             return 20
         if code in _MODAL_GROUPS:
@@ -154,7 +154,7 @@ def format_identity(controller: ProgramController) -> list[str]:
 
 
 def execute_system_command(controller: ProgramController, line: str, modes: str) -> int | None:
-    """Execute a ``$`` line, and return its error code, or 0 without an error.
+    """Execute a ``$`` line, and return its error code, or 0 if there is no error.
 
     Return None if the line is acknowledged later. ``modes`` is the reply to ``$G``.
     """
@@ -216,7 +216,7 @@ __all__ = ["LineInterpreter", "ModalState"]
 
 
 class LineInterpreter:
-    """Interpreter that executes received lines in order, as the planner and required standstills permit."""
+    """Interpreter of received lines in order; a line may wait for the planner or for standstill."""
 
     def __init__(self, controller: ProgramController) -> None:
         self._m = controller
@@ -269,7 +269,7 @@ class LineInterpreter:
     def _end_wait(self, wait: FunctionWait) -> bool:
         """Acknowledge the function if its wait has ended, and return whether the wait has ended.
 
-        If the spindle has not reached its speed, alarm 14 is raised.
+        If the spindle did not reach its speed during the wait, alarm 14 is raised.
         """
         if not wait.update_and_check(self._m):
             return False

@@ -62,7 +62,7 @@ _DEFAULT_VALUES = {
 
 
 class SettingRegisters:
-    """Values of the controller settings by setting number."""
+    """Values of the controller settings, with the setting numbers as keys."""
 
     def __init__(self, behavior: SimulatorBehavior) -> None:
         self._values = {
@@ -87,7 +87,7 @@ class SettingRegisters:
         return [f"${n}={self._text(n)}" for n in sorted(self._values)]
 
     def store_setting(self, number: int, text: str) -> int:
-        """Store a setting, and return the error code, or 0 without an error."""
+        """Store a setting, and return the error code, or 0 if the setting is valid."""
         if number not in self._values:
             return 53
         begin = _NUMBER.match(text)  # Text after the number is ignored: 1e3 is 1.
@@ -132,9 +132,9 @@ class WaitContext(Protocol):
 
 @dataclass(slots=True)
 class FunctionWait:
-    """Wait within a function, which ends after ``remaining_s`` seconds or when the spindle is at speed.
+    """Wait within a function; it ends after ``remaining_s`` seconds or when the spindle is at speed.
 
-    The spindle speed can end the wait only if ``tolerance_percent`` is greater than 0.
+    The wait ends at speed only if ``tolerance_percent`` is greater than 0.
     """
 
     remaining_s: float
@@ -144,7 +144,7 @@ class FunctionWait:
     has_failed: bool = False  # The speed was not reached (ALARM:14).
 
     def update_and_check(self, context: WaitContext) -> bool:
-        """Update the wait to the present time of the controller, and return whether the wait has ended."""
+        """Update the wait to the controller's current time, and return whether the wait has ended."""
         passed, self.last_update_s = context.time_s - self.last_update_s, context.time_s
         if context.is_in_hold:
             return False
@@ -160,7 +160,7 @@ class FunctionWait:
 
 
 def create_spindle_wait(context: WaitContext, *, is_spindle_on: bool) -> FunctionWait | None:
-    """Create the wait of M3, M4 or M5, or return None if its settings are 0."""
+    """Create the wait of M3, M4 or M5, or return None if the settings for the wait are 0."""
     delay, tolerance = (
         context.registers[SPINDLE_ON if is_spindle_on else SPINDLE_OFF],
         context.registers[TOLERANCE],
@@ -171,6 +171,6 @@ def create_spindle_wait(context: WaitContext, *, is_spindle_on: bool) -> Functio
 
 
 def create_coolant_wait(context: WaitContext) -> FunctionWait | None:
-    """Create the wait of M7 or M8, or return None if its setting is 0."""
+    """Create the wait of M7 or M8, or return None if the setting for the wait is 0."""
     delay = context.registers[COOLANT_ON]
     return FunctionWait(delay, 0.0, context.time_s) if delay else None

@@ -65,7 +65,7 @@ _FORMULAS = {
 
 
 class ThreadProgram:
-    """Function calls of a HAL thread in order, which are compiled into one function on ``cells``."""
+    """Function calls of a HAL thread in order, compiled into one function that operates on ``cells``."""
 
     def __init__(self, cells: SignalCells) -> None:
         self._cells = cells
@@ -73,7 +73,7 @@ class ThreadProgram:
         self._lines: list[str] = []
 
     def add_call(self, step: PeriodFunction) -> None:
-        """Append the call of a function that is called once per period."""
+        """Append a function that is called once per period."""
         self._lines.append(f"steps[{len(self._steps)}](period)")
         self._steps.append(step)
 
@@ -195,7 +195,7 @@ _COMPONENT_STEPS = {
 def create_streamer(cells: SignalCells, fifo: RowFifo, enable_pin: str, pins: list[str]) -> PeriodFunction:
     """Return a function that writes one row of ``fifo`` to the pins in each period.
 
-    The function writes while ``enable_pin`` is on. If there is no new row, the pins retain their values.
+    The function writes only while ``enable_pin`` is on. Without a new row, the pins retain their values.
     """
 
     def step(_period: float) -> None:

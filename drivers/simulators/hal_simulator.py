@@ -1,7 +1,7 @@
 """Simulator of the HAL backend, which runs the real bridge on a simulated machine.
 
-The servo thread of HAL is simulated component by component, from the same description that produces the HAL
-file. A wiring error in the file therefore also appears in the simulator.
+The servo thread of HAL is simulated component by component, from the same description that generates the
+HAL file. A wiring error in the file therefore has the same effect in the simulator.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _INDEX_REV = 0.3  # Position of the spindle's index in revolutions.
 class ServoThread:
     """TurnDesk's section of the servo thread, whose functions run in the order of the HAL file.
 
-    ``cells`` contains the values by the name of a signal or pin.
+    The keys of ``cells`` are the names of signals or pins.
     """
 
     def __init__(self, hal_section: HalSection) -> None:
@@ -114,7 +114,7 @@ class BridgePins:
 
 
 class _AxisCells(NamedTuple):
-    """Axis and the cells of its pins; an empty name means that the pin does not exist."""
+    """Axis with the names of the cells of its pins; an empty name means that the pin does not exist."""
 
     name: str
     servo: SimulatedServo
@@ -131,7 +131,7 @@ class HalPlant(SimulatedPlant):
     run_periods: Callable[[float], None]
 
     def advance(self) -> float:
-        """Advance the model period by period to the present time of the clock.
+        """Advance the model period by period to the current time of the clock.
 
         Returns this time in seconds.
         """
@@ -147,7 +147,7 @@ class HalPlant(SimulatedPlant):
     _at = 0.0
 
     def trip_drives(self, fault: str) -> None:
-        """Set the fault pin of the drive whose name is before the colon in ``fault``."""
+        """Set the fault pin of the drive that ``fault`` names before its colon."""
         self.faulty_axes.add(fault.partition(":")[0])
 
     faulty_axes: set[str]

@@ -1,6 +1,6 @@
-"""Simulated lathe that advances to the present time of the clock on each call, so that it needs no thread.
+"""Simulated lathe without a thread; each call advances it to the current time of the clock.
 
-The model advances on a grid of fixed times, so its behavior does not depend on the times of the calls.
+The model advances on a grid of fixed times, so its behavior does not depend on when it is called.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class SimulatedPlant:
         return self._k * self.config.step_s
 
     def advance(self) -> float:
-        """Advance the model to the present time of the clock and return this time in seconds."""
+        """Advance the model to the current time of the clock, and return this time in seconds."""
         now = self.clock.now()
         with self.lock:
             if now == self._looked_at:
@@ -109,7 +109,7 @@ class SimulatedPlant:
         return now
 
     def read_station(self, time_s: float) -> tuple[StationState, Mapping[str, bool]]:
-        """Return the state of the operator station and the inputs at time ``t`` in seconds.
+        """Return the state of the operator station and the inputs at time ``time_s`` in seconds.
 
         They are calculated again only if they may have changed since the last call.
         """
@@ -125,7 +125,7 @@ class SimulatedPlant:
         return self._hands
 
     def is_settled(self) -> bool:
-        """Return whether the machine remains unchanged until an operator or a test acts.
+        """Return whether the machine will not change until an operator or a test acts.
 
         A machine with scheduled faults is never settled.
         """
@@ -138,7 +138,7 @@ class SimulatedPlant:
     def _apply_faults(self, now: float) -> None:
         """Apply the faults that are due at time ``now``.
 
-        The callback is suspended during its call to prevent recursion.
+        The callback that applies the faults is disabled while it runs, to prevent recursion.
         """
         due, self.apply_due_faults = self.apply_due_faults, None
         if due is not None:
@@ -170,7 +170,7 @@ class SimulatedPlant:
             )
 
     def set_power(self, is_on: bool) -> None:
-        """Switch the drives on at their present positions, or off.
+        """Switch the drives on at their current positions, or off.
 
         Raises DriverError if the drives are to be switched on while the E-stop is pressed or a fault is
         active.
@@ -281,7 +281,7 @@ class SimulatedPlant:
     def _advance_axes(self, last: int) -> None:
         """Move the axes to grid point ``last``.
 
-        Axes at rest are not calculated step by step.
+        While the axes are at rest, single steps are not calculated.
         """
         while self._k < last:
             if self.model_time_s >= self._off_at:
@@ -313,7 +313,7 @@ class SimulatedPlant:
         )
 
     def _advance_predicted(self, last: int) -> bool:
-        """Move the axes along the present setpoint piece, at most to grid point ``last``.
+        """Move the axes along the current setpoint piece, but not past grid point ``last``.
 
         Return False if the piece must be calculated step by step.
         """
@@ -364,7 +364,7 @@ class SimulatedPlant:
         self._advance_spindle()
 
     def _follow_setpoints(self, p: tuple[float, ...], v: tuple[float, ...], dt: float) -> bool:
-        """Advance all axes by one step toward the positions ``p`` and velocities ``v``.
+        """Advance all axes by one step toward the given positions and velocities.
 
         Return whether a drive has a fault.
         """
@@ -384,7 +384,7 @@ class SimulatedPlant:
     def _setpoint(self, t: float) -> AxisMotion:
         """Return the positions sent to the drives, the velocities and the queued positions at time ``t``.
 
-        If the axes follow the spindle, the positions sent to the drives compensate for the following error.
+        While the axes follow the spindle, the positions for the drives compensate for the following error.
         """
         if not self.setpoint_queue.is_engaged:
             p, v = self.setpoint_queue.get_commanded_state(t)
@@ -399,7 +399,7 @@ class SimulatedPlant:
     # --- samples for the scope ----------------------------------------------------------------------------
 
     def _store_sample(self, t: float, demand: tuple[float, ...] | None) -> None:
-        """Store a sample of the present grid point; without power, the demand is the measured position."""
+        """Store a sample at the current grid point; without power, the demand is the measured position."""
         if self.sample_log is None:
             return
         actual = [servo.reading for servo in self.servos]
@@ -409,7 +409,7 @@ class SimulatedPlant:
         self._changed = True
 
     def _store_turning_samples(self, demand: tuple[float, ...] | None, end_point: int) -> None:
-        """Store samples of the turning spindle while the axes are at rest.
+        """Store samples while the axes are at rest and the spindle turns.
 
         The last sample is at the grid point before ``end_point``.
         """
@@ -443,7 +443,7 @@ class SimulatedPlant:
             self._turned = tuple(following[-1].tolist())
 
     def _store_rest_samples(self, end_point: int) -> None:
-        """Store samples of the axes at rest up to grid point ``end_point``.
+        """Store samples while the axes are at rest, up to grid point ``end_point``.
 
         While the spindle is also at rest, the interval between samples is 0.1 s.
         """
@@ -467,7 +467,7 @@ class SimulatedPlant:
             self._advance_spindle()
 
     def _advance_spindle(self) -> None:
-        """Advance the spindle to the present grid point, so that its values can be sampled."""
+        """Advance the spindle to the current grid point, so that its values can be sampled."""
         if self.sample_log is not None and (self._turned[0] or not self.spindle.is_at_rest):
             if self.model_time_s > self.spindle.time_s:
                 self.spindle.advance_to(self.model_time_s)

@@ -14,7 +14,7 @@ from drivers.simulators.servo_axis import SCREW_LEAD_MM, SimulatedServo
 
 
 class PlantControls(StationControls):
-    """Controls of the operator station and faults of the simulated machine.
+    """Controls of the operator station and simulated faults of the machine.
 
     Any thread may call the methods.
     """
@@ -25,7 +25,7 @@ class PlantControls(StationControls):
 
     @contextmanager
     def _locked_time(self) -> Iterator[float]:
-        """Lock the machine and yield the time of the clock in seconds."""
+        """Lock the machine, and yield the clock time in seconds while the lock is held."""
         with self._plant.action_lock:
             yield self._plant.advance()
 
@@ -68,7 +68,7 @@ class PlantControls(StationControls):
             self._servo(axis).runaway = speed
 
     def loose_gib(self, axis: str, play_mm: float) -> None:
-        """Give an axis a lost motion of ``play_mm`` at each reversal; 0 ends the fault."""
+        """Give an axis a backlash of ``play_mm`` at each reversal; 0 ends the fault."""
         with self._locked_time():
             servo = self._servo(axis)
             servo.worn.set_gib_play(play_mm, servo.p)
@@ -76,14 +76,14 @@ class PlantControls(StationControls):
     def encoder_ripple(self, axis: str, amplitude_mm: float, period_mm: float = SCREW_LEAD_MM) -> None:
         """Give the encoder of an axis a periodic error; an amplitude of 0 ends the fault.
 
-        The error has the amplitude ``amplitude_mm`` and repeats every ``period_mm``.
+        The error has an amplitude of ``amplitude_mm`` and a period of ``period_mm``.
         """
         with self._locked_time():
             worn = self._servo(axis).worn
             worn.ripple, worn.turn = amplitude_mm, period_mm
 
     def encoder_missed(self, axis: str, lost_mm: float, period_mm: float = SCREW_LEAD_MM) -> None:
-        """Make the encoder of an axis lose ``lost_mm`` once in every ``period_mm``; 0 ends the fault."""
+        """Make an encoder miss ``lost_mm`` of axis travel once per ``period_mm``; 0 ends the fault."""
         with self._locked_time():
             worn = self._servo(axis).worn
             worn.missed, worn.turn = lost_mm, period_mm
@@ -95,7 +95,7 @@ class PlantControls(StationControls):
             self._plant.spindle.set_cutting(now, is_cutting=False)
 
     def push(self, axis: str, distance: float) -> None:
-        """Displace an axis by ``distance`` by hand, with or without power."""
+        """Displace an axis by ``distance``, as if by hand, with or without power."""
         with self._locked_time():
             self._servo(axis).push(distance)
 
@@ -108,12 +108,12 @@ class PlantControls(StationControls):
             self._plant.terminals.write(name, state, now)
 
     def drive_fault(self, axis: str, text: str = "drive fault") -> None:
-        """Trip the drive of an axis with the fault ``text``."""
+        """Trip the drive of an axis with ``text`` as the fault text."""
         with self._plant.action_lock:
             self._plant.trip_drives(f"{axis}: {text}")
 
     def spindle_bog(self, fraction: float) -> None:
-        """Limit the spindle to ``fraction`` of the commanded speed; 1 ends the fault."""
+        """Limit the spindle to ``fraction`` of its commanded speed; a fraction of 1 ends the fault."""
         with self._locked_time():
             self._plant.spindle.faults.speed_fraction = fraction
 
@@ -129,9 +129,9 @@ class PlantControls(StationControls):
             self._plant.spindle.faults.ignores_stop = ignored
 
     def spindle_fault(self, text: str) -> None:
-        """Trip the inverter with the fault ``text``, so that the spindle coasts.
+        """Trip the inverter with ``text`` as the fault text, so that the spindle coasts.
 
-        An empty text ends the fault.
+        An empty string ends the fault.
         """
         with self._locked_time():
             self._plant.spindle.faults.fault_text = text
@@ -142,7 +142,7 @@ class PlantControls(StationControls):
             self._plant.spindle.faults.is_never_oriented = never_oriented
 
     def collet_sensor_stuck(self, stuck: bool = True) -> None:
-        """Freeze the collet switch in its present state, or end this fault."""
+        """Freeze the collet switch in its current state, or end this fault."""
         with self._locked_time() as now:
             self._plant.terminals.read_inputs(now)
             self._plant.terminals.is_collet_sensor_stuck = stuck
@@ -190,7 +190,7 @@ class PlantControls(StationControls):
 
 
 class FaultSchedule:
-    """Schedule that starts and ends faults.
+    """Schedule that starts and ends faults at specified times.
 
     The plant calls ``apply_due_actions`` with the time of its clock.
     """

@@ -25,9 +25,9 @@ def predict_motion(
 ) -> PredictedMotion | None:
     """Return the predicted motion from grid point ``first_point`` along ``piece``.
 
-    The piece is valid before ``end_time`` in seconds, and ``step_s`` is the grid interval in seconds.
-    Return None if a fault or a limit may act, if the piece is short, or after the last piece, because the
-    axes may then come to rest at any grid point.
+    The piece is valid until ``end_time`` in seconds, and ``step_s`` is the grid interval in seconds. Return
+    None if a fault or a limit may act, or if the piece is short. Also return None after the last piece,
+    because the axes may then come to rest at any grid point.
     """
     if end_time == INFINITY:
         return None

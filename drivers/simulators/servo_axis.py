@@ -24,11 +24,11 @@ _SETTLED_MM = 1e-4  # Mm or degrees; an axis closer than this and almost at rest
 class SimulatedServo:
     """Simulated axis with its drive.
 
-    Positions are those that the control counts; after homing, they count from the home position.
+    Positions are those that the control counts; once the axis is homed, they are relative to home.
     """
 
     def __init__(self, axis: SimAxis, step_s: float = 0.001) -> None:
-        """Create the axis; ``step`` is the grid interval of the model in seconds."""
+        """Create the axis; ``step_s`` is the grid interval of the model in seconds."""
         self.axis = axis
         self._step = step_s
         self.homed = axis.absolute
@@ -85,22 +85,22 @@ class SimulatedServo:
         self.worn.slide_position += distance
 
     def lead(self, position: float, velocity: float, acceleration: float) -> float:
-        """Return the setpoint that moves the axis to position ``p`` despite its following error.
+        """Return the setpoint that moves the axis to ``position`` despite its following error.
 
-        The calculation inverts ``follow_setpoint``, where ff is the feed-forward fraction and wn the
-        natural frequency: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn² for the acceleration
-        ``acceleration``.
+        The calculation inverts ``follow_setpoint``. With ff as the feed-forward fraction and wn as the
+        natural frequency, 2(1 - ff)v/wn compensates for the velocity v, and a/wn² compensates for the
+        acceleration a.
         """
         return (
             position + (2.0 * (1.0 - self.axis.feed_forward) * velocity + acceleration / self._wn) / self._wn
         )
 
     def follow_setpoint(self, position: float, velocity: float, seconds: float) -> bool:
-        """Advance the powered drive by one step of ``seconds`` seconds, and return whether the drive trips.
+        """Advance the powered drive by one step of ``seconds``, and return whether the drive trips.
 
-        The setpoint is position ``p`` and velocity ``v``. The drive trips if the following error is outside
-        its window for too long. The model is of second order with damping 1. With a feed-forward fraction
-        ff below 1, the axis lags by 2(1 - ff)v/wn, where wn is the natural frequency.
+        The setpoint consists of a position and a velocity v. The drive trips if the following error is
+        outside its window for too long. The model is of second order with damping 1. With a feed-forward
+        fraction ff below 1, the axis lags by 2(1 - ff)v/wn, where wn is the natural frequency.
         """
         wn, axis = self._wn, self.axis
         seen = self.p if self.stuck is None and not self.worn.has_encoder_error else self._encoder_reading()
@@ -130,8 +130,8 @@ class SimulatedServo:
     def predict_response(self, setpoints: SetpointPolynomial, point_count: int) -> ServoResponse | None:
         """Return the response to ``point_count`` setpoints, or None if a fault or a limit may act.
 
-        The limits are those of ``follow_setpoint``. The first force is exact; all other bounds are sums of
-        absolute values.
+        The limits are those of ``follow_setpoint``. The first force is calculated exactly; all other values
+        are upper bounds.
         """
         loop, axis, dt = self._loop, self.axis, self._step
         if not self.sound or loop is None:
@@ -180,7 +180,7 @@ class SimulatedServo:
         return self.worn.get_encoder_position(self.p) if self.worn.has_encoder_error else self.p
 
     def roll(self, seconds: float) -> None:
-        """Advance the axis by one step of ``seconds`` seconds without power, while friction slows it down."""
+        """Advance the axis without power by one step of ``seconds`` seconds, slowed down by friction."""
         drop = 0.5 * self.axis.amax * seconds
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * seconds
@@ -189,9 +189,9 @@ class SimulatedServo:
         self.over = self.load = 0.0
 
     def settle_at(self, position: float) -> bool:
-        """Return whether the axis is at rest at setpoint ``p``.
+        """Return whether the axis is at rest at the setpoint ``position``.
 
-        An axis that is very close to the setpoint is moved exactly to ``p``.
+        An axis that is very close to the setpoint is treated as at rest there and moved exactly to it.
         """
         if self.jammed or self.stuck is not None or self.runaway:
             return False
@@ -286,18 +286,18 @@ class AxisWear:
         return self.ripple != 0.0 or self.missed != 0.0
 
     def set_gib_play(self, play_mm: float, slide_position: float) -> None:
-        """Set the play of the gib in mm while the slide is at ``p``; 0 removes the play."""
+        """Set the play of the gib in mm while the slide is at ``slide_position``; 0 removes the play."""
         self.gib, self.slide_position = play_mm, slide_position
 
     def get_encoder_position(self, motor_position: float) -> float:
-        """Return the position that the encoder measures for a motor position ``p``."""
+        """Return the position that the encoder measures when the motor is at ``motor_position``."""
         turns = motor_position / self.turn
         return (
             motor_position + self.ripple * math.sin(2.0 * math.pi * turns) - self.missed * math.floor(turns)
         )
 
     def move_slide(self, motor_position: float, motor_velocity: float) -> None:
-        """Move the slide with the motor, which is at position ``p`` with velocity ``v``."""
+        """Move the slide with the motor, which is at ``motor_position`` with ``motor_velocity``."""
         play = 0.5 * self.gib
         slide_lag = motor_position - self.slide_position
         if abs(slide_lag) > play * (
@@ -359,7 +359,7 @@ class ServoLoop:
     def calculate_response(
         self, position: float, last_move: float, setpoints: SetpointPolynomial
     ) -> ServoResponse:
-        """Return the response of an axis at ``position`` whose last move was ``step``, in mm or degrees."""
+        """Return the response of an axis at ``position`` after ``last_move``, in mm or degrees."""
         w, missing, (p, dp, ddp) = self._w, self._missing, setpoints
         drift = -4.0 * ddp * missing / w
         lag = (2.0 * w * (ddp - missing * dp - drift) - 2.0 * ddp) / (w * w)
@@ -372,10 +372,10 @@ class ServoLoop:
     def calculate_states_at(
         self, setpoints: SetpointPolynomial, response: ServoResponse, grid_point: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position at grid point ``grid_point``, the last move, and the change of the last move.
+        """Return the position at grid point ``grid_point``, the last move, and the change of that move.
 
-        The last move and its change are lengths. Lengths are in mm or degrees, and times are in grid
-        intervals.
+        A move is the distance from one grid point to the next. Lengths are in mm or degrees, and times are
+        in grid intervals.
         """
         (p, dp, ddp), (lag, drift, slow_part, fast_part) = setpoints, response
         slow, fast = (

@@ -40,7 +40,7 @@ class OrientCommand(NamedTuple):
     direction: int
 
     def get_revolutions_to_angle(self, revolutions: float) -> float:
-        """Return the signed revolutions from the position ``revolutions`` to the angle."""
+        """Return the signed revolutions from ``revolutions``, the current position, to the angle."""
         left = (self.angle_deg / 360.0 - revolutions) % 1.0
         if left > 1.0 - _ANGLE_TOLERANCE_REV:
             left = 0.0
@@ -50,7 +50,7 @@ class OrientCommand(NamedTuple):
 
 
 class SimulatedSpindle(Protocol):
-    """Spindle as its controller uses it; rpm and revolutions are signed."""
+    """Spindle interface for the controller of the spindle; rpm and revolutions are signed."""
 
     @property
     def speed(self) -> float:
@@ -119,7 +119,7 @@ class SpindleMotor:
 
     @property
     def is_speed_constant(self) -> bool:
-        """Return whether the speed remains constant until a command or fault changes it."""
+        """Return whether the speed will not change until a command or a fault changes it."""
         faults = self.faults
         target = 0.0 if faults.fault_text else self._target * faults.speed_fraction
         return self._even == target and not (
@@ -154,14 +154,14 @@ class SpindleMotor:
     # --- orientation --------------------------------------------------------------------------------------
 
     def orient_spindle(self, now: float, angle_deg: float, direction: int) -> None:
-        """Turn the spindle from standstill to ``angle_deg`` in degrees and hold it at this angle.
+        """Turn the spindle from standstill to ``angle_deg`` degrees, and hold the spindle at this angle.
 
         The motion starts after the latency of the inverter.
         """
         self._orient, self._begins = OrientCommand(angle_deg, direction), now + self.config.latency_s
 
     def cancel_orientation(self) -> None:
-        """Cancel the orientation; the spindle stays at its present angle."""
+        """Cancel the orientation; the spindle stays at its current angle."""
         self._orient = None
 
     @property
@@ -213,8 +213,8 @@ class SpindleMotor:
     def turn_to_times(self, times: FloatArray, cutting_flags: BoolArray) -> FloatArray:
         """Turn to the last of ``times``, and return the speed, counted revolutions and load at each time.
 
-        The times are in seconds, and the result has the shape (n, 3). ``cuts`` specifies for each time
-        whether a tool is cutting.
+        The times are in seconds, and the result has the shape (n, 3). ``cutting_flags`` specifies for each
+        time whether a tool is cutting.
         """
         if not self.is_speed_constant:
             return np.array(
@@ -234,14 +234,14 @@ class SpindleMotor:
         return self.speed, self.counted_revolutions, self.load_percent
 
     def set_cutting(self, now: float, *, is_cutting: bool) -> None:
-        """Set whether a tool is cutting; during the cut, a slipping belt loses and regains speed."""
+        """Set whether a tool is cutting; while it is, a slipping belt loses and regains speed."""
         now = max(now, self.time_s)
         self.advance_to(now)
         swing = 0.5 - 0.5 * math.cos(2.0 * math.pi * _GRIP_FREQUENCY_HZ * now)
         self.slip_fraction = self.faults.belt_slip_fraction * swing if is_cutting else 0.0
 
     def _ramp_speed(self, dt: float) -> None:
-        """Ramp toward the target speed for ``dt`` seconds; continue at this speed when it is reached."""
+        """Ramp toward the target speed for ``dt`` seconds, and run at this speed once it is reached."""
         faults, t, held = self.faults, self.time_s, 1.0 - self.slip_fraction
         target = 0.0 if faults.fault_text else self._target * faults.speed_fraction
         while dt > 0.0:
@@ -268,7 +268,7 @@ class SpindleMotor:
     def _oscillation_seconds(self, t: float, dt: float) -> float:
         """Return the rotation that the speed oscillation adds during ``dt`` seconds from time ``t`` on.
 
-        The rotation is given as the equivalent seconds at constant speed. The fault
+        The rotation is expressed as the number of seconds that it takes at constant speed. The fault
         ``oscillation_fraction`` causes the oscillation.
         """
         faults = self.faults

@@ -304,7 +304,7 @@ class ProgramParser:
         )
 
     def _is_at_end(self) -> bool:
-        """Return whether the present line contains only the final %."""
+        """Return whether the current line contains only the final %."""
         line = bytes(character & _SEVEN_BIT_MASK for character in self._raw[self._begins :])
         return bool(self._begins) and line.translate(None, _SKIPPED_CODES).strip() == self._wrap
 
@@ -335,7 +335,7 @@ class ProgramParser:
 
 
 def _format_character(character: int, parity: int) -> str:
-    """Return a character as a text, or its code if it is not text.
+    """Return a character if it is printable, otherwise its code.
 
     The character is read with eight bits, or with seven bits and the given parity.
     """

@@ -48,9 +48,9 @@ class TransferCanceledError(DriverError):
 class TransferState:
     """The progress of a transfer: bytes, lines, and the reason for waiting.
 
-    ``total_byte_count`` is 0 if the total is unknown. ``wait_reason`` is empty or one of the reasons that
-    this module defines, such as WAITING_FOR_DC1. ``received_text`` is the text received before the first %,
-    which is not part of the program.
+    ``total_byte_count`` is 0 if the total is unknown. ``wait_reason`` is an empty string or one of the
+    reasons that this module defines, such as WAITING_FOR_DC1. ``received_text`` is the text received before
+    the first %, which is not part of the program.
     """
 
     done_byte_count: int = 0
@@ -165,7 +165,7 @@ class SendTransfer(_Transfer):
         )
 
     def _handle_codes(self, received: bytes) -> None:
-        """Handle received DC3 and DC1 codes if the kernel does not.
+        """Handle received DC3 and DC1 codes if the kernel does not handle them.
 
         Other received characters are ignored.
         """

@@ -1,8 +1,8 @@
-"""Check of the locked packages for known vulnerabilities: ``python -m resources.setup.audit``.
+"""Check the locked packages for known vulnerabilities: ``python -m resources.setup.audit``.
 
-The check queries the list of osv.dev through ``pip-audit`` (``pipx install pip-audit``). It writes the
-result with its date to ``docs/vulnerabilities.md``, even if the list could not be reached. The exit status
-is 0 only if every package was checked and no package has a known vulnerability.
+The check queries the osv.dev database through ``pip-audit`` (``pipx install pip-audit``). It writes the
+result with its date to ``docs/vulnerabilities.md``, even if the database could not be reached. The exit
+status is 0 only if every package was checked and no package has a known vulnerability.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _LONGEST = 300.0  # s
 
 
 class AuditResult(NamedTuple):
-    """Vulnerabilities that the list contains for one locked file.
+    """Vulnerabilities that the database contains for the packages in one locked file.
 
-    ``unchecked_packages`` are the packages for which the list returned no result.
+    ``unchecked_packages`` are the packages for which the database returned no result.
     """
 
     name: str
@@ -49,7 +49,7 @@ class AuditResult(NamedTuple):
 def parse_audit_output(name: str, packages: Sequence[str], output: str) -> AuditResult:
     """Parse the output of pip-audit.
 
-    A package that pip-audit omits or skips is unchecked.
+    A package that pip-audit omits or skips counts as unchecked.
     """
     try:
         told: list[dict[str, Any]] = json.loads(output)["dependencies"]
@@ -73,7 +73,7 @@ def audit_locked_file(command: str, name: str) -> AuditResult:
 
 
 def format_page(results: Sequence[AuditResult], day: str) -> str:
-    """Return the text of the page, including its date."""
+    """Return the text of the page that reports the results, including its date."""
     return "\n".join(_lines(results, day)) + "\n"
 
 

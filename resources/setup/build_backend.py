@@ -1,7 +1,7 @@
-"""Build backend for the wheel of TurnDesk, which moves all source packages into one package ``turndesk``.
+"""Build backend of the TurnDesk wheel, which has all source packages in one package ``turndesk``.
 
-Setuptools builds the wheel, and this backend then moves its packages. Setuptools also builds editable
-installs and source distributions, whose package names are the same as in a clone.
+Setuptools builds the wheel, and this backend then moves its packages. Editable installs and source
+distributions, which Setuptools builds alone, have the same package names as a clone.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def run(*words: object, cwd: Path = PROJECT_FOLDER) -> str:
 
 
 def get_bundle_version() -> str:
-    """Return the version in the bundle, with its commit and date if they are known."""
+    """Return the version of the bundle, including its commit and date if they are known."""
     try:
         day = run("git", "show", "--no-patch", "--format=%cd", "--date=format:%Y%m%d", "HEAD").strip()
         return (
@@ -87,7 +87,7 @@ def fetch_wheels(folder: Path, machine: str) -> None:
 def build_product_wheel(folder: Path) -> None:
     """Build the wheel of TurnDesk from a copy of the source.
 
-    The wheel therefore does not contain files of an earlier build.
+    The copy ensures that the wheel contains no files from an earlier build.
     """
     with tempfile.TemporaryDirectory() as work:
         copy = Path(work) / "turndesk"
@@ -134,7 +134,7 @@ def fetch_system_packages(folder: Path) -> list[Component]:
 
 
 def get_system_release() -> str:
-    """Return the name of this system's release, such as ``debian12``."""
+    """Return the name of this computer's system release, such as ``debian12``."""
     text = Path("/etc/os-release").read_text(encoding="utf-8")
     found: dict[str, str] = dict(
         re.findall(r'^(ID|VERSION_ID|VERSION_CODENAME)="?([^"\n]*)"?$', text, re.MULTILINE)
@@ -147,7 +147,7 @@ def collect_bundle_files(
 ) -> None:
     """Put the contents of the bundle into a folder.
 
-    ``wheels`` is a folder of wheels that are already downloaded; with None, the wheels are downloaded.
+    ``wheels`` is a folder of wheels that are already downloaded. If it is None, the wheels are downloaded.
     """
     fetched, wheels = wheels, folder / "wheels"
     if fetched:
@@ -180,9 +180,9 @@ def _goes_along(name: str) -> bool:
 
 
 def write_bundle_file(folder: Path, target: Path, machine: str) -> None:
-    """Write one file that unpacks itself.
+    """Write the bundle as one file that unpacks itself.
 
-    The file starts with a script, followed by the packed contents. The script contains their SHA-256.
+    The file starts with a script, followed by the packed contents. The script contains their SHA-256 hash.
     """
     with tempfile.TemporaryFile() as packed:
         with tarfile.open(fileobj=packed, mode="w") as archive:
@@ -200,10 +200,7 @@ def write_bundle_file(folder: Path, target: Path, machine: str) -> None:
 
 
 def _script(words: dict[str, str]) -> bytes:
-    """Return the script at the start of the bundle, with its placeholders replaced by ``words``.
-
-    The position where the packed contents start has four digits.
-    """
+    """Return the script at the start of the bundle, with its placeholders replaced by ``words``."""
     text = (SETUP_FOLDER / "unpack.sh").read_text(encoding="utf-8")
     return re.sub("@([A-Z0-9]+)@", lambda found: words[found[1]], text).encode()
 

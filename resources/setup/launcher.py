@@ -1,4 +1,4 @@
-"""Package ``turndesk`` as a wheel installs it, whose folder contains the packages of the source code.
+"""Package ``turndesk`` of a wheel; its folder contains the packages of the source code.
 
 The build copies this file to ``turndesk/__init__.py``. Only the processes of TurnDesk can import the inner
 packages, so that an installed TurnDesk does not occupy the names ``app``, ``core``, ``drivers`` and

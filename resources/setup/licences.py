@@ -75,7 +75,7 @@ class LicensedPackage(NamedTuple):
 def get_license(package: Distribution) -> str:
     """Return the license that a package states, as an SPDX expression.
 
-    Raises LicenceError if the license is missing or not compatible.
+    Raises LicenseError if the license is missing or not compatible.
     """
 
     def stated(field: str) -> list[str]:
@@ -96,7 +96,7 @@ def get_license(package: Distribution) -> str:
 
 
 def is_compatible(expression: str) -> bool:
-    """Return whether a license expression is compatible.
+    """Return whether the license expression permits distribution with TurnDesk.
 
     At least one alternative (OR) must consist only of compatible licenses (AND).
     """
@@ -113,7 +113,7 @@ def list_packages_without(name: str, excluded_set: str | None) -> Iterator[Locke
 
 
 def parse_page(page: str) -> list[LicensedPackage]:
-    """Return the packages that are listed on a page."""
+    """Return the packages that the license page lists."""
     return [LicensedPackage(*found.groups()) for found in _ROW.finditer(page)]
 
 
@@ -136,7 +136,7 @@ def tables(known_licenses: dict[str, str]) -> str:
 
 
 def update_page(old_page: str) -> str:
-    """Return the page with new tables, which replace everything from its first table on."""
+    """Return the page with new tables, which replace everything from the first old table on."""
     known = {row.name: row.license_expression for row in parse_page(old_page)}
     return old_page.partition(f"## {TABLES[0][0]}")[0] + tables(known)
 

@@ -81,7 +81,7 @@ def read_project_file() -> dict[str, Any]:
 def list_build_requirements() -> list[str]:
     """Return the requirements for building TurnDesk itself.
 
-    They are also locked, so that the setup downloads nothing that is not locked.
+    These packages are also locked, so that the setup downloads only locked packages.
     """
     return [str(each) for each in read_project_file()["build-system"]["requires"]]
 

@@ -43,7 +43,7 @@ CHECKSUM_FILE_NAME = "SHA256SUMS"
 def build_artifacts(folder: Path, wheels: Path, machine: str, targets: Sequence[str]) -> None:
     """Build all artifacts from the checkout that contains this module.
 
-    Raises BundleError or LicenceError.
+    Raises BundleError if a step fails, or LicenseError if a license does not permit distribution.
     """
     build_product_wheel(folder)
     wheel = next(folder.glob("turndesk-*.whl"))

@@ -66,7 +66,7 @@ def build_earlier_package(package: Path, folder: Path) -> Path:
 def create_minimal_root(release: str, folder: Path) -> Iterator[Path]:
     """Yield a minimal root file system of a Debian release.
 
-    The root has its mounts and the package sources of this computer.
+    The root file system has its mounts, and uses the package sources of this computer.
     """
     root = folder / "root"
     run("debootstrap", "--variant=minbase", release, root)
@@ -101,7 +101,7 @@ def run_in_root(root: Path, command: str) -> str:
 
 
 def list_files(root: Path) -> set[str]:
-    """Return the files in the root file system that a purge must not change."""
+    """Return the files in the root file system that must be the same after a purge."""
     listed = run_in_root(root, "find / -xdev \\( -type f -o -type l \\) -print").splitlines()
     return {name for name in listed if not _IGNORED.match(name)}
 

@@ -27,9 +27,9 @@ _ROOT = "turndesk"
 def build_sbom(
     version: str, wheels: Iterable[Path], system_components: Iterable[Component] = ()
 ) -> dict[str, Any]:
-    """Return the SBOM for a version of TurnDesk, its wheels and the components of the system.
+    """Return the SBOM for a version of TurnDesk, its wheels and the bundled system components.
 
-    Raises LicenceError if the license of a package does not permit distribution.
+    Raises LicenseError if the license of a package does not permit distribution.
     """
     files = _files(wheels)
     names = sorted(read_locked_packages("desk"))
@@ -71,7 +71,7 @@ def build_system_component(name: str, version: str, path: Path, distribution_nam
 
 
 def _package(name: str, files: list[Path]) -> Component:
-    """Return the component for a locked package, with its license and its available files."""
+    """Return the component for a locked package, including its license and the available files."""
     locked = read_locked_packages("desk")[name]
     component: Component = {"type": "library", "bom-ref": name, "name": name, "version": locked.version}
     component["purl"] = f"pkg:pypi/{name}@{locked.version}"
@@ -94,7 +94,7 @@ def _qt(name: str, version: str) -> list[Component]:
 
 
 def _brought_along() -> list[Component]:
-    """Return the components for third-party files that are part of TurnDesk's own files."""
+    """Return the components for third-party files that TurnDesk includes among its own files."""
     font: Component = {"type": "data", "bom-ref": "b612", "name": "B612", "description": "the fonts"}
     return [font | {"licenses": [{"license": {"id": "OFL-1.1"}}]}]
 
@@ -114,13 +114,13 @@ def _needs(name: str) -> set[str]:
 
 
 def _now() -> datetime:
-    """Return the configured time of a reproducible build (``SOURCE_DATE_EPOCH``), or the present time."""
+    """Return the time of a reproducible build (``SOURCE_DATE_EPOCH``) or else the current time."""
     stated = os.environ.get("SOURCE_DATE_EPOCH", "")
     return datetime.fromtimestamp(int(stated), UTC) if stated else datetime.now(UTC)
 
 
 def _files(wheels: Iterable[Path]) -> dict[str, list[Path]]:
-    """Return the wheels by the name of their package."""
+    """Return the wheels of each package, with the package names as keys."""
     found: dict[str, list[Path]] = {}
     for path in sorted(wheels):
         found.setdefault(str(parse_wheel_filename(path.name)[0]), []).append(path)

@@ -74,7 +74,7 @@ def _time() -> tuple[int, int, int, int, int, int]:
 
 
 def _record(files: Mapping[str, bytes], record: str) -> bytes:
-    """Return the list of the wheel's files with their hashes and sizes (RECORD)."""
+    """Return the contents of RECORD: the wheel's files with their hashes and sizes."""
     made = io.StringIO()
     rows = csv.writer(made, lineterminator="\n")
     for name in sorted(files):

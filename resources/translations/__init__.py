@@ -1,1 +1,1 @@
-"""Catalogs of the operator's languages, and the script that collects the texts for them."""
+"""Catalogs of the operator's languages, and the script that collects their texts."""

@@ -328,7 +328,7 @@ def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:
 
 
 def _of_levels() -> list[str]:
-    """Return the names of the access levels, and the changes that each level permits."""
+    """Return the names of the access levels and of the protected changes."""
     return [*(level.name for level in AccessLevel), *(act.value for act in ProtectedChange)]
 
 
@@ -365,7 +365,7 @@ def _of_extras() -> list[str]:
 
 
 def _loud_alarms() -> list[str]:
-    """Return the alarm texts that differ from their lower-case form, in capitals as the screen shows them."""
+    """Return all alarm texts that contain capital letters, in upper case as the screen shows them."""
     texts = [entry.text for entry in CATALOG.values()]
     return [text.upper() for text in texts if text != text.lower()]
 
@@ -382,12 +382,12 @@ def _is_read(text: str, loud: bool) -> bool:
 
 
 def read_translations(language: str) -> dict[str, str]:
-    """Return the finished translations in a ``.ts`` file by their English text."""
+    """Return the finished translations in a ``.ts`` file, with the English texts as keys."""
     return {text: told for text, (told, finished) in _entries(language).items() if finished}
 
 
 def _entries(language: str) -> dict[str, tuple[str, bool]]:
-    """Return each translation, and whether it is finished, by the English text.
+    """Return each translation and whether it is finished, with the English texts as keys.
 
     The result is empty if the file does not exist.
     """
@@ -404,10 +404,10 @@ def _entries(language: str) -> dict[str, tuple[str, bool]]:
 
 
 def write_catalog(language: str, texts: dict[str, str], former_texts: Mapping[str, str]) -> None:
-    """Write the ``.ts`` file with the wanted texts and their translations, and compile the ``.qm`` file.
+    """Write the ``.ts`` file with these texts and their translations, and compile the ``.qm`` file.
 
-    ``former_texts`` maps the present English text to the former text of each reworded text. A reworded text
-    retains the former translation, marked as unfinished.
+    ``former_texts`` maps the current English text of each reworded text to its former text. A reworded text
+    retains its former translation, marked as unfinished.
     """
     known = _entries(language)
     root = ET.Element("TS", version="2.1", language=language, sourcelanguage="en")

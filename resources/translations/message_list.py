@@ -30,7 +30,7 @@ def read_list() -> dict[str, str]:
 def write_list(texts: Mapping[str, str]) -> dict[str, str]:
     """Write the list of texts, and return the former text of each reworded text.
 
-    ``texts`` contains the file of each text.
+    ``texts`` maps each text to the file that contains it.
     """
     former = read_list()
     known = {english: name for name, english in former.items()}
@@ -51,17 +51,14 @@ def write_list(texts: Mapping[str, str]) -> dict[str, str]:
 
 
 def _folder(file: str) -> str:
-    """Return the first part of an id.
-
-    This part is the name of the package, such as ``jog`` or ``interpreter``.
-    """
+    """Return the first part of the ids for texts in ``file``: the package name, such as ``jog``."""
     return Path(file).parts[1].removesuffix(".py") if file else "tables"
 
 
 def _most_similar(text: str, folder: str, gone: Mapping[str, str]) -> str:
     """Return the id of the deleted text that ``text`` replaces.
 
-    Returns an empty text if no similar text exists.
+    Returns an empty string if there is no similar text.
     """
     found, best = "", _SIMILAR
     for name, english in gone.items():

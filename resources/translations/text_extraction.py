@@ -40,9 +40,9 @@ def find_texts(tree: ast.Module) -> Iterator[str]:
 
 
 def find_composed_texts(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the line and text of every string that is composed of parts.
+    """Yield the line number and the text of every string that is composed of parts.
 
-    In the text, ``{}`` is in place of each value.
+    In the text, ``{}`` replaces each value.
     """
     skipped = _skipped(tree)
     for node in ast.walk(tree):
@@ -79,7 +79,7 @@ def _name(node: ast.expr) -> str:
 
 
 def _pieces(node: ast.expr) -> list[str | None] | None:
-    """Return the parts of a composed string, with None for each value.
+    """Return the parts of a composed string, in which None represents a value.
 
     Returns None if the node is not a string.
     """
@@ -96,7 +96,7 @@ def _pieces(node: ast.expr) -> list[str | None] | None:
 
 
 def _own_parts(node: ast.expr) -> Iterator[ast.AST]:
-    """Yield the nodes that became parts of a string; expressions for values are examined separately."""
+    """Yield the nodes that are parts of a string, without expressions for values."""
     yield node
     if isinstance(node, ast.JoinedStr):
         yield from (value for value in node.values if isinstance(value, ast.Constant))

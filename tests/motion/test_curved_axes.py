@@ -281,16 +281,16 @@ class Circle:
     seen: bool = True
     is_straight: bool = False
 
-    def machine_positions(self, share: FloatArray) -> FloatArray:
+    def compute_machine_positions(self, share: FloatArray) -> FloatArray:
         """X, Z and C at shares of the way."""
         angle = share * self.length / self.radius
         return np.stack([self.radius * np.cos(angle), self.radius * np.sin(angle), 0.0 * angle], axis=1)
 
-    def workpiece_points(self, points: FloatArray) -> FloatArray:
+    def compute_workpiece_points(self, points: FloatArray) -> FloatArray:
         """The points as the part has them."""
         return points if self.seen else np.zeros_like(points)
 
-    def critical_fraction(self) -> float:
+    def get_critical_fraction(self) -> float:
         """Where C turns fastest: nowhere, so in the middle."""
         return 0.5
 

@@ -1,1 +1,1 @@
-"""Implementations of commands, which are loaded only when they are needed."""
+"""Implementations of commands. Each module is loaded only when its command runs."""

@@ -1,4 +1,4 @@
-"""Desktop menu entry with its icon and file types, and autostart entry, in the XDG folders."""
+"""Desktop menu entry, icon, file types and autostart entry in the XDG folders."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _command() -> str:
 
 
 def _quote_word(word: str) -> str:
-    """Return a word quoted for the Exec line of a desktop entry, where % must be doubled."""
+    """Return a word quoted for the Exec line of a desktop entry. Each % is doubled."""
     if not _RESERVED.search(word):
         return word.replace("%", "%%")
     inside = re.sub(r'(["`$\\])', r"\\\1", word).replace("%", "%%")
@@ -98,9 +98,9 @@ def format_entry(command: str) -> str:
 
 
 def _update_databases(applications: Path, mime: Path) -> None:
-    """Update the desktop databases, so that file managers find the entry and the file types immediately.
+    """Update the desktop databases, so that file managers find the new entry immediately.
 
-    A database is skipped if the desktop does not have the tool that updates it.
+    A database is skipped if the tool that updates it is not installed.
     """
     for tool, folder in (("update-desktop-database", applications), ("update-mime-database", mime)):
         if shutil.which(tool) and folder.is_dir():

@@ -1,4 +1,4 @@
-"""Actions of ``turndesk offsets``, which show, set and undo stored offsets and tool shapes in inches."""
+"""Actions of ``turndesk offsets``: show, set and undo stored offsets and tool shapes in inches."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _show(args: argparse.Namespace) -> int:
 
 
 def _convert_to_inches(kind: OffsetKind, row: OffsetRow) -> dict[str, FieldValue]:
-    """Return every field by name in its unit of entry, which is inches for lengths of tools."""
+    """Return all fields by name in the units in which they are entered. Lengths of tools are in inches."""
     values: list[FieldValue] = list(row)
     return {
         name: _convert_type(field, value)
@@ -120,7 +120,7 @@ def _line(name: str, row: OffsetRow) -> str:
 
 
 def _format_shape(row: ShapeRow) -> str:
-    """Return the specified fields of a shape in the syntax in which they are entered."""
+    """Return the specified fields of a tool shape as text that could be entered again."""
     field_texts = [f"{row.kind} {row.hand}"]
     values: list[FieldValue] = list(row)
     for field, value in zip(FIELDS_BY_KIND[OffsetKind.SHAPE].values(), values, strict=True):
@@ -193,7 +193,7 @@ def _set_all(
 def _check_shape(
     store: Store, number: int, shape: dict[str, FieldValue], offset: dict[str, FieldValue]
 ) -> None:
-    """Raise CommandError if the tool's shape is inconsistent or does not have a kind."""
+    """Raise CommandError if the tool's shape is inconsistent or its kind is missing."""
     from app.desk.stored_shapes import find_mistakes
 
     row = replace_fields(store.offsets.tool_shapes.read_rows().get(number, ShapeRow()), shape)
@@ -290,9 +290,9 @@ def _entered(field: RowField, text: str) -> FieldValue:
 
 
 def _parse_choice(field: RowField, word: str) -> str:
-    """Return ``word`` if it is one of the field's choices.
+    """Return ``word`` if it is one of the field's choices, and otherwise raise CommandError.
 
-    Raises CommandError with the most similar choice if it is not.
+    The error names the most similar choice.
     """
     known = (*field.choices, NO_SHAPE_KIND) if field.name == "kind" else field.choices
     if word not in known:

@@ -1,4 +1,4 @@
-"""Bug report with the version, system, machine file, program, newest crash file and newest log lines."""
+"""Bug report on the installation, machine file and program, with the newest crash and log lines."""
 
 from __future__ import annotations
 
@@ -244,7 +244,7 @@ def _last_lines(path: Path, change: Callable[[str], str]) -> str:
 
 
 def _read(path: Path, *, must_exist: bool) -> str:
-    """Return the last part of a text file. Raises CommandError if the file must exist and cannot be read."""
+    """Return the last part of a text file. Raises CommandError if a required file cannot be read."""
     try:
         with path.open("rb") as file:
             file.seek(max(0, path.stat().st_size - _MOST_BYTES))

@@ -1,7 +1,7 @@
-"""Reports of internal errors, with one line on the terminal and the traceback in a crash file.
+"""Reports of internal errors: one line on the terminal and the traceback in a crash file.
 
-The module also restores interrupts by Ctrl+C that Python drops. Python only prints an interrupt that is
-raised in a finalizer, and the command would continue.
+The module also restores Ctrl+C interrupts that Python drops. If an interrupt is raised in a finalizer,
+Python only prints it, and the command would continue.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def report_crash(
 
 
 def report_thread_exception(thread_error: threading.ExceptHookArgs) -> None:
-    """Report an exception that ended a thread, while the other threads continue."""
+    """Report an exception that ended a thread. The other threads continue."""
     if thread_error.exc_value is not None and not isinstance(thread_error.exc_value, SystemExit):
         report_crash(thread_error.exc_type, thread_error.exc_value, thread_error.exc_traceback)
 
@@ -93,7 +93,7 @@ def _try_write(folder: Path, text: str) -> Path | None:
 
 @contextmanager
 def catch_interrupts() -> Iterator[None]:
-    """Save each interrupt that Python drops inside the block for the next call of ``raise_interrupt``."""
+    """Remember each interrupt that Python drops inside the block. ``raise_interrupt`` then raises it."""
     before = sys.unraisablehook
 
     def keep(hook_args: UnraisableHookArgs) -> None:

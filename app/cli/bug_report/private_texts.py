@@ -24,7 +24,7 @@ _NETWORK = ("sharing", "announce", "status_page", "mtconnect", "office", "http",
 
 
 def mask_program_texts(text: str) -> str:
-    """Return a program with ``x`` for each letter of its comments, strings and names.
+    """Return a program in which ``x`` replaces each letter of its comments, strings and names.
 
     The length and position of each text do not change.
     """
@@ -88,9 +88,9 @@ def remove_record_name(log_line: str) -> str:
 
 
 def format_without_names(text: str) -> str:
-    """Return a message as its template and numeric values, without names.
+    """Return a message as its template and its numeric values, without names.
 
-    A plain text is returned unchanged.
+    A message that is a plain string is returned unchanged.
     """
     if not isinstance(text, Message):
         return text

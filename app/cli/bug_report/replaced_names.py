@@ -101,7 +101,7 @@ class PrivateValueReplacer:
     def _path(self, path: str) -> str:
         """Return the replacement of a path.
 
-        A path of TurnDesk or Python is shortened so that it starts at its package.
+        A path in TurnDesk or Python is shortened to the part that starts with its package.
         """
         if own := _OWN.match(path):
             return f"…/{own['tail']}"

@@ -8,7 +8,7 @@ from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ShapeRow, To
 
 
 def _inch_keys(columns: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
-    """Return columns of the store as ``offsets --json`` prints them.
+    """Return the JSON keys for columns of the store, as ``offsets --json`` prints them.
 
     Lengths of lathe tools are in inches.
     """

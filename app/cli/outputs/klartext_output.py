@@ -45,7 +45,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
-    """Return the JSON keys of a proof that are different for a mill.
+    """Return the JSON keys that differ from those of a lathe in a mill's proof.
 
     ``limits`` are machine positions, and ``final`` has the positions of all axes.
     """
@@ -122,7 +122,7 @@ def _plane_json(swivel: PlanePosition) -> Json:
 def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
     """Return the path speed of a block and its unit.
 
-    The speed of a rapid is the speed that the slowest axis permits.
+    The speed of a rapid move is limited by the slowest axis.
     """
     if not block.moves or block.travel is None or block.travel.length == 0.0:
         return None, None

@@ -1,6 +1,6 @@
 """Output of elementary blocks of OmniTurn programs, in inches and minutes.
 
-Long columns of numbers are rounded and formatted together, with exactly the same text as single numbers.
+Long columns of numbers are formatted together for speed. The text is the same as for single numbers.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def format_decimals(values: FloatArray, decimal_places: int) -> list[str]:
 
 
 def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_places: int) -> list[str]:
-    """Return numbers (m,) of steps of 10^-``decimal_places`` as texts.
+    """Return each number (m,), an integer count of 10^-``decimal_places``, as a decimal string.
 
     Each text has at least one digit before and after the decimal point.
     """
@@ -103,9 +103,9 @@ def _digit_table(count: IntArray) -> npt.NDArray[np.uint8]:
 
 @cache
 def _four_digit_table() -> npt.NDArray[np.uint32]:
-    """Return the four digits of each number from 0 to 9999.
+    """Return a table of the four digits of each number from 0 to 9999.
 
-    Each integer of the result packs four characters. The shape of the result is (10000,).
+    Each integer of the table packs four characters. The shape of the table is (10000,).
     """
     return np.frombuffer("".join([f"{each:04d}" for each in range(10_000)]).encode(), np.uint32)
 
@@ -143,7 +143,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def _feed_value(block: Block) -> float:
-    """Return the feed of a block in in/rev if it is per revolution, and otherwise in in/min."""
+    """Return the feed of a block, in in/rev for a feed per revolution and otherwise in in/min."""
     return to_inches(block.feed) if block.per_rev else to_inches_per_minute(block.feed)
 
 
@@ -223,9 +223,9 @@ def _texts_json(texts: Sequence[str]) -> list[str]:
 
 
 def _interleave(separators: Sequence[str], columns: Sequence[Iterable[str]], count: int) -> str:
-    """Return ``count`` lines of text made of columns.
+    """Return ``count`` lines of text, each with one item from every column.
 
-    Each line has the same ``separators`` before, between and after its columns.
+    Every line has the same ``separators`` before, between and after its columns.
     """
     width = len(separators) + len(columns)
     woven = [""] * (count * width)

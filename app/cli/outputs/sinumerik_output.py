@@ -1,4 +1,4 @@
-"""Output of elementary blocks of SINUMERIK programs in mm, degrees and minutes, with X as programmed."""
+"""Output of elementary blocks of SINUMERIK programs in mm, degrees and minutes. X is as programmed."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def format_row(block: Block, start_s: float) -> str:
 
 
 def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
-    """Return the programmed feed of a block, or the path speed of a rapid, and its unit."""
+    """Return the programmed feed of a block and its unit. For a rapid move, return the path speed."""
     if not block.moves:
         return None, None
     alone = (block.x, block.z) == (block.x0, block.z0) and block.c != block.c0
@@ -76,6 +76,6 @@ def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
 
 
 def _round_angle(value: float, block: Block) -> float:
-    """Return a rounded angle in degrees. The angle of a modulo axis is from 0 to less than 360."""
+    """Return a rounded angle in degrees. For a modulo axis, the angle is at least 0 and less than 360."""
     angle = round_degrees(value)
     return round_degrees(angle % _DEGREES_PER_REV) % _DEGREES_PER_REV if block.modal.is_c_modulo else angle

@@ -59,7 +59,7 @@ def get_volume_converter(dialect: Dialect) -> Callable[[float], float]:
 
 
 def get_path_feed(block: Block, unit: str) -> tuple[float, str]:
-    """Return the feed along a path and its unit, which is ``unit`` per revolution or per minute.
+    """Return the feed along a path and its unit as text, such as ``mm/rev`` or ``mm/min``.
 
     ``unit`` is ``mm`` or ``deg``.
     """

@@ -45,14 +45,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ProgramFiles:
-    """Paths of programs in the order of their names, and the number of other files."""
+    """Paths of the programs, sorted by name, and the number of files that are not programs."""
 
     paths: tuple[Path, ...]
     other_count: int
 
 
 def find_programs(names: Iterable[str]) -> ProgramFiles:
-    """Return the programs among these files and in these folders. A named file may have any suffix.
+    """Return the programs among these files and folders. Files named explicitly may have any suffix.
 
     Raises CommandError if a folder cannot be read or contains no program.
     """
@@ -79,7 +79,7 @@ def find_programs(names: Iterable[str]) -> ProgramFiles:
 
 
 def _expand_names(names: Iterable[str]) -> Iterator[str]:
-    """Yield the names. Raises CommandError for an empty name, because it would mean the current folder."""
+    """Yield the names. Raises CommandError if a name is empty, because it would mean the current folder."""
     for name in names:
         if not name:
             raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
@@ -194,7 +194,7 @@ class _Run:
                 cache.delete_oldest()
 
     def print_outcome(self) -> int:
-        """Print the table, or with --json the number of other files, and return the exit status."""
+        """Print the table, or the number of other files with --json, and return the exit status."""
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
         others = self._files.other_count
         if not self._args.json:
@@ -207,7 +207,7 @@ class _Run:
         return executor.submit(prove_pickled, unit.job.pickled_job, self._version, unit.source)
 
     def _iterate_units(self) -> Iterator[_Unit]:
-        """Yield each program that has no saved proof, when a worker becomes available."""
+        """Yield the next program without a saved proof whenever a worker becomes available."""
         for index, path in enumerate(self._files.paths):
             try:
                 source = read_source(path, self._args)
@@ -237,7 +237,7 @@ class _Run:
         return None if self._args.no_cache else self._caches[machine]
 
     def _create_job(self, source: ProgramSource, common: ProofJob) -> ProofJob:
-        """Return the common job, or a copy with the stored part data of this program."""
+        """Return the common job, or a copy of the job with the stored part data of this program."""
         kept = self._kept_parts.get(source.name)
         if kept is None:
             return common
@@ -290,7 +290,7 @@ class _Run:
         self._progress.report_progress(len(self._proofs))
 
     def _print_result(self, path: Path, proof: Proof) -> None:
-        """Print the proof of a program. The method is called in the order of names."""
+        """Print the proof of a program. The method is called for the programs in the order of their names."""
         if proof.failure_reason:
             sys.stderr.write(f"turndesk: {proof.failure_reason}\n")
         elif self._args.json:
@@ -307,7 +307,7 @@ def _status(proof: Proof) -> int:
 
 
 def _program_data(setting: PartSettings) -> object:
-    """Return the part settings that apply to only one program."""
+    """Return the part settings that are specific to one program."""
     return setting.stock, setting.clamping, setting.silenced
 
 

@@ -1,4 +1,4 @@
-"""Cache of proofs, whose keys are hashes of all data on which a proof depends.
+"""Cache of proofs. The key of a proof is a hash of all data on which the proof depends.
 
 A file is written under a temporary name and then renamed, so that a killed process does not leave an
 incomplete proof. A damaged file cannot be decompressed and is ignored.
@@ -63,7 +63,7 @@ class ProofCache:
             return None
 
     def save_proof(self, key: str, proof: Proof) -> None:
-        """Save a proof. After the first disk error, which is reported, no more proofs are saved."""
+        """Save a proof. The first disk error is reported, and then no more proofs are saved."""
         if self._full:
             return
         path = self._path(key)

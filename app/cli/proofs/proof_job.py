@@ -1,4 +1,4 @@
-"""Common data of programs that are proved together, which are the machine, setup, part and options.
+"""Data common to programs that are proved together: the machine, setup, part and options.
 
 Without --machine, each program is proved on a machine that can run it, such as a shipped mill for Klartext.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ComparisonOffsets:
-    """Offsets for a comparison, given as the name of their file and the setup that uses them."""
+    """Offsets for a comparison: the name of the offsets file and the setup that uses these offsets."""
 
     name: str
     setup: Setup
@@ -50,8 +50,8 @@ class ProofJob:
 class JobsByMachine:
     """Proof jobs by machine.
 
-    There is one job for the machine of the options, and one for each shipped machine that a program needs.
-    ``create_job`` creates a job.
+    There is one job for the machine that the options specify, and one for each shipped machine that a
+    program needs. ``create_job`` creates a job.
     """
 
     arguments: argparse.Namespace
@@ -62,7 +62,7 @@ class JobsByMachine:
     def select_machine_name(self, source: ProgramSource) -> str:
         """Return the name of the shipped machine for this program.
 
-        An empty text means the machine of the options.
+        An empty string means the machine that the options specify.
         """
         if self.arguments.machine is not None:
             return ""

@@ -52,7 +52,7 @@ class WorkerSource(Protocol):
         """Start ``worker_count`` workers, or all workers if it is None, and return their executor."""
 
     def stop_workers(self, executor: Executor | None, /, *, is_done: bool) -> None:
-        """Stop the workers, and unless ``is_done`` is true, also abort the units in progress."""
+        """Stop the workers. If ``is_done`` is false, also abort the units in progress."""
 
 
 class LocalWorkers:
@@ -78,7 +78,7 @@ class LocalWorkers:
         )
 
     def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
-        """Stop the workers, and unless ``is_done`` is true, also abort the units in progress.
+        """Stop the workers. If ``is_done`` is false, also abort the units in progress.
 
         The method waits for the pool's thread, because Python's shutdown would otherwise close pipes that
         this thread still uses.
@@ -89,7 +89,7 @@ class LocalWorkers:
             executor.shutdown()
 
     def _terminate_workers(self) -> None:
-        """Terminate the worker processes. Processes that the pool has already removed are ignored."""
+        """Terminate the worker processes. Processes that have already left the pool are ignored."""
         with contextlib.suppress(OSError, ValueError):
             for each in set(multiprocessing.active_children()) - self._before:
                 with contextlib.suppress(OSError, ValueError):
@@ -97,7 +97,7 @@ class LocalWorkers:
 
 
 def _initialize_worker() -> None:
-    """Initialize a worker, which ignores Ctrl+C because the parent process ends the worker."""
+    """Make a worker ignore Ctrl+C, because the parent process ends the worker."""
     gc.set_threshold(50_000)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -106,8 +106,8 @@ class WorkDistributor(Generic[WorkUnit, UnitResult]):
     """Distributor of units of work to workers.
 
     The distributor returns results in the order in which the units finish. If a worker is killed, all
-    workers of its pool end. Their units are then repeated one at a time, each in a separate worker. A unit
-    that kills its worker again is the cause.
+    workers of its pool end. The distributor then repeats their units one at a time, each in a separate
+    worker. A repeated unit that kills its worker again is the cause of the failure.
     """
 
     def __init__(

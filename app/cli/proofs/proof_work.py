@@ -24,7 +24,7 @@ _CODE_FOLDERS = ("app/cli", "app/compose", "app/report", "core")  # folders with
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """Result of a proof, which is the JSON object ``report``, or the ``failure_reason`` if proving failed.
+    """Result of a proof: the JSON object ``report``, or ``failure_reason`` if proving failed.
 
     ``report_section`` is the program's section of a report, if one is required. ``duration_s`` is the
     duration of the proof in seconds, or 0 for a proof from the cache.
@@ -47,7 +47,7 @@ class Proof:
 
 
 class VersionMismatchError(Exception):
-    """Error for a worker that has a different version of TurnDesk, whose proofs would differ."""
+    """Error for a worker with another version of TurnDesk, which could prove programs differently."""
 
 
 def prove_pickled(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
@@ -74,7 +74,7 @@ def prove_program(job: ProofJob, source: ProgramSource) -> Proof:
 
 
 class ProofFindings(NamedTuple):
-    """Results of one proof, with the report section, which is empty if not required, and the comparison."""
+    """Results of one proof with the comparison and the report section, which may be empty."""
 
     report: ProofReport
     part: PartReport | None
@@ -115,7 +115,7 @@ def prove_with_findings(
 
 
 def _run_record(job: ProofJob) -> RunRecorder | None:
-    """Return the recorder for a report, or None if no report is required."""
+    """Return the recorder that collects data for a report, or None if no report is required."""
     if not job.needs_report_section:
         return None
     from app.report.run_record import RunRecorder
@@ -133,7 +133,7 @@ def _unpacked(packed: bytes) -> ProofJob:
 
 @lru_cache(maxsize=1)
 def get_code_hash() -> str:
-    """Return a hash of TurnDesk's code, because the version number does not change during development."""
+    """Return a hash of TurnDesk's code. The version number alone does not change during development."""
     from hashlib import sha256
 
     total = sha256()

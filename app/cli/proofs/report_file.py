@@ -1,4 +1,4 @@
-"""The file of ``--report``, in HTML or PDF, which has a temporary name until all programs are proved."""
+"""The file that ``--report`` writes, in HTML or PDF. Its name is temporary until all programs are proved."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Pages(Protocol):
         """
 
     def close(self) -> None:
-        """Close the file, whether complete or not."""
+        """Close the file, even if it is not complete."""
 
 
 class _HtmlPages:
@@ -116,7 +116,7 @@ class ReportFile:
 
 @contextlib.contextmanager
 def open_report(args: argparse.Namespace) -> Iterator[ReportFile | None]:
-    """Yield the report file of --report, or None without the option.
+    """Yield the report file of --report, or None if the option is not used.
 
     Invalid options raise CommandError before a program is proved.
     """

@@ -1,1 +1,1 @@
-"""Connection, checking and simulation of machines by the backend that their machine file specifies."""
+"""Connection, checking and simulation of machines through the backend named in the machine file."""

@@ -1,4 +1,4 @@
-"""Table of the backends, in which each module defines one ``BACKEND``.
+"""Table of the backends. The module of each backend defines one ``BACKEND``.
 
 The module also defines the rows of ``turndesk machine check``.
 """
@@ -77,7 +77,7 @@ class Backend:
 
 
 def find_backend(machine: Machine) -> Backend:
-    """Return the backend of a machine, whose libraries are loaded when it connects.
+    """Return the backend of a machine. Its libraries are loaded only when the machine is connected.
 
     Raises DriverError if no driver exists for the backend.
     """
@@ -152,7 +152,7 @@ def has_inverter(machine: Machine) -> bool:
 
 
 def is_simulated(machine: Machine) -> bool:
-    """Return whether the machine is simulated, with or without a virtual bus."""
+    """Return whether the machine is simulated. A virtual bus also counts as simulated."""
     return find_backend(machine).is_simulated(machine)
 
 
@@ -166,7 +166,7 @@ FAILED_STATES = (
 
 
 class CheckRow(NamedTuple):
-    """One row of the machine check, with name, address, state and details."""
+    """One row of the machine check: name, address, state and details."""
 
     name: str
     at: str
@@ -195,7 +195,7 @@ class CheckRow(NamedTuple):
 
 @dataclass(slots=True)
 class CheckResults:
-    """Results of a machine check, which are rows, warnings, faults and process rights.
+    """Results of a machine check: rows, warnings, faults and process rights.
 
     ``warnings`` are notes about conditions that are not faults. ``rights`` are the rights that the
     operating system grants to the control process.

@@ -45,7 +45,7 @@ def connect_canopen_machine(
 ) -> CanopenMachine:
     """Connect to the bus that the machine file specifies.
 
-    Raises DriverError if the connection fails. The error names a missing library.
+    Raises DriverError if the connection fails. If a library is missing, the error names it.
     """
     try:
         from drivers.canopen.canopen_machine import CanopenMachine
@@ -142,7 +142,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
 def _encoder_config(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
     """Return the configuration of the spindle encoder, or None if the machine does not have one.
 
-    The encoder of a drive has no node entry, because the drive's node maps its second input.
+    An encoder connected to a drive has no node entry, because the drive's node maps its second input.
     """
     model = machine.hardware.find_driver_table(EncoderTable)
     if model is None:
@@ -160,7 +160,7 @@ def _terminal(text: str, first: str) -> CanTerminal:
 
 
 def _is_simulated(machine: Machine) -> bool:
-    """Return whether the bus is virtual, so that its devices are simulated in this process."""
+    """Return whether the bus is virtual. The devices of a virtual bus are simulated in this process."""
     can = machine.hardware.find_driver_table(CanopenTable)
     return can is not None and not can.supports_separate_process
 

@@ -30,7 +30,7 @@ def connect_machine(machine: Machine, clock: Clock, lock_descriptor: int | None 
 
 
 def remove_feature_inputs(machine: Machine) -> Machine:
-    """Return a copy of the machine that has only the inputs wired to its backend.
+    """Return a copy of the machine with only those inputs that are wired to its backend.
 
     The inputs that optional features provide are removed.
     """
@@ -50,5 +50,5 @@ def _connected(machine: Machine, clock: Clock, lock: int | None) -> ConnectedMac
 
 
 def needs_real_time(machine: Machine) -> bool:
-    """Return whether a part of the machine runs in real time, so that a manual clock cannot be used."""
+    """Return whether a part of the machine runs in real time and therefore cannot use a manual clock."""
     return has_inverter(machine) or not is_simulated(machine)

@@ -88,7 +88,7 @@ class DriverHostProcess:
         self.connection = HostConnection(link, clock, self._restart, self._bell)
 
     def _restart(self) -> ConnectionAttempt[HostLink]:
-        """Start a new process after the old process has ended, so that the bus never has two masters."""
+        """Start a new process after the old one has ended. The bus must never have two masters."""
 
         def begun() -> HostLink:
             self._end()
@@ -166,7 +166,7 @@ class DriverHostProcess:
 
 
 def get_setpoint_interval(machine: Machine) -> float:
-    """Return the time between setpoints in seconds, or 0 if the drives do not need each setpoint on time."""
+    """Return the time between setpoints in seconds, or 0 if the drives accept late setpoints."""
     can = machine.hardware.find_driver_table(CanopenTable)
     return can.sync if can is not None and can.mode in CYCLIC_MODES else 0.0
 

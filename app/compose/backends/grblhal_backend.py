@@ -59,7 +59,7 @@ def _play_devices(
     print_line: Callable[[str], None],
     _typed: Callable[[], Iterable[str]],
 ) -> None:
-    """Run a simulator of the controller on the TCP port of the machine file, or on a new pseudoterminal."""
+    """Simulate the controller on the TCP port in the machine file, or on a new pseudoterminal."""
     address = parse_tcp_address(create_grblhal_config(machine).table.port)
     end: TcpConnection | PtyConnection = PtyConnection() if address is None else TcpConnection(*address)
     print_line(
@@ -86,7 +86,7 @@ def _axis(axis: Axis, machine: Machine) -> GrblAxis:
 
 
 def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
-    """Connect a controller that plans motion on its own. The operator station is on the screen.
+    """Connect a controller that plans motion itself. The operator station is on the screen.
 
     If an inverter drives the spindle and the controller has an encoder, the encoder measures the spindle
     speed.
@@ -102,10 +102,10 @@ def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the names of the controller, a spindle with an encoder, and the inputs.
+    """Yield the names of the controller, the spindle if it has an encoder, and the inputs.
 
     Axis positions are only counts of steps, and the overrides are set on the screen. Hardware measures
-    neither.
+    neither the axis positions nor the overrides.
     """
     yield "controller"
     if machine.spindle.encoder_ppr:

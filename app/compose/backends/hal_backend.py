@@ -102,7 +102,7 @@ def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, st
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the names of axes and spindle with encoders, and of all inputs.
+    """Yield the names of all inputs, and of the axes and the spindle if they have encoders.
 
     A simulated board yields no names. The position of a step drive is only the number of steps sent.
     Without [board], the driver does not know the kind of the axes' drives.

@@ -1,4 +1,4 @@
-"""Writer of the LinuxCNC HAL file for a machine file, with the wiring table."""
+"""Generator of the LinuxCNC HAL file and the wiring table for a machine file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Connection of a frequency inverter on a serial line, which replaces the backend's own spindle."""
+"""Connection of a frequency inverter on a serial line. It replaces the spindle of the backend."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def add_inverter(
 ) -> tuple[MachinePorts, Callable[[], None]]:
     """Return the ports with the inverter as spindle, and a function that closes the devices.
 
-    The function closes the spindle and then the other devices. ``close`` closes the other devices. It is
+    The function closes the spindle and then calls ``close``, which closes the other devices. ``close`` is
     also called if the inverter does not respond. ``encoder`` is an encoder that measures the spindle speed.
     Raises DriverError if the inverter does not respond.
     """
@@ -101,7 +101,7 @@ def _attended(
 
 
 def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[UnknownPart]:
-    """Return the unknown parts of the backend.
+    """Return the parts of the machine whose state is unknown.
 
     The spindle is unknown if the inverter and its encoder do not report its state.
     """
@@ -117,7 +117,7 @@ def halt_with_inverter(ports: MachinePorts, spindle: InverterSpindle) -> None:
 
 
 class AxisOnlySamples:
-    """A ``SampleSource`` without the spindle values of a backend whose own spindle is not used.
+    """A ``SampleSource`` without spindle values, for a backend whose own spindle is not used.
 
     The scope record gets the values of the real spindle at each tick.
     """
@@ -127,9 +127,9 @@ class AxisOnlySamples:
         self._spindle = slice(1 + 3 * axis_count, 4 + 3 * axis_count)
 
     def take(self, max_rows: int = 8192) -> FloatArray:
-        """Return the samples with unknown spindle speed and revolutions.
+        """Return the samples of the backend with the last load of the inverter.
 
-        The samples contain the last load of the inverter.
+        The spindle speed and the revolutions are unknown.
         """
         rows = self._inner.take(max_rows)
         rows[:, self._spindle] = float("nan")

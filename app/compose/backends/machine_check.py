@@ -1,4 +1,4 @@
-"""Check of a connected machine, with the state of every node, drive, input and output."""
+"""Check of a connected machine and of the state of every node, drive, input and output."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:
 
 
 def _connect_in_process(machine: Machine, clock: Clock) -> ConnectedMachine:
-    """Connect the simulated machine in this process, with a real inverter if one drives the spindle."""
+    """Connect the simulated machine in this process. An inverter that drives its spindle is real."""
     ports, hands = create_simulation(machine, clock)
     close = _do_nothing
     if has_inverter(machine):

@@ -1,4 +1,4 @@
-"""Simulated drives and terminals on a real bus, which are operated by typed commands."""
+"""Simulated drives and terminals on a real bus. The user operates them by typing commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""First step of the screen's start, which finds a control that is still running or starts one."""
+"""First step of the screen's startup, which finds a running control or starts a new one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def find_or_start_control(machine_file: str | None) -> MachineAndControl:
-    """Return the machine of the file and its control, without waiting for the control.
+    """Return the machine of the file and its control, without waiting until the control is ready.
 
     The control is None if it runs in a thread of the screen's process. Raises CommandError if the machine
     file is invalid, or if a running control executes a program with a different machine file.

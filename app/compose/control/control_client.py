@@ -95,8 +95,8 @@ class ControlClient:
     ) -> None:
         """Wait for the first message of the control.
 
-        ``records`` of an earlier control continue with the data of this control. Raises DriverError if the
-        control reports an error, does not respond or has a different version.
+        The scope ``records`` of an earlier control continue with the data of this control. Raises
+        DriverError if the control reports an error, does not respond or has a different version.
         """
         self._connection, self.control_process = connection, process = started_control
         hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
@@ -141,7 +141,7 @@ class ControlClient:
         self._outbox.put(CommandMessage(command, self.clock.now()))
 
     def wait_for_snapshot(self, is_expected: Callable[[Snapshot], bool]) -> None:
-        """Wait until ``is_expected`` returns True for a snapshot, or until the time limit for a response."""
+        """Wait until ``is_expected`` returns True for a snapshot, or until the response times out."""
         until = time.monotonic() + REPLY_TIMEOUT_S
         while not is_expected(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
             self._came.wait(ALIVE_INTERVAL_S)
@@ -152,9 +152,9 @@ class ControlClient:
         self._outbox.put(StationAction(name, values, self.clock.now()))
 
     def pass_stop_socket(self, stop_socket: socket) -> None:
-        """Pass a socket to the control, and close the socket in this process.
+        """Pass a socket to the control and close it in this process.
 
-        The control receives stop keys from the socket.
+        The control then receives stop keys from it.
         """
         self._outbox.put(stop_socket)
 
@@ -183,9 +183,9 @@ class ControlClient:
                 self._kept.clear()
 
     def disconnect(self, *, end_control: bool) -> None:
-        """Disconnect before ``start_threads`` is called.
+        """Disconnect from the control. Call this method only before ``start_threads``.
 
-        ``end_control`` also ends the control, whose machine must be at rest.
+        ``end_control`` also ends the control. Its machine must then be at rest.
         """
         with self._connection, suppress(OSError, EOFError):
             if end_control:
@@ -195,7 +195,7 @@ class ControlClient:
                     self._connection.recv()  # until its process ends and closes the socket
 
     def ask_to_end(self) -> None:
-        """Ask the control to stop the machine and to end, without waiting for the end."""
+        """Ask the control to stop the machine and end. The method does not wait for the end."""
         self._outbox.put(CloseRequest())
 
     def stop_and_close(self) -> None:
@@ -300,19 +300,19 @@ class ControlStationControls(PostedControls):
 
 
 class ControlRecordings(ScopeRecordings):
-    """Scope recordings of the control. ``handle_event`` receives the events that name alarm records."""
+    """Scope recordings of the control. ``handle_event`` receives the events that announce them."""
 
     def __init__(self, ring: ScopeRing, folder: Path, storage_error: str) -> None:
         super().__init__(ring, folder, storage_error)
         self._named: dict[str, float] = {}  # announced records by name, with the time in s
 
     def handle_event(self, event: LogEvent) -> None:
-        """Remember the name of a record that is being written, as named in the event."""
+        """Store the name of a scope record that the control is writing. The event contains the name."""
         if event.record_name:
             self._named.setdefault(event.record_name, time.monotonic())
 
     def is_saving(self, name: str) -> bool:
-        """Return whether the record was announced but its file does not exist yet."""
+        """Return whether the control has announced the record but its file does not exist yet."""
         there = self.folder is not None and (self.folder / name).exists()
         return not there and time.monotonic() < self._named.get(name, -_SAVE_TIMEOUT_S) + _SAVE_TIMEOUT_S
 
@@ -353,9 +353,9 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
     """Return the client of a control that is still running after its screen was killed, or None.
 
     The control listens at the socket ``path``. The result is None if no control is running, or if a
-    different screen is connected to the control. A control at rest that has a different machine file is
-    closed, and the result is also None. Raises DriverError if a control with a different machine file is
-    running a program, has a different version or does not respond.
+    different screen is connected to the control. If a control at rest has a different machine file, it is
+    closed and the result is None. Raises DriverError if a control with a different machine file is running
+    a program, or if the control has a different version or does not respond.
     """
     connection = _connect(path)
     if connection is None:

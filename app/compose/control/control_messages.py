@@ -1,7 +1,7 @@
 """Messages between the screen and the control process, sent as pickled tuples over one socket.
 
-Both processes belong to the same user. Times are in seconds of one monotonic clock, whose zero the control
-sends.
+Both processes belong to the same user. Times are in seconds of one monotonic clock. The control sends the
+zero of this clock.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class CloseRequest(NamedTuple):
 
 
 class HelloMessage(NamedTuple):
-    """First message of the control, which is followed by the file descriptor of the scope's shared memory."""
+    """First message of the control. The file descriptor of the scope's shared memory follows it."""
 
     version: int
     process_id: int  # number of its process
@@ -93,7 +93,7 @@ class HelloMessage(NamedTuple):
 
 
 class ControlFailedMessage(NamedTuple):
-    """Last message of a control that cannot be used, with the reason."""
+    """Last message of a control that cannot run. The message contains the reason."""
 
     reason: str
 
@@ -116,7 +116,7 @@ class EventMessage(NamedTuple):
 
 
 class InterruptedJobNote(NamedTuple):
-    """Job that a power failure would interrupt now, or None."""
+    """Message with the job that a power failure would interrupt now, or None if no job is running."""
 
     job: InterruptedJob | None
 

@@ -75,7 +75,7 @@ def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
 
 
 def _serve_connection(server: ControlServer, connection: Connection) -> None:
-    """Serve a screen in a new thread, so that a second screen receives a response at the same time."""
+    """Serve a screen in a new thread. A second screen thus receives a response without waiting."""
     threading.Thread(target=server.serve_screen, args=(connection,), name="screen", daemon=True).start()
 
 

@@ -374,7 +374,7 @@ class ControlServer:
             self.closing_event.set()
 
     def _run_without_screen(self) -> None:
-        """React to the loss of the screen, which can no longer stop the machine or count parts."""
+        """React to the loss of the screen, which counts parts and sends stop keys."""
         self._saved = NOT_SAVED
         if self._machine.hardware.continues_without_screen:
             self.executor.post(BlockNextPart(_NO_SCREEN_TEXT))
@@ -391,7 +391,7 @@ class ControlServer:
 
 
 def _row(event: LogEvent, began: datetime) -> EventRow:
-    """Return the event as a row of the event log. ``began`` is the zero of the control's clock."""
+    """Return the event as a row of the event log. ``began`` is the time zero of the control's clock."""
     at = format_utc(began + timedelta(seconds=event.time_s))
     return EventRow(at, event.kind, event.text, event.line_number, event.record_name)
 

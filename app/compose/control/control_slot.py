@@ -77,7 +77,7 @@ class ControlSlot:
 def _locked_later(path: Path, limit: float) -> int:
     """Wait until the drivers of the last owner have ended, and return the locked file.
 
-    Raises DriverError after ``limit`` seconds, and OSError if the file cannot be opened.
+    Raises DriverError if ``limit`` seconds pass first, and OSError if the file cannot be opened.
     """
     until = time.monotonic() + limit
     while (file := _locked(path)) is None:
@@ -90,7 +90,7 @@ def _locked_later(path: Path, limit: float) -> int:
 def _locked(path: Path) -> int | None:
     """Return the file opened with an exclusive lock, or None if another process has locked it.
 
-    Raises OSError.
+    Raises OSError if the file cannot be opened.
     """
     file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:

@@ -1,6 +1,6 @@
 """Start of the control process.
 
-A screen starts the process first, so that it loads while the window opens.
+A screen starts this process before anything else, so that the process loads while the window opens.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SLOT_NAMES = ("control", "control-2", "control-3", "control-4")
 
 
 class StartedControl(NamedTuple):
-    """Connection to a control, with its process, or None if a different screen started the process."""
+    """Connection to a control and its process. The process is None if a different screen started it."""
 
     connection: Connection
     process: subprocess.Popen[bytes] | None
@@ -49,10 +49,10 @@ def list_socket_paths(folder: Path) -> list[Path]:
 
 
 def start_control(machine: Machine, folder: Path, clock_zero_s: float | None = None) -> StartedControl:
-    """Start the control process for this machine and data folder without waiting for it.
+    """Start the control process for this machine and data folder without waiting until it is ready.
 
-    ``clock_zero_s`` is the zero of the control's clock, in seconds of the computer's monotonic clock. None
-    means now.
+    ``clock_zero_s`` is the time zero of the control's clock, in seconds of the computer's monotonic clock.
+    If it is None, the clock starts at zero now.
     """
     ours, theirs = socket.socketpair()
     with theirs:

@@ -1,4 +1,4 @@
-"""Passing of shared memory and of the socket for stop keys as file descriptors through a connection."""
+"""Passing of file descriptors for shared memory and the stop-key socket through a connection."""
 
 from __future__ import annotations
 

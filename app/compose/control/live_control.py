@@ -1,4 +1,4 @@
-"""The control that the screen uses, and its replacement by a new control after it has ended or hangs."""
+"""The control that the screen uses. A new control replaces it after it has ended or hangs."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ ShowText = Callable[[str], None]
 
 
 class LiveControl:
-    """The control process of the screen, which ``restart`` replaces after it has ended or does not respond.
+    """The control process of the screen. ``restart`` replaces a process that has ended or does not respond.
 
     A machine never has two controls at the same time. The old process has ended before a new control
-    starts, and the new control waits until the old driver host has ended (``control_slot.py``). Methods
-    can be called from any thread. Only ``close`` waits.
+    starts, and the new control waits until the old driver host has ended (``control_slot.py``). Methods can
+    be called from any thread. Only ``close`` waits.
     """
 
     def __init__(self, client: ControlClient, machine: Machine, folder: Path) -> None:
@@ -66,7 +66,7 @@ class LiveControl:
         return self._client
 
     def start_threads(self, handlers: ControlEventHandlers, show_text: ShowText) -> None:
-        """Start to receive and send messages. ``show_text`` shows the operator the progress of a restart."""
+        """Start the threads for messages. ``show_text`` shows the operator the progress of a restart."""
         self._events = replace(handlers, on_interrupted_job=self._note)
         self._noted, self._say = handlers.on_interrupted_job, show_text
         self._client.start_threads(self._events)
@@ -98,7 +98,7 @@ class LiveControl:
         self._client.report_alive(snapshot)
 
     def open_stop_socket(self) -> socket | None:
-        """Return a socket that sends stop keys directly to the current control, without this process."""
+        """Return a socket that sends stop keys directly to the current control, bypassing this process."""
         ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
         with self._lock:
             if self._line is not None:
@@ -122,7 +122,7 @@ class LiveControl:
     def restart(self) -> None:
         """Replace a control that has ended or is silent with a new control, in a separate thread.
 
-        A restart that is already in progress continues.
+        If a restart is already in progress, this call has no effect.
         """
         with self._lock:
             if not self._closing.is_set() and not self.is_restarting:

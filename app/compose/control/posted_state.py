@@ -1,4 +1,4 @@
-"""State that the screen has sent to the control, and that a replacement control needs."""
+"""State that the screen has sent to the control. A replacement control needs the same state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Handle of a process on this computer, which may have been started by another process."""
+"""Handle of a process on this computer, including a process that another process started."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rights of the control process, which are real-time priority, locked memory and the nice value."""
+"""Rights of the control process: real-time priority, locked memory and the nice value."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
 
 class ProcessRight(NamedTuple):
-    """A right of the process, with the granted value and the consequence if the system refused the right."""
+    """A right of the process with the granted value. A refused right also has the consequence."""
 
     name: str
     granted: str
@@ -29,14 +29,14 @@ class ProcessRight(NamedTuple):
 
 
 def acquire_rights() -> tuple[ProcessRight, ...]:
-    """Request all rights for this process and return the result of each request. Raises no exception."""
+    """Request all rights for this process, and return the result of each request. No exception is raised."""
     scheduling = _scheduling()
     others = (_nice(), *_check_autogroup()) if scheduling.missing else ()
     return scheduling, _memory(), *others
 
 
 def check_rights() -> tuple[ProcessRight, ...]:
-    """Return the rights that a control would receive. This process gives the rights back afterwards."""
+    """Return the rights that a control would receive. This process gives them up again afterwards."""
     policy, priority, nice = (
         os.sched_getscheduler(0),
         os.sched_getparam(0),
@@ -83,7 +83,7 @@ def _nice() -> ProcessRight:
 
 
 def _check_autogroup() -> tuple[ProcessRight, ...]:
-    """Return a warning row if the kernel groups processes by session, or () otherwise.
+    """Return a warning row if the kernel groups processes by session, and otherwise ().
 
     With these groups, nice values apply only within one session.
     """

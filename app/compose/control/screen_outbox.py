@@ -1,4 +1,4 @@
-"""The messages that wait until the control process can send them to the screen."""
+"""Messages that wait until the control process can send them to the screen."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class ScreenOutbox:
         self._shown: Snapshot | None = None
 
     def request_snapshot(self) -> None:
-        """Request that the sender sends the newest snapshot."""
+        """Make the sender send the newest snapshot."""
         self._ready.set()
 
     def request_changed_snapshot(self) -> None:
-        """Request that the sender immediately sends the newest snapshot, marked as changed."""
+        """Make the sender send the newest snapshot immediately, marked as changed."""
         self._stirred = True
         self._ready.set()
 
@@ -83,7 +83,7 @@ class ScreenOutbox:
         self._ready.set()
 
     def report_closed(self) -> None:
-        """Request that the sender reports that the machine is closed."""
+        """Make the sender report that the machine is closed."""
         self._closed = True
         self._ready.set()
 
@@ -125,7 +125,7 @@ class ScreenOutbox:
 
 
 def send_message(connection: Connection, message: object) -> None:
-    """Send one message. A message that cannot be pickled is logged and omitted. Raises OSError."""
+    """Send one message. If it cannot be pickled, log and omit it. Raises OSError if the connection ends."""
     with ReportedAttempt(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
         data = ForkingPickler.dumps(message)
     if trial.error is None:

@@ -30,9 +30,9 @@ def save_note(folder: Path, job: InterruptedJob | None) -> None:
 
 
 def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
-    """Return whether a control without a screen has saved a note, and the interrupted job of the note.
+    """Return whether a control without a screen has saved a note, and its interrupted job.
 
-    The note is deleted.
+    The note is then deleted.
     """
     path = folder / NOTE_FILE_NAME
     try:
@@ -45,7 +45,7 @@ def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
 
 
 def remove_note(folder: Path) -> None:
-    """Delete the note, because a connected screen has stored its contents."""
+    """Delete the note. A connected screen has already stored its contents."""
     with suppress(OSError):
         (folder / NOTE_FILE_NAME).unlink(missing_ok=True)
 

@@ -1,1 +1,1 @@
-"""Machine files, and the program setups, setup files and manual pages that are made from them."""
+"""Machine files, and the program setups, setup files and manual pages generated from them."""

@@ -22,7 +22,7 @@ class SettingsReader(Protocol):
     """Reader of settings in the store."""
 
     def read_setting(self, key: str) -> object:
-        """Return the setting that the store has for this key."""
+        """Return the value that the store has for this settings key."""
         ...
 
 
@@ -92,9 +92,9 @@ def guard_commands(
     reviewed_changes: MachineFileChanges,
     report_refusal: Callable[[str], None],
 ) -> Callable[[Command], None]:
-    """Return a function that posts commands, but rejects switching on the drives in some cases.
+    """Return a function that posts commands but does not always permit switching on the drives.
 
-    The drives cannot be switched on while changes of the machine file are not accepted.
+    It rejects that command while changes of the machine file are not accepted.
     """
 
     def give(command: Command) -> None:

@@ -1,4 +1,4 @@
-"""Modules that declare the drivers' tables in a machine file, loaded only for files that need them."""
+"""Modules that declare the drivers' tables in a machine file, each loaded only when needed."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class DriverModule(NamedTuple):
     """Location of a ``DriverDeclaration``, with the names in a machine file that require it.
 
     ``tables`` are the paths of its tables. ``backend_name`` and ``spindle`` are the names of a backend and
-    of a spindle driver. ``attribute_name`` is the name of the ``DriverDeclaration`` in the module.
-    ``is_always_loaded`` loads the module for every file.
+    of a spindle driver. ``attribute_name`` is the name of the ``DriverDeclaration`` in the module. If
+    ``is_always_loaded`` is true, the module is loaded for every file.
     """
 
     module_name: str
@@ -68,7 +68,7 @@ def load_all_drivers() -> tuple[DriverDeclaration, ...]:
 def load_used_drivers(file_data: Mapping[str, object]) -> tuple[DriverDeclaration, ...]:
     """Return the drivers that a parsed machine file uses through a table or a name.
 
-    A file without errors results in the same machine with these drivers as with all drivers.
+    For a file without errors, these drivers and the set of all drivers result in the same machine.
     """
     return _loaded(
         each for each in list_driver_modules() if each.is_always_loaded or _is_used(each, file_data)

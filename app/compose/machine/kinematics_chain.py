@@ -12,7 +12,7 @@ _LINEAR_AXES = ("X", "Y", "Z")
 
 
 def build_kinematics(machine: Machine) -> Kinematics | None:
-    """Return the linear and rotary axes of a mill, or None without a Y axis or a [kinematics] table."""
+    """Return the axes of a mill, or None if the machine has no Y axis or no [kinematics] table."""
     names = tuple(axis.name for axis in machine.axes)
     if machine.kinematics is None or not set(_LINEAR_AXES) <= set(names):
         return None

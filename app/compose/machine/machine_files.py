@@ -1,4 +1,4 @@
-"""Reading of shipped and other machine files by name or path, with the tables that drivers add."""
+"""Reading of machine files by name or path, including the tables that drivers declare."""
 
 from __future__ import annotations
 

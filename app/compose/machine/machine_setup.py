@@ -1,7 +1,7 @@
 """Reading of the machine file, and creation of the setup in which a program is executed.
 
-The machine in use is the machine for which the operator screen was last opened. Commands about offsets use
-its travel.
+The machine in use is the machine for which the operator screen was last opened. Commands for offsets check
+values against its travel.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def get_control_limits(machine: Machine) -> ControlLimits:
 
 @dataclass(frozen=True, slots=True)
 class InputStates:
-    """Picklable states of inputs by name for conditional calls. An unknown input is open."""
+    """Picklable states of inputs by name, for conditional calls. An input without a state is open."""
 
     states_by_name: Mapping[str, bool]
 
@@ -127,7 +127,7 @@ def store_machine(machine_file: str | None, persistence: Persistence) -> None:
 
 
 def read_machine_file_in_use(settings: SettingsReader) -> str | None:
-    """Return the path of the machine file in use, or the name of a shipped machine.
+    """Return the path of the machine file in use, or the name of the shipped machine in use.
 
     The result is None if neither is stored.
     """

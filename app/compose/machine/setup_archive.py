@@ -93,7 +93,7 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
 
 
 def describe_problem(name: str, path: Path) -> CodedError | None:
-    """Return the reason why a file cannot be a member called ``name``, or None if it can. Raises OSError."""
+    """Return why this file cannot be a member ``name``, or None. Raises OSError if it is unreadable."""
     top = name.partition("/")[0]
     try:
         _check_path(name)
@@ -236,7 +236,7 @@ def _no_place() -> CommandError:
 
 
 def _check_path(name: str) -> None:
-    """Raise CommandError or StoreError if a setup must not contain this name."""
+    """Raise CommandError or StoreError if this name is not permitted in a setup."""
     parts = PurePosixPath(name).parts
     if name == STORE:
         return

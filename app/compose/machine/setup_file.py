@@ -103,7 +103,7 @@ def _programs(folder: Path) -> list[str]:
 
 
 def _list_machine_members(named: str | None) -> dict[str, Path]:
-    """Return the machine file and the files with the same stem in its folder.
+    """Return the machine file and those files in its folder that have the same stem, by member name.
 
     Raises CommandError if the machine file is invalid.
     """
@@ -157,7 +157,7 @@ def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, .
 
 
 def _check_loadable(path: Path, target: Path) -> None:
-    """Raise CommandError if the archive exceeds the limits of ``load_setup``."""
+    """Raise CommandError if the archive is too large for ``load_setup``."""
     try:
         with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
             unpack_archive(path, Path(name))

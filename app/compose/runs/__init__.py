@@ -1,1 +1,1 @@
-"""Services and records of a run, which are the journal, the event log and the error log."""
+"""Services and records of a run: the journal, the event log and the error log."""

@@ -44,7 +44,7 @@ class ErrorLog:
 
     @property
     def error_text(self) -> str:
-        """Return the reason why the log cannot be written, or an empty text.
+        """Return the reason why the log cannot be written, or an empty string if it can.
 
         Reading this property also retries the write after a delay.
         """
@@ -95,7 +95,7 @@ class _File(logging.handlers.RotatingFileHandler):
             self.error_text = ""
 
     def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802  logging's own name
-        """Store the reason of a write error."""
+        """Store the reason for a write error."""
         error = sys.exc_info()[1]
         what = error.strerror if isinstance(error, OSError) else error
         self.has_failed, self.error_text = (

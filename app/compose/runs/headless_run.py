@@ -68,7 +68,7 @@ class HeadlessToolLife:
     def update(self, snapshot: Snapshot, proof: Proof) -> None:
         """Count the use of tools, and report tools that must be replaced.
 
-        The method blocks the next part if necessary.
+        If a tool must be replaced, the method prevents the start of the next part.
         """
         if not self._book.load_count:
             return
@@ -101,8 +101,8 @@ def run_headless(
     A machine that is not simulated runs in real time. ``discard_interrupted`` permits a start after an
     interrupted job. The scope record is saved in the folder of records and contains at least the last
     ``duration_s`` seconds of samples. A run in real time counts tool life, parts and cycles as on the
-    screen, but a faster run counts nothing. Raises CommandError if the machine does not respond, if inputs
-    do not exist or are wired, or if a job was interrupted.
+    screen, but a faster run counts nothing. Raises CommandError if the machine does not respond, if an
+    input does not exist or is wired, or if a job was interrupted.
     """
     paced = _is_real_time(machine, is_real_time)
     with (
@@ -176,7 +176,7 @@ def _connect(machine: Machine, real_time: bool) -> Iterator[tuple[RealClock | Ma
 def _open_journal(
     machine: Machine, *, discard_interrupted: bool, real_time: bool, print_line: Callable[[str], None]
 ) -> Iterator[tuple[Journal | None, StoreFunction]]:
-    """Yield the journal of the run, or None, and the function that saves the interrupted job.
+    """Yield the journal of the run, which may be None, and the function that saves an interrupted job.
 
     A simulated machine does not save an interrupted job.
     """
@@ -235,7 +235,7 @@ def _start_function(
 ) -> Callable[[], None] | None:
     """Return the function that starts a cycle, or None if a command may start the cycle.
 
-    The function presses the palm buttons of the screen's station, or asks the user to press the real
+    The function presses the palm buttons of the station on the screen, or asks the user to press the real
     buttons.
     """
     panel = connected.on_screen_station

@@ -49,11 +49,11 @@ RETRY_INTERVAL_S = 5.0  # s between two attempts to open a store
 
 
 def _do_nothing() -> None:
-    """Do nothing when a store opens late, because no callback is set."""
+    """Do nothing. This is the default callback for a store that opens late."""
 
 
 class Journal(Persistence):
-    """Access of the operator screen to the store. The store's thread writes, so that callers do not wait.
+    """Access of the operator screen to the store. A separate thread writes, so that callers do not wait.
 
     The machine also works if the store cannot be opened. Events are then buffered in memory. If the cause
     is temporary, such as a full disk, the store is opened as soon as possible.
@@ -99,7 +99,7 @@ class Journal(Persistence):
     def _open(self) -> Store:
         """Open the store, and on the first call read the data that the last control has left.
 
-        Raises StoreError. The store is released first, because its lock would prevent later attempts.
+        Raises StoreError on failure. The store is then closed, because its lock would block later attempts.
         """
         store = Store.open(self._folder)
         try:
@@ -111,7 +111,7 @@ class Journal(Persistence):
         return store
 
     def _read_interrupted(self, store: Store) -> None:
-        """Read reports of damage, the interrupted job, and runs without an end. Raises StoreError."""
+        """Read damage reports, the interrupted job, and runs without an end. Raises StoreError on failure."""
         self.damage = (*store.repair_messages, *store.find_damaged_rows())
         self._last_origin = store.runs.read_last_origin()
         left = None
@@ -147,13 +147,13 @@ class Journal(Persistence):
     def write_error(self) -> str:
         """Return the reason why nothing is saved or why the last write failed.
 
-        The text is empty if the last write succeeded.
+        The result is an empty string if the last write succeeded.
         """
         return self._write_error or (self._store.write_error if self._store else "")
 
     @property
     def held(self) -> str:
-        """Return a description of the entries that wait in memory, or an empty text if no entries wait."""
+        """Return a description of the entries that wait in memory, or an empty string if there are none."""
         store, held = self._store, self._held
         if store is not None:
             return store.pending_entries.description if store.pending_entries is not None else ""
@@ -173,7 +173,7 @@ class Journal(Persistence):
         self._post(lambda store: store.settings.save_setting(INTERRUPTED_JOB_KEY, value))
 
     def book(self) -> OffsetBook:
-        """Return the stored offsets, which the screen can show and change."""
+        """Return the book of stored offsets, through which the screen shows and changes them."""
         store = self._store
         book = OffsetBook(
             store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.write_error)
@@ -186,7 +186,7 @@ class Journal(Persistence):
         return book
 
     def _read_other_rows(self) -> OffsetRows | None:
-        """Return the offsets of a store that another process writes, or None if they cannot be read."""
+        """Return the offsets of a store that is open in another process, or None if they cannot be read."""
         if not has_store(self._folder):
             return None
         try:
@@ -196,7 +196,7 @@ class Journal(Persistence):
             return None
 
     def create_parts_book(self, tool_kind: OffsetKind = OffsetKind.TOOL) -> PartsBook:
-        """Return the measured parts and the tool lives in the store.
+        """Return the book of measured parts and tool lives in the store.
 
         ``tool_kind`` is the tool table of this machine.
         """
@@ -206,9 +206,9 @@ class Journal(Persistence):
         return book
 
     def _attach_book(self, book: OffsetBook | PartsBook, store: Store | None) -> None:
-        """Register a book that must use a new store after each change.
+        """Register a book that must use the new store whenever the store is replaced.
 
-        This includes a change of the store while the book is being created.
+        The store may also be replaced while the book is being created.
         """
         self._books.append(book)
         if self._store is not store:
@@ -234,7 +234,7 @@ class Journal(Persistence):
         return last is not None and origin.control == last.control and origin.number <= last.number
 
     def resume_recording(self, snapshot: Snapshot) -> None:
-        """Resume the recording of a control that ran without this process, before its events are received."""
+        """Resume recording for a control that ran without this process, before its events arrive."""
         with self._lock:
             self._program = snapshot.program
             if snapshot.state in CYCLE_STATES and self._store is not None:
@@ -262,23 +262,23 @@ class Journal(Persistence):
             )
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
-        """Return all versions of a program, with the newest version first.
+        """Return all versions of a program, newest first. Raises StoreError if they cannot be read.
 
-        Raises StoreError. Do not call this method in the screen's thread.
+        Do not call this method in the screen's thread.
         """
         return self.require_store().programs.list_versions(name)
 
     def read_version_text(self, name: str, version: int) -> bytes:
         """Return the text of a saved version.
 
-        Raises StoreError. Do not call this method in the screen's thread.
+        Raises StoreError if it cannot be read. Do not call this method in the screen's thread.
         """
         return self.require_store().programs.load_version(name, version)
 
     def save_version(self, name: str, text: bytes, reason: str) -> int:
         """Save a version, wait until it is on the disk, and return its number.
 
-        Raises StoreError. Do not call this method in the screen's thread.
+        Raises StoreError if saving fails. Do not call this method in the screen's thread.
         """
         return self.require_store().programs.save_version(name, text, reason, author=self.who()).result()
 
@@ -294,7 +294,7 @@ class Journal(Persistence):
     def save_settings(self, values: Mapping[str, object]) -> None:
         """Save settings and wait until they are on the disk.
 
-        Raises StoreError. Do not call this method in the screen's thread.
+        Raises StoreError if saving fails. Do not call this method in the screen's thread.
         """
         store = self.require_store()
         for written in [store.settings.save_setting(key, value) for key, value in values.items()]:
@@ -314,12 +314,12 @@ class Journal(Persistence):
 
     @property
     def runs(self) -> RunRecords | NullRunRecords:
-        """Return the run records of the open store, or an empty substitute without a store."""
+        """Return the run records of the open store, or an empty substitute if no store is open."""
         store = self._store
         return store.runs if store is not None else NullRunRecords(self._write_error or STORE_CLOSED_TEXT)
 
     def people(self) -> UserList:
-        """Return the users, even from a store that another process writes. Raises StoreError."""
+        """Return the users, even if another process writes the store. Raises StoreError on failure."""
         store = self._store
         if store is not None:
             return store.people.read_users()
@@ -333,8 +333,8 @@ class Journal(Persistence):
     def read_last_run_tools(self, program: str) -> tuple[str, dict[int, ToolRow]]:
         """Return the UTC start time of the program's last run, and the tool offsets at that time.
 
-        The result is empty if the program has not run. Raises StoreError. Call this method in a worker
-        thread.
+        The result is empty if the program has not run. Raises StoreError if the store cannot be read. Call
+        this method in a worker thread.
         """
         store = self.require_store()
         started = next((row.started for row in store.runs.read_records() if row.program == program), None)
@@ -352,12 +352,12 @@ class Journal(Persistence):
             store.programs.rename_program(old_name, new_name).result()
 
     def backup(self, target: Path) -> None:
-        """Copy the store to ``target``, even while the store is being written. Raises StoreError."""
+        """Copy the store to ``target``, even while it is being written. Raises StoreError on failure."""
         self.require_store()
         backup.back_up_store(self._folder, target)
 
     def check_backup(self, source: Path) -> BackupVerdict:
-        """Check a backup, compare it with the store, and return the result. Raises StoreError."""
+        """Check a backup against the store, and return the result. Raises StoreError on failure."""
         self.require_store()
         with closing(
             store_connection.connect_store(self._folder / STORE_FILE_NAME, is_read_only=True)
@@ -367,9 +367,8 @@ class Journal(Persistence):
     def restore(self, source: Path) -> Path | None:
         """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Raises StoreError.
-
-        Afterwards a store is open in any case, either the restored store or the old store.
+        Raises StoreError if the restore fails. Either way, a store is open afterwards: the restored store
+        or the old store.
         """
         with self._lock:
             store, self._store = self.require_store(), None
@@ -412,8 +411,8 @@ class Journal(Persistence):
     def on_late_open(self, callback: Callable[[], None]) -> None:
         """Set the function to call when a store that was unavailable at startup has been read.
 
-        The function is called in a different thread, or immediately if the store has already been read
-        late. ``left`` and ``damage`` are then known.
+        The function is called in a different thread, or immediately if the late store was already read.
+        ``left`` and ``damage`` are known when the function is called.
         """
         self._tell_late = callback
         if self._late:
@@ -421,11 +420,11 @@ class Journal(Persistence):
 
     @property
     def waiting(self) -> bool:
-        """Return whether a temporary error prevented opening the store, so that opening is retried."""
+        """Return whether a temporary error prevented opening the store, so that the journal will retry."""
         return self._store is None and self._opener is not None
 
     def _retry_open(self) -> None:
-        """Retry opening the store until it succeeds, for example when the disk has space again."""
+        """Retry opening the store until it succeeds, for example after space on a full disk was freed."""
         while not self._closing.wait(RETRY_INTERVAL_S):
             self._reopen()
             if self._store is not None:

@@ -22,7 +22,7 @@ MAX_AGE_S = 366 * 86_400.0  # s
 
 
 class _LogFile(NamedTuple):
-    """A file in the log folder, with its age in seconds and its size in bytes."""
+    """A file in the log folder with its age in seconds and its size in bytes."""
 
     path: Path
     age_s: float
@@ -87,7 +87,7 @@ class EventLog:
 def delete_old_files(folder: Path, newest_path: Path) -> None:
     """Delete the oldest run and crash files beyond ``MAX_FILES``, ``MAX_TOTAL_BYTES`` and ``MAX_AGE_S``.
 
-    The file ``newest_path`` is being written and is not deleted. Files that cannot be deleted are ignored.
+    ``newest_path``, which is being written, is not deleted. Files that cannot be deleted are ignored.
     """
     with suppress(OSError):
         kept = [_kept(path) for what in ("*.jsonl", "crash-*.txt") for path in folder.glob(what)]

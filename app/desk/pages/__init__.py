@@ -1,1 +1,1 @@
-"""Code that the pages share, such as tables, keys, code help and the conditions for opening a page."""
+"""Code that the pages share: tables, keys, code help and the conditions for opening a page."""

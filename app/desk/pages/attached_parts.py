@@ -17,7 +17,7 @@ DRIVERS_CLOSE_TIMEOUT_S = 10.0  # Seconds for stopping an inverter and for a dri
 
 
 class AttachedModel(Protocol):
-    """Model of a page or of a background worker, which closes together with TurnDesk."""
+    """Model of a page or of a background worker. It is closed together with TurnDesk."""
 
     def close(self) -> None:
         """End the work of the model when TurnDesk closes."""
@@ -30,7 +30,7 @@ class StartHandler(Protocol):
     is_open: bool
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
+        """Return the reason why the start buttons have no effect, or an empty string if they work."""
         ...
 
 
@@ -42,7 +42,7 @@ class FrameWatcher(Protocol):
         ...
 
     def find_reminder(self) -> str:
-        """Return a reminder of what the operator must do soon, or an empty text without a reminder."""
+        """Return a reminder of an action that the operator must soon take, or an empty string."""
         ...
 
 

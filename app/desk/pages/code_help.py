@@ -30,7 +30,7 @@ class CodeHelp:
     _asked: tuple[str, int] = field(default=("", 0))
 
     def update_for_cursor(self, code_book: CodeBook | None, line: str, column: int) -> None:
-        """Update the help for the cursor position. Without a code book, no code is known yet."""
+        """Update the help for the cursor position. No code is known until a code book is available."""
         if code_book is self._book and (line, column) == self._asked:
             return
         self._book, self._asked = code_book, (line, column)
@@ -39,8 +39,8 @@ class CodeHelp:
     def open_choices(self) -> bool:
         """List the completions of the typed text, or the chapter of the code at the cursor.
 
-        The chapter is listed if there are no completions. Returns False without a code book, because the
-        text is still being proved for the first time.
+        The chapter is listed if there are no completions. Returns False if no code book exists yet, because
+        the text is still being proved for the first time.
         """
         if self._book is None:
             return False
@@ -56,7 +56,7 @@ class CodeHelp:
         return True
 
     def _show_chapter(self, number: int) -> None:
-        """List a chapter of the code book. Numbers past the end continue at the beginning."""
+        """List a chapter of the code book. Chapter numbers past the end start again at the first chapter."""
         assert self._book is not None  # The caller has checked that a book exists.
         self.title, self.choices = self._book.chapters[number % len(self._book.chapters)]
         self.marked = self.choices.index(self.current_entry) if self.current_entry in self.choices else 0

@@ -8,7 +8,7 @@ from app.desk.pages.table_content import FunctionKey
 
 
 class PanelModel:
-    """Panel without functions, for an editor without such a feature. A feature overrides all members.
+    """Panel without functions, for an editor whose panel is not installed. A feature overrides all members.
 
     ``text`` is the program with the lines that the panel writes. ``text_number`` counts the texts to prove.
     ``write_count`` counts the texts that replace the editor's text. After each replacement, the cursor

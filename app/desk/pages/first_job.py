@@ -62,12 +62,12 @@ class FirstJobCard:
 
     @classmethod
     def from_store(cls, persistence: Persistence) -> FirstJobCard:
-        """Return the card at the step that was current when TurnDesk was closed. Raises StoreError."""
+        """Return the card at the step that was stored. Raises StoreError if the store cannot be read."""
         at = persistence.read_setting(STEP_SETTING)
         return cls(at, _saved=at) if isinstance(at, int) and 0 <= at <= len(FIRST_JOB_STEPS) else cls()
 
     def save_step(self, persistence: Persistence) -> None:
-        """Save the step if it has changed. Raises StoreError."""
+        """Save the step if it has changed. Raises StoreError if saving fails."""
         if self.step_index != self._saved:
             self._saved = self.step_index
             persistence.save_setting(STEP_SETTING, self.step_index)

@@ -1,10 +1,10 @@
-"""Conditions for opening a page or a program, which both the keys and the page check.
+"""Conditions for opening a page or a program. Both the keys and the page check them.
 
 The original control cancels the spindle-on command when its editor is opened, so that the operator does not
-type next to a turning chuck. The executor has no command for only this purpose, because Reset also cancels
-the program. TurnDesk therefore does not open the editor until the spindle has stopped. While a cycle runs,
-the machine uses the program as it was loaded. A different program can be edited and proved during that
-time. Pause, Scroll Lock and Esc stop the machine as on other pages.
+type next to a turning chuck. The executor has no command that only stops the spindle, because Reset also
+cancels the program. TurnDesk therefore does not open the editor until the spindle has stopped. While a
+cycle runs, the machine uses the program as it was loaded. A different program can be edited and proved
+during that time. Pause, Scroll Lock and Esc stop the machine as on other pages.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ STOP_AXES_FIRST = "AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM"
 
 
 def find_program_refusal(snapshot: Snapshot) -> str:
-    """Return why a different program cannot be chosen now, or an empty text if a program can be chosen."""
+    """Return the reason why no other program can be chosen now, or an empty string if one can."""
     if snapshot.state in MANUAL_STATES:
         return STOP_AXES_FIRST
     return PROGRAM_RUNNING if snapshot.state in ACTIVE_STATES else ""
 
 
 def find_editor_refusal(snapshot: Snapshot, *, has_name: bool = True) -> str:
-    """Return why the editor cannot be opened now, or an empty text if it can be opened.
+    """Return the reason why the editor cannot be opened now, or an empty string if it can be opened.
 
     ``has_name`` is False if no program is selected.
     """
@@ -51,14 +51,14 @@ def find_editor_refusal(snapshot: Snapshot, *, has_name: bool = True) -> str:
 
 
 def find_mdi_refusal(snapshot: Snapshot) -> str:
-    """Return why MDI cannot be opened now, or an empty text if it can be opened."""
+    """Return the reason why MDI cannot be opened now, or an empty string if it can be opened."""
     if snapshot.state in CYCLE_STATES:
         return tr("TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     return ""
 
 
 def find_searchto_refusal(snapshot: Snapshot, loaded: LoadedProgram) -> str:
-    """Return why SEARCHTO cannot be opened or continued now, or an empty text if SEARCHTO is possible."""
+    """Return the reason why SEARCHTO cannot be opened or continued now, or an empty string if it can."""
     if snapshot.state in CYCLE_STATES:
         return tr("TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     if loaded.source is None or loaded.job is None:

@@ -36,7 +36,7 @@ class PageRegistry:
         self._attached[type(model)] = model
 
     def attach_lazily(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
-        """Register a model that the first ``find_model`` creates.
+        """Register a model that the first call of ``find_model`` creates.
 
         ``model_class`` is the class name with its module, for example
         ``app.editor.editor_model.EditorModel``.
@@ -62,7 +62,7 @@ class PageRegistry:
         self._starts.append(page)
 
     def add_run_watcher(self, watcher: FrameWatcher) -> None:
-        """Register a watcher that observes each frame except the frames of an MDI line."""
+        """Register a watcher that observes every frame of a program run, but no frame of an MDI line."""
         self._run_watchers.append(watcher)
 
     def add_frame_watcher(self, watcher: Callable[[Snapshot], None]) -> None:
@@ -78,7 +78,7 @@ class PageRegistry:
         self._notice = find_notice
 
     def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
-        """Set the function that opens the recording of an alarm by its name."""
+        """Set the function that opens an alarm's recording, given the name of the recording."""
         self._open_record = open_recording
 
     # --- uses ----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Tables with an entry line and function keys, which the list pages of TurnDesk use."""
+"""Tables with an entry line and function keys. The list pages of TurnDesk use these tables."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ ROW_STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # Rows that 
 
 
 def following(choices: Iterable[T], current: T) -> T:
-    """Return the choice after ``current``.
+    """Return the choice that follows ``current``.
 
-    The first choice follows the last choice or an unknown ``current``.
+    After the last choice or an unknown ``current``, return the first choice.
     """
     order = list(choices)
     return order[(order.index(current) + 1) % len(order) if current in order else 0]
 
 
 class RejectedText(str):
-    """Text of a rejected value, which the next character replaces and the key Back edits."""
+    """Text of a rejected value. The next typed character replaces the text, and the key Back edits it."""
 
     __slots__ = ()
 
 
 def refused(text: str) -> str:
-    """Return a rejected value as RejectedText, or unchanged if it is a name.
+    """Return a rejected value as RejectedText, or return it unchanged if it is a name.
 
     An operator edits a rejected name instead of typing it again.
     """
@@ -40,7 +40,7 @@ def refused(text: str) -> str:
 
 
 def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
-    """Return an input text after one more key, which is a character, ``Back`` or ``Delete``."""
+    """Return an input text after one key press. The key is a character, ``Back`` or ``Delete``."""
     if key == "Back":
         return text[:-1]
     if key == "Delete":
@@ -109,7 +109,7 @@ class InputField:
     proposed_text: str = ""  # A proposed text that the first character replaces and Back edits.
 
     def propose(self, text: str) -> None:
-        """Set a proposed text, which the first typed character replaces."""
+        """Set a proposed text. The first typed character replaces the text."""
         self.text = self.proposed_text = text
 
     def accepts_key(self, key: str) -> bool:

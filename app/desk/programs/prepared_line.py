@@ -25,7 +25,7 @@ It is called on the worker thread.
 
 
 def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
-    """Return an error for each tool that the line calls and that does not have a measured offset."""
+    """Return an error for each tool in the line that does not have a measured offset."""
     missing = proved_job.proof.unset(job)
     text = "Tool {number} has not been set."
     return tuple(
@@ -38,7 +38,7 @@ def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
 
 @dataclass(slots=True)
 class PreparedMdiLine:
-    """One MDI line, from the key that requests it to the start buttons that run it. A line runs once.
+    """One MDI line, from the key press that requests it until the start buttons run it. A line runs once.
 
     Only Cycle Start starts the line. While no line is ready, Cycle Start has no effect.
     """
@@ -54,7 +54,7 @@ class PreparedMdiLine:
     _begun: int = 0  # Number of lines that the executor had started at the last update.
 
     def prove_line(self, text: str, snapshot: Snapshot, on_failed: Callable[[str], None]) -> None:
-        """Prove this line from the current machine state. A line that was ready is canceled.
+        """Prove this line from the current machine state. A line that is already ready is canceled.
 
         ``on_failed`` is called with an error text if the proof fails unexpectedly.
         """

@@ -19,7 +19,7 @@ LAST_PROGRAM_SETTING = "last_program"  # Setting with the path of the program th
 
 @dataclass(frozen=True, slots=True)
 class ProgramChoice:
-    """Selection of programs from ``program_folders``, which ``program_loader`` loads.
+    """Selection of a program from ``program_folders``. ``program_loader`` loads the selected program.
 
     ``save_path`` stores the path for the next start of TurnDesk.
     """
@@ -31,7 +31,7 @@ class ProgramChoice:
     save_path: Callable[[str], None]
 
     def can_choose(self) -> bool:
-        """Return whether a program can be chosen now, and if not, show the reason on the prompt line."""
+        """Return whether a program can currently be chosen. If not, show the reason on the prompt line."""
         if why := find_program_refusal(self.read_snapshot()):
             self.prompt_answers.say(why)
         return not why
@@ -45,7 +45,7 @@ class ProgramChoice:
         return True
 
     def load_path(self, path: Path) -> None:
-        """Load a program, but ask the operator first if it would replace an interrupted job."""
+        """Load a program. If it would replace an interrupted job, ask the operator first."""
         found = self.read_snapshot().interrupted
         self.prompt_answers.withdraw_question()
         if found is not None and found.program != path.name:
@@ -61,7 +61,7 @@ class ProgramChoice:
             self.save_path(str(path))
 
     def toggle_block_delete(self) -> None:
-        """Toggle Block Delete, and reload the program because Block Delete is part of the proved job."""
+        """Toggle Block Delete and reload the program, because its proof depends on Block Delete."""
         loaded = self.program_loader.loaded_program
         if loaded.path is None:
             self.prompt_answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")

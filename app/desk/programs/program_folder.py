@@ -125,7 +125,7 @@ _FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an
 
 
 class ProgramFileMonitor:
-    """Monitor that compares the file with the loaded program in a separate thread.
+    """Monitor that compares the program's files with the loaded text in a separate thread.
 
     The separate thread is necessary because a network drive may hang.
     """
@@ -222,7 +222,7 @@ def _stamp(file: Path) -> _FileStamp:
 
 
 def _find_difference(file: Path, read: ProgramSource) -> str:
-    """Return the message about this file, or an empty text if the file contains the loaded text."""
+    """Return the message about this file, or an empty string if the file equals the loaded text."""
     try:
         now = load_source(file)
     except SourceError as error:

@@ -32,7 +32,7 @@ class FirstMoveResult(NamedTuple):
     """Result of the first-move check.
 
     The result has one verdict for a start at the current position and one verdict for Cycle Repeat.
-    ``approach_legs`` is the path that is drawn. ``zero_position`` is the machine position X and Z in mm at
+    ``approach_legs`` is the path to draw. ``zero_position`` is the machine position, X and Z in mm, at
     which the tool tip is at part zero.
     """
 
@@ -94,7 +94,7 @@ class PartProof:
     error_text: str = ""
 
     def add_to_proof(self, proof: Proof, name: str) -> Proof:
-        """Return the proof of the program with the errors and warnings of its part added."""
+        """Return the proof of the program, to which the errors and warnings of the part are added."""
         errors = tuple(d.format_one_line(name) for d in self.diagnostics if d.severity is Severity.ERROR)
         return replace(proof, errors=(*proof.errors, *errors), warnings=self.warning_texts)
 
@@ -114,7 +114,7 @@ def _no_part(_picture: ProgramPicture, _watch: ProgressCallback) -> PartProof | 
 
 @dataclass(frozen=True, slots=True)
 class LoadingSteps:
-    """Functions of other packages that loading needs. They are called only on the worker thread.
+    """Functions of other packages that load a program. They are called only on the worker thread.
 
     The ``ProgressCallback`` receives the progress. It may raise AbandonedError, which the functions must
     not catch.
@@ -132,7 +132,7 @@ class LoadingSteps:
 
 @dataclass(frozen=True, slots=True)
 class LoadedProgram:
-    """The loaded program and the progress of loading. Objects are replaced instead of changed."""
+    """The loaded program and the progress of loading. Each change creates a new object."""
 
     phase: LoadingPhase = LoadingPhase.EMPTY
     path: Path | None = None
@@ -148,7 +148,7 @@ class LoadedProgram:
 
     @property
     def name(self) -> str:
-        """Return the file name of the program, or an empty text if no program is loaded."""
+        """Return the file name of the program, or an empty string if no program is loaded."""
         return self.path.name if self.path else ""
 
     @property
@@ -197,7 +197,7 @@ class ProgramLoader:
             self.worker.request_work(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
     def replace_loaded(self, loaded: LoadedProgram) -> None:
-        """Replace the loaded program with the same program that has a new proof or progress."""
+        """Replace the loaded program with an object that has a new proof or progress of this program."""
         self._now = loaded
 
     def wait_until_loaded(self, timeout_s: float) -> LoadedProgram:
@@ -234,9 +234,9 @@ class ProgramLoader:
         _freeze_garbage()
 
     def _prove_part(self, job: Job, proved: ProvedJob, picture: ProgramPicture, request: WorkRequest) -> None:
-        """Prove the part, possibly while its program is already running.
+        """Prove the part. The program may already be running.
 
-        A program can run before this proof if it need not wait for the proof.
+        A program can run before this proof ends if it does not have to wait for the proof.
         """
         watch = partial(self._reached, request) if proved.waits_for_part else request
         part = self.loading_steps.prove_part(picture, watch)
@@ -271,8 +271,8 @@ def find_final_phase(proof: Proof) -> LoadingPhase:
 def _freeze_garbage() -> None:
     """Exclude the loaded program from garbage collection.
 
-    Each scan of 200,000 blocks would stop every thread for 40 ms, including the executor. Reference
-    counting still frees the objects.
+    A scan of the 200,000 blocks of a large program would stop every thread for 40 ms, including the
+    executor. Reference counting still frees the objects.
     """
     gc.collect(1)
     gc.freeze()

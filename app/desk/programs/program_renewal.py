@@ -47,7 +47,7 @@ class RunningRenewal:
         self.worker = LatestRequestWorker("renewing", thread_owner=self.program_loader.worker)
 
     def begin_renewal(self) -> bool:
-        """Announce the renewal to the executor and begin proving, or return False if no program is loaded.
+        """Announce the renewal and begin proving. Return False if no program is loaded.
 
         After the announcement, the executor does not start a part with the old offsets.
         """
@@ -61,7 +61,7 @@ class RunningRenewal:
         return True
 
     def is_in_use(self, snapshot: Snapshot) -> bool:
-        """Return whether the executor uses the renewed program. The screen then also shows that program."""
+        """Return whether the executor uses the renewed program. If so, the screen also shows that program."""
         ready = self._next
         if ready is None or ready.job is None or self.program_loader.load_count != self._loads:
             return False
@@ -77,7 +77,7 @@ class RunningRenewal:
         return True
 
     def poll_error(self) -> str:
-        """Return the reason why the next part will not start, once for each reason, or an empty text.
+        """Return the reason why the next part will not start, once for each reason, or an empty string.
 
         If the program could not be proved again, the executor is informed.
         """
@@ -200,7 +200,7 @@ class ProgramRenewal:
                 self.program_loader.start_loading(now.path, now.has_block_delete)
 
     def _report_error(self, snapshot: Snapshot) -> None:
-        """Warn that the next part will not start, while the operator can still undo the change."""
+        """Warn that the next part will not start. The operator can still undo the change at this time."""
         why = self.running_renewal.poll_error()
         if why and snapshot.state in ACTIVE_STATES:
             self.show_warning(
@@ -208,7 +208,7 @@ class ProgramRenewal:
             )
 
     def _is_outdated(self, snapshot: Snapshot) -> bool:
-        """Return whether the machine's modal unit is different from the unit of the proof.
+        """Return whether the proof was made for a unit other than the machine's modal unit.
 
         The difference matters only if the program does not specify the unit.
         """

@@ -1,4 +1,4 @@
-"""Check of the first move of the next start against the part. A collision prevents the start.
+"""Check of the first move of the next start for a collision with the part, which prevents the start.
 
 A program is checked on a worker each time the axes stop at a new position. The worker that proves an MDI
 line or a restart also checks its first move. The executor receives the verdict, and rejects a start without
@@ -85,7 +85,7 @@ class FirstMoveQuery(NamedTuple):
 
 
 def add_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
-    """Return the proof of a line or a restart with this verdict added. A rejected first move is an error."""
+    """Return the proof with this verdict on the first move, which is an error if it was rejected."""
     found = result.start_clearance
     if not found.code:
         return replace(proved_job, first_move_result=result)
@@ -98,13 +98,13 @@ def add_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
 
 @dataclass(slots=True)
 class FirstMoveChecker:
-    """Checker of first moves that caches the last part history for the next check."""
+    """Checker of first moves. It caches the last part history for the next check."""
 
     _lock: Lock = field(default_factory=Lock)
     _history: tuple[ProgramPicture, PartHistory] | None = None
 
     def check_first_move(self, query: FirstMoveQuery, report_progress: ProgressCallback) -> FirstMoveResult:
-        """Return the verdict on this start. Raises AbandonedError if ``report_progress`` raises it."""
+        """Return the verdict on this start. AbandonedError of ``report_progress`` is passed on."""
         with self._lock:
             return self._judge(query, report_progress)
 
@@ -274,12 +274,12 @@ class FirstMoveWatch:
 
     @property
     def start_refusal(self) -> str:
-        """Return why the first move prevents a start of the program, or an empty text if it does not."""
+        """Return the reason why the first move prevents a start of the program, or an empty string."""
         return self.first_move_result.start_clearance.why if self.first_move_result is not None else ""
 
     @property
     def is_checking(self) -> bool:
-        """Return whether the verdict is pending, so that the program cannot start yet."""
+        """Return whether the verdict is not known yet. The program cannot start until then."""
         return self._asked is not None and self.first_move_result is None
 
     # =
@@ -296,7 +296,7 @@ class FirstMoveWatch:
     def add_first_move_check(
         self, job: Job, proved_job: ProvedJob, snapshot: Snapshot, report_progress: ProgressCallback
     ) -> ProvedJob:
-        """Return the proof of a line or a restart with the verdict on its first move added."""
+        """Return the proof of an MDI line or a restart, with the verdict on its first move."""
         if proved_job.proof.errors:
             return proved_job
         return add_verdict(
@@ -307,7 +307,7 @@ class FirstMoveWatch:
     # --- requests -----------------------------------------------------------------------------------------
 
     def _track_part(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Update the known part. An interrupted part remains in the chuck until a program starts."""
+        """Update the part in the chuck. An interrupted part remains there until a program starts."""
         found, job, picture = snapshot.interrupted, loaded.job, loaded.picture
         self._loaded = PreviousPart(job, picture) if job is not None and picture is not None else None
         if snapshot.state in CYCLE_STATES and snapshot.starts not in MDI_ACTIONS:
@@ -355,7 +355,7 @@ class FirstMoveWatch:
 
 
 def make_drawn_legs(result: FirstMoveResult | None) -> tuple[ApproachLeg, ...]:
-    """Return the first move as drawn legs for the path view, with a label at its end."""
+    """Return the first move as legs for the path view to draw. The label is at the end of the move."""
     if result is None:
         return ()
     (zero_x, zero_z), last = result.zero_position, len(result.approach_legs) - 1

@@ -1,1 +1,1 @@
-"""State that TurnDesk shares with its pages, the window and the modules of ``app.compose``, without Qt."""
+"""State that TurnDesk shares with its pages, its window and ``app.compose``. It does not use Qt."""

@@ -1,4 +1,4 @@
-"""Interface of the control for the screen, with the control in the same process or in another process."""
+"""Interface through which the screen uses the control, in the same process or in another process."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class DeskControl:
-    """Access to the control, which includes its commands, its snapshots and its simulated station.
+    """Access to the commands, the snapshots and the simulated station of the control.
 
     ``station_panel`` is None if the machine has its own operator station. ``set_input`` switches an input
     of a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a
     recorder. ``open_stop_channel`` opens a connection that sends stop keys to the control without the
     screen. ``restart_control`` replaces a silent control with a new control, or is None if this is not
-    possible. ``read_identity`` returns the identity of a control process, or an empty text for a control in
-    this process.
+    possible. ``read_identity`` returns the identity of a control process, or an empty string for a control
+    in this process.
     """
 
     post: Callable[[Command], None]

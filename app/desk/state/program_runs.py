@@ -1,4 +1,4 @@
-"""Records of program runs, which are the part counter, the run history and the steps of the first job."""
+"""Records of program runs: the part counter, the run history and the steps of the first job."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from core.store.store_errors import StoreError
 
 
 class ProgramRuns:
-    """Part counter, run history and card of the first job, which ``persistence`` stores."""
+    """Part counter, run history and card of the first job. ``persistence`` stores all three."""
 
     def __init__(self, persistence: Persistence) -> None:
         self.part_counter = PartCounter(persistence)
@@ -52,14 +52,14 @@ class ProgramRuns:
         self.run_history.observe(snapshot, loaded)
 
     def update_first_job(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Advance the card of the first job, and store its step. Raises StoreError."""
+        """Advance the card of the first job and store its step. Raises StoreError if storing fails."""
         self._first_job.advance(snapshot, loaded, self.part_counter.part_count)
         self._first_job.save_step(self._persistence)
 
     def pop_part_warning(self, snapshot: Snapshot, loaded: LoadedProgram) -> str:
-        """Return the first warning about a part that was proved while its program was running.
+        """Return the first new warning about a part that was proved while its program was running.
 
-        Each warning is returned only once. Without a new warning, the text is empty.
+        Each warning is returned only once. If there is no new warning, the result is an empty string.
         """
         part, seen = loaded.part_proof, self._part_seen
         self._part_seen = part

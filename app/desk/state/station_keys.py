@@ -63,14 +63,14 @@ class StationKeys:
             self.desk_control.post(CycleStart())
 
     def toggle_spindle_switch(self) -> None:
-        """Turn the spindle switch from AUTO to OFF, or from OFF to AUTO."""
+        """Toggle the spindle switch between AUTO and OFF."""
         self.station_controls.set_spindle_auto(not self.desk_control.read_snapshot().spindle_auto)
 
     def step_override(self, steps: int) -> None:
         """Change the feed override by a number of steps of ten percent.
 
-        With a simulated station, this method turns the pot of the station, so that knob and value are
-        always equal.
+        If the station is simulated, this method turns the pot of the station, so that the knob always shows
+        the override value.
         """
         if self.desk_control.station_panel is not None:
             self.station_controls.turn_feed_pot(steps)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class StorageState:
-    """State of the store and of the program file. Without a store, there is no unsaved data."""
+    """State of the store and of the program file. If there is no store, no data are unsaved."""
 
     _problem: Callable[[], str] = str
     _waiting: Callable[[], str] = str
@@ -19,7 +19,7 @@ class StorageState:
     def set_store_readers(
         self, read_problem: Callable[[], str] = str, read_unsaved: Callable[[], str] = str
     ) -> None:
-        """Set the functions that report the state of a store, for ``read_problem`` and ``read_unsaved``."""
+        """Set the functions that ``read_problem`` and ``read_unsaved`` call to read the state of a store."""
         self._problem, self._waiting = read_problem, read_unsaved
 
     def set_file_readers(self, read_difference: Callable[[], str], recheck_file: Callable[[], None]) -> None:
@@ -30,22 +30,22 @@ class StorageState:
         self._difference, self._recheck_file = read_difference, recheck_file
 
     def read_problem(self) -> str:
-        """Return why events, parts and versions are not saved, or an empty text if they are saved."""
+        """Return the reason why events, parts and versions are not saved, or an empty string if they are."""
         return self._problem()
 
     def read_unsaved(self) -> str:
         """Return a text that lists the data waiting in memory to be saved.
 
-        The text is empty if no data are waiting.
+        The result is an empty string if no data are waiting.
         """
         return self._waiting()
 
     def read_file_difference(self) -> str:
-        """Return how the program file differs from the loaded program, or an empty text if they are equal."""
+        """Return the difference between the program file and the loaded program, or an empty string."""
         return self._difference()
 
     def recheck_file(self) -> None:
-        """Request a new comparison of the program file, because the editor has written the file."""
+        """Request a new comparison of the program file after the editor has written the file."""
         self._recheck_file()
 
     @property

@@ -1,4 +1,4 @@
-"""State of the main window on which starts and prompts depend."""
+"""State of the main window that affects starts and prompts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class WindowState:
         is_stop_held: Callable[[], bool],
         find_press_age: Callable[[], float],
     ) -> None:
-        """Use the functions of this window in place of the functions of an earlier window."""
+        """Use the functions of this window instead of those of the previous window."""
         self._wake, self._is_stop_held, self._press_age = wake_window, is_stop_held, find_press_age
 
     def set_page(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
@@ -43,7 +43,7 @@ class WindowState:
         self._starts_here, self._has_field = can_start, has_field
 
     def set_keyboard_lost(self, is_lost: bool) -> None:
-        """Set whether another window has the keyboard focus, so that this window receives no keys."""
+        """Set whether another window has the keyboard focus. This window then receives no keys."""
         self._keyboard_away = is_lost
 
     # --- read by the model ---------------------------------------------------------------------------
@@ -71,5 +71,5 @@ class WindowState:
         return self._press_age()
 
     def wake_window(self) -> None:
-        """Make the window poll a machine whose state has changed at rest. Any thread may call this method."""
+        """Make the window read a state that changed while the machine was at rest, from any thread."""
         self._wake()

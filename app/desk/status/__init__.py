@@ -1,1 +1,1 @@
-"""Display of the machine state, with readouts, states, prompts, notices and sounds."""
+"""Display of the machine state: readouts, states, prompts, notices and sounds."""

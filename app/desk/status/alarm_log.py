@@ -1,4 +1,4 @@
-"""Alarm log that F7 shows, with alarms, E-stops and stops, newest first, and their causes and remedies.
+"""Log of alarms, E-stops and stops with causes and remedies, newest first. F7 shows the log.
 
 Entries of this session come from the executor's events. Older entries come from the store's event log.
 """

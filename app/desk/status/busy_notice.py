@@ -10,7 +10,7 @@ from core.message import Message
 
 
 class BusyNotice:
-    """Message that is shown when feed hold reacts late. ``show_message`` shows a text on the prompt line.
+    """Message that feed hold reacts late. ``show_message`` shows a text on the prompt line.
 
     The message appears once in each busy period, and again if the delay has doubled.
     """

@@ -1,4 +1,4 @@
-"""Number formats for the operator, with 5 decimals in inches, 4 decimals in mm, and no negative zero."""
+"""Number formats for the operator: 5 decimals in inches, 4 decimals in mm, and no negative zero."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def format_angle(degrees: float) -> str:
 
 
 def find_rotary_feed_unit(per_rev: bool) -> str:
-    """Return the unit of a feed for a move of only the C axis."""
+    """Return the unit of the feed for a move in which only the C axis moves."""
     return f"°/{'rev' if per_rev else 'min'}"
 
 
@@ -75,7 +75,7 @@ def format_percent(fraction: float) -> str:
 
 
 def format_duration(seconds: float) -> str:
-    """Return a time in seconds as ``m:ss``, or as ``h:mm:ss`` from one hour, rounded down.
+    """Return a time in seconds as ``m:ss``, or as ``h:mm:ss`` from one hour on. The time is rounded down.
 
     The text of an unknown or negative time is a dash.
     """

@@ -108,9 +108,9 @@ def _changed(found: InterruptedJob, loaded: LoadedProgram) -> bool:
 
 
 def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
-    """Return a text that says which repetition of the line was interrupted.
+    """Return a text that gives the number of the repetition in which the line was interrupted.
 
-    The text is empty unless the line runs more than once per part.
+    The result is an empty string unless the line runs more than once per part.
     """
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:
@@ -123,7 +123,7 @@ def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
 
 
 def _describe_positions(found: InterruptedJob, snapshot: Snapshot, units: DisplayUnits) -> str:
-    """Return the tool's positions at the stop and now as text.
+    """Return the tool's position at the stop and its current position as text.
 
     The positions are measured from home, as in the readout FROM HOME.
     """
@@ -141,7 +141,7 @@ def _describe_positions(found: InterruptedJob, snapshot: Snapshot, units: Displa
 def _describe_uncertainty(found: InterruptedJob) -> str:
     """Return a warning that the last second before a loss of control was not recorded.
 
-    The job's state is written once per second. The text is empty for other causes of the interruption.
+    The job's state is written once per second. After any other interruption, the result is an empty string.
     """
     if found.why != POWER_LOST_REASON:
         return ""

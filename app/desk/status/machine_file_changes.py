@@ -1,4 +1,4 @@
-"""Changes of the machine file after the operator accepted it, which prevent enabling the drives."""
+"""Changes of the machine file since the operator accepted it. They prevent enabling the drives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.message import Message
 
 @dataclass(slots=True)
 class MachineFileChanges:
-    """Changes of the machine file, which are empty if the file is the accepted file.
+    """Changes of the machine file. They are empty if the file is the accepted file.
 
     ``file_path`` is the path of the file. ``save_acceptance`` stores the current file as accepted.
     """
@@ -23,7 +23,7 @@ class MachineFileChanges:
 
     @property
     def barred(self) -> str:
-        """Return why the drives cannot be enabled, or an empty text if they can be enabled."""
+        """Return the reason why the drives cannot be enabled, or an empty string if they can be enabled."""
         if not self.changes:
             return ""
         text = tr("MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT")

@@ -1,7 +1,7 @@
 """Texts and values of one snapshot for the operator, and detection of a silent control.
 
-The module also describes the event that a waiting program needs (WAITING), and how the wait ends. It
-contains no Qt and no machine logic.
+The module also describes which event a waiting program (WAITING) needs in order to continue. It contains no
+Qt and no machine logic.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ CANCEL_HINT = "PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM"
 
 
 def describe_wait(snapshot: Snapshot) -> str:
-    """Return the title text of a wait, which names its cause and the expected state of an input."""
+    """Return the title of a wait. It names the cause, and for an input also the expected state."""
     name = snapshot.waiting_for
     if not name or name in _WAIT_PROMPTS:
         return name
@@ -57,7 +57,7 @@ def describe_wait(snapshot: Snapshot) -> str:
 
 
 def make_wait_prompt(snapshot: Snapshot, is_simulated: bool = False) -> str:
-    """Return the prompt for a wait, or an empty text if the wait is unknown.
+    """Return the prompt for a wait, or an empty string if the wait is unknown.
 
     ``is_simulated`` is True if the inputs can be switched on the screen.
     """
@@ -77,8 +77,8 @@ def make_wait_prompt(snapshot: Snapshot, is_simulated: bool = False) -> str:
 def _is_input(snapshot: Snapshot) -> bool:
     """Return whether the program waits for an input.
 
-    The name of a wait of M91 to M95 is the name of the input, which does not contain a space. The names of
-    all other waits contain a space.
+    A wait of M91 to M95 has the name of its input, which contains no space. The names of all other waits
+    contain a space.
     """
     return " " not in snapshot.waiting_for
 
@@ -146,7 +146,7 @@ def _find_tool_text(modal: ModalState) -> str:
 
 
 def _find_secondary_offset(modal: ModalState) -> str:
-    """Return the text that follows T.
+    """Return the text after the tool number.
 
     The text is the secondary offset, or the cutting edge and the zero offset.
     """
@@ -201,7 +201,7 @@ def make_status(
 
 
 def find_unrequested_stop(snapshot: Snapshot) -> Alarm | None:
-    """Return the cause of an E-stop, or of a feed hold that the operator did not request, or None."""
+    """Return the cause of an E-stop or an unrequested feed hold, or None if there is neither."""
     stop = snapshot.stop
     if stop is None or (stop.code != "estop" and CATALOG[stop.code].reaction is not Reaction.HOLD):
         return None
@@ -226,7 +226,7 @@ def _find_state_text(snapshot: Snapshot, stop: Alarm | None) -> str:
 
 
 def needs_homing(snapshot: Snapshot) -> bool:
-    """Return whether an axis is not homed, so that a cycle cannot start."""
+    """Return whether a cycle cannot start because an axis is not homed."""
     return not all(snapshot.homed)
 
 
@@ -244,7 +244,7 @@ SILENCE_TIMEOUT_S = 1.0  # Seconds without a new snapshot. The executor makes a 
 
 @dataclass(slots=True)
 class SilenceWatch:
-    """Detector of a silent control, which compares the time stamps of snapshots with the screen's clock."""
+    """Detector of a silent control. It compares the time stamps of snapshots with the screen's clock."""
 
     is_silent: bool = False
     _stamp: float | None = None

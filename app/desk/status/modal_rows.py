@@ -1,4 +1,4 @@
-"""Modal state as rows of text, one row for each group of codes, for MDI and SEARCHTO."""
+"""Modal state as rows of text for MDI and SEARCHTO. Each group of codes has one row."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _MODAL_GROUPS = {
 
 
 def _make_rows(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
-    """Return the rows for Klartext or SINUMERIK from the modal state that the last pass saved.
+    """Return the rows for Klartext or SINUMERIK from the saved modal state.
 
     Without a saved state, the rows show the state at the end of a program.
     """

@@ -1,4 +1,4 @@
-"""Prompt line, which shows what the operator can do now, and the response to the last key.
+"""Prompt line, which shows the currently possible actions and the response to the last key.
 
 State, question and message have separate places on the screen. A message remains for 4 s or until the next
 key. The prompt depends on one snapshot and the loaded program.
@@ -89,7 +89,7 @@ def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tu
 
 
 def make_alarm_prompt(snapshot: Snapshot, release_instruction: str, *, is_field_open: bool = False) -> str:
-    """Return the prompt for an alarm or an E-stop, which replaces a page's prompt.
+    """Return the prompt for an alarm or an E-stop. It replaces the prompt of the current page.
 
     The prompt is empty if there is neither an alarm nor an E-stop.
     """
@@ -112,7 +112,7 @@ def _estop(release: str) -> str:
 
 
 def reason(status: MachineStatus) -> str:
-    """Return the text below the prompt, which is the cause of a stop, and for a feed hold also the remedy."""
+    """Return the text below the prompt: the cause of a stop, and for a feed hold also the remedy."""
     if status.alarms:
         return Message("CAUSE: {stop}", stop=describe_cause(status.alarms[0]))
     if status.stop_cause is None:
@@ -128,7 +128,7 @@ def reason(status: MachineStatus) -> str:
 def describe_cause(alarm: Alarm) -> str:
     """Return the cause of an alarm.
 
-    If the most likely cause in the catalog is different, it follows this cause.
+    If the catalog gives a different most likely cause, the text also contains that cause.
     """
     likely = alarm.causes[0] if alarm.causes else ""
     cause = translate_cause(alarm)
@@ -138,7 +138,7 @@ def describe_cause(alarm: Alarm) -> str:
 
 
 def translate_cause(alarm: Alarm) -> str:
-    """Return the translated cause of an alarm. A program's own message at M00 or M01 is not translated."""
+    """Return the translated cause of an alarm. The text of a program at M00 or M01 is not translated."""
     of_program = alarm.code in PROGRAM_STOP_CODES and alarm.cause not in CATALOG[alarm.code].causes
     return mark_untranslated(alarm.cause) if of_program else tr(alarm.cause)
 
@@ -151,7 +151,7 @@ def _idle(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
 
 
 def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
-    """Return why the loaded program cannot start now, or an empty text if it can start."""
+    """Return the reason why the loaded program cannot start now, or an empty string if it can start."""
     if loaded.phase in {LoadingPhase.UNREADABLE, LoadingPhase.REFUSED}:
         return make_refusal(loaded)
     if not snapshot.program:
@@ -173,14 +173,14 @@ def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
 
 
 def find_missing_tools(loaded: LoadedProgram) -> list[str]:
-    """Return the tools that the loaded program uses and that do not have a measured offset."""
+    """Return the tools of the loaded program that do not have a measured offset."""
     if loaded.proof is None or loaded.job is None:
         return []
     return [format_edge_name(key) for key in loaded.proof.unset(loaded.job)]
 
 
 def make_refusal(loaded: LoadedProgram) -> str:
-    """Return why the loaded program will not run, with the first error and the number of further errors."""
+    """Return why the loaded program will not run, as its first error and the number of others."""
     if loaded.phase is LoadingPhase.UNREADABLE:
         return Message(
             "{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM",
@@ -293,10 +293,10 @@ class PromptLine:
         return MessageKind.SUCCESS if self.is_success else MessageKind.REFUSAL
 
     def say(self, text: str, *, is_success: bool = False, is_lasting: bool = False) -> None:
-        """Show a message, with ``is_success`` for a success message.
+        """Show a message. ``is_success`` marks it as a success message.
 
-        Keys do not remove a message with ``is_lasting``. Until its time ends, only another lasting message
-        replaces it.
+        A key press does not remove a message with ``is_lasting``. Until its time ends, only another lasting
+        message replaces it.
         """
         if (
             self.is_lasting
@@ -343,7 +343,7 @@ class PromptLine:
             asked()
 
     def withdraw_question(self) -> None:
-        """Remove the question, and also remove the message unless it is lasting."""
+        """Remove the question. Also remove the message, unless it is a lasting message."""
         self.question_text, self.on_confirmed = "", None
         if not self.is_lasting:
             self.message = ""
@@ -354,7 +354,7 @@ class PromptLine:
             self.message = ""
 
     def remove_expired(self, snapshot: Snapshot) -> None:
-        """Remove a message whose time has ended, and remove a question if the machine's state has changed."""
+        """Remove a message that has expired, and a question if the machine's state has changed since."""
         if self.message and self.read_time_s() - self._said_at >= MESSAGE_TIME_S:
             self.message, self.is_lasting = "", False
         if self.on_confirmed is not None and snapshot.state is not self._in:
@@ -365,7 +365,7 @@ class PromptLine:
         self._heard.append(event)
 
     def note_start_attempt(self) -> None:
-        """Record an attempt to start, so that the same refusal is shown again."""
+        """Record an attempt to start, so that a refusal is shown even if it is the same as before."""
         self._refused = ""
 
     def update(self, snapshot: Snapshot) -> None:

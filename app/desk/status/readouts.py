@@ -51,7 +51,7 @@ def make_mode_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 
 def make_lamps(snapshot: Snapshot, *, is_table_rotary: bool = True) -> tuple[Lamp, ...]:
-    """Return the lamps of spindle, coolant, collet and live tool, or for a mill, of its rotary axes.
+    """Return the lamps of a lathe, or those of a mill, which include its rotary axes.
 
     The outputs are identified by their names in the machine file (coolant, collet, live1 …).
     ``is_table_rotary`` is True if a rotary table turns on this mill.
@@ -87,7 +87,7 @@ def make_drives_lamp(snapshot: Snapshot, key: str = "") -> Lamp:
 
 
 def _make_output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
-    """Return the lamp, or a lamp with a question mark if the outputs are unknown."""
+    """Return the lamp of an output. If the outputs are unknown, the lamp shows a question mark."""
     if UnknownPart.OUTPUTS not in snapshot.unknown:
         return lamp
     return Lamp(
@@ -96,7 +96,7 @@ def _make_output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
 
 
 def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
-    """Return the lamps of a mill for a tilted plane, and for a table or head that is not at 0 degrees."""
+    """Return a mill's lamps, one for a tilted plane and one for a table or head not at 0 degrees."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.is_tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > ZERO_TOLERANCE_DEG for name, at in rotary if name in "ABC")
@@ -106,7 +106,7 @@ def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
 
 
 def _make_spindle_lamp(snapshot: Snapshot) -> Lamp:
-    """Return the spindle's lamp, which depends on the measured speed and therefore also shows coasting."""
+    """Return the spindle's lamp. It depends on the measured speed, so that it is also lit during coasting."""
     if UnknownPart.SPINDLE in snapshot.unknown:
         return Lamp("SPINDLE UNKNOWN", is_lit=True, is_warning=True)
     if snapshot.is_orienting:
@@ -122,7 +122,7 @@ def _make_spindle_lamp(snapshot: Snapshot) -> Lamp:
 
 
 def _make_collet_lamp(snapshot: Snapshot) -> Lamp:
-    """Return the collet's lamp, which depends on the output instead of the program's modal state."""
+    """Return the collet's lamp. It depends on the output and not on the program's modal state."""
     if "collet" in snapshot.absent:
         return Lamp("MANUAL COLLET", is_lit=False)
     if "collet" in snapshot.outputs:
@@ -147,12 +147,12 @@ def find_plane_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[floa
 
 
 def find_home_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
-    """Return the positions of the linear axes from home in mm, and of the rotary axes in degrees."""
+    """Return the distances of the linear axes from home in mm, and of the rotary axes in degrees."""
     return (*_slides(snapshot.actual), *_find_shown_position(snapshot, swivel, {}))
 
 
 def find_remaining_distance(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
-    """Return the distance to go of the block, along the axes of the working plane and of the rotary axes.
+    """Return the distance to go of the block for each axis of the working plane and each rotary axis.
 
     Values are in mm and degrees.
     """
@@ -187,7 +187,7 @@ def _slides(at: tuple[float, ...]) -> tuple[float, float, float]:
 
 
 def _find_shown_position(snapshot: Snapshot, swivel: PlanePosition, zero: Mapping[str, float]) -> list[float]:
-    """Return the angles of the rotary axes from their zeros.
+    """Return the angles of the rotary axes, each measured from the zero of its axis.
 
     The angle of a modulo axis is from 0 to 360 degrees.
     """
@@ -236,7 +236,7 @@ class AxisReadout:
 
 @dataclass(frozen=True, slots=True)
 class PositionReadout:
-    """Position display, in which all values have the same unit and come from one snapshot."""
+    """Position display. All its values have the same unit and come from one snapshot."""
 
     main_kind: ReadoutKind
     second_kind: ReadoutKind
@@ -269,7 +269,7 @@ _MILL_SYSTEMS = {
 
 
 def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
-    """Return the position with C from 0 to 360 degrees if the modal state wraps C."""
+    """Return the position. If C wraps in the modal state, its angle is from 0 to 360 degrees."""
     if not snapshot.modal.is_c_modulo:
         return at
     return (*at[:-1], round(at[-1], formats.ANGLE_DECIMALS) % 360.0)
@@ -415,8 +415,7 @@ def _directions(language: str) -> tuple[str, str, str]:
 def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: str) -> SpindleReadout:
     """Return the commanded and measured speed, and the surface speed in m/min or ft/min.
 
-    ``language`` is the machine's program language, because OmniTurn writes M05 and other languages write
-    M5.
+    ``language`` is the machine's program language. OmniTurn writes M05, and the other languages write M5.
     """
     modal = snapshot.modal
     if UnknownPart.SPINDLE in snapshot.unknown:

@@ -1,4 +1,4 @@
-"""Sounds for program ends, stops and alarms, which an audio program of the computer plays.
+"""Sounds for program ends, stops and alarms. An audio program of the computer plays them.
 
 Sounds are off until the operator sets a volume. A thread plays only the newest sound, so that no caller
 waits.
@@ -77,7 +77,7 @@ def play_wav(wav_bytes: bytes) -> None:
 
 
 def _run_player(command: list[str]) -> str:
-    """Run a player, and return the reason if it fails, or an empty text if it succeeds."""
+    """Run a player. Return the reason if it fails, or an empty string if it succeeds."""
     try:
         done = subprocess.run(command, capture_output=True, timeout=_PLAY_TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired:
@@ -91,9 +91,9 @@ def _run_player(command: list[str]) -> str:
 
 
 class SoundPlayer:
-    """Player of sounds whose callers do not wait.
+    """Player of sounds. Its callers do not wait for the sound.
 
-    ``error_text`` is the reason why the last sound failed, or empty.
+    ``error_text`` is the reason why the last sound failed, or an empty string.
     """
 
     def __init__(self, play_sound: PlaySound = play_wav) -> None:
@@ -116,7 +116,7 @@ class SoundPlayer:
             self._there.notify()
 
     def close(self) -> None:
-        """Stop playing new sounds, without waiting for the end of the last sound."""
+        """Stop playing new sounds. The method does not wait for the end of the current sound."""
         with self._there:
             self._closing = True
             self._there.notify()

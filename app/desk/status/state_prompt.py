@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def make_page_prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page_prompt: str = "") -> str:
-    """Return the prompt for the current state. A question and a message have separate places.
+    """Return the prompt for the current state. Questions and messages are displayed elsewhere.
 
     ``page_prompt`` is the prompt of the current page. An alarm or an E-stop replaces this prompt.
     """
@@ -62,7 +62,7 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page: str) ->
 def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
     """Return the reminders of the watchers.
 
-    The text is empty during an alarm, an interrupted job or a refusal.
+    The result is an empty string during an alarm, an interrupted job or a refusal.
     """
     waits = snapshot.state in {MachineState.ESTOP, MachineState.FAULT} or snapshot.interrupted_line
     if waits or prompt.startswith(prompt_line.WILL_NOT_START):
@@ -73,7 +73,7 @@ def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
 
 
 def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
-    """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
+    """Return the reason why the start buttons have no effect, or an empty string if they work."""
     refused = desk.barred() or desk.find_first_move_refusal(snapshot)
     if refused or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
         return refused
@@ -81,7 +81,7 @@ def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
 
 
 def find_time_left(snapshot: Snapshot, loaded: LoadedProgram) -> float:
-    """Return the time to the end of the cycle at the current override, in seconds.
+    """Return the remaining cycle time at the current override, in seconds.
 
     The time is inf if it is unknown.
     """

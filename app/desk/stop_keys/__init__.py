@@ -1,1 +1,1 @@
-"""Separate connection of the keyboard's stop keys to the control, which does not depend on the screen."""
+"""Separate connection from the keyboard's stop keys to the control, independent of the screen."""

@@ -52,7 +52,7 @@ class KeyWatcher:
                 self.handle_press(key)
 
     def read_focus(self) -> bool:
-        """Read the windows that the screen has sent, and return False if the screen has ended."""
+        """Read the window data that the screen has sent. Return False if the screen has ended."""
         try:
             while record := self._screen.recv(MAX_RECORD_BYTES, socket.MSG_DONTWAIT):
                 self._focus = FocusRecord.from_bytes(record)

@@ -1,6 +1,6 @@
-"""Client of the key watcher in the screen's process, which starts the watcher and exchanges data with it.
+"""Client of the key watcher in the screen's process. It starts the watcher and communicates with it.
 
-The client sends window numbers to the watcher and receives stops.
+The client sends the X window IDs of TurnDesk to the watcher and receives stops from it.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ class RawKeyReader:
         self._select()
 
     def fileno(self) -> int:
-        """Return the file descriptor that becomes readable with the next event."""
+        """Return the file descriptor, which becomes readable when an event arrives."""
         return int(self._x.XConnectionNumber(self._display))
 
     def _extension(self) -> int:
@@ -131,7 +131,7 @@ class RawKeyReader:
         return int(self._x.XKeysymToKeycode(self._display, ctypes.c_ulong(_ESCAPE)))
 
     def find_focus_window(self) -> int:
-        """Return the number of the window that has the keyboard focus.
+        """Return the X window ID of the window that has the keyboard focus.
 
         Without a window manager, keys may go to the window under the pointer.
         """

@@ -30,7 +30,7 @@ class StopKind(IntEnum):
 
 
 def make_press_number(key_code: int, time_ms: int) -> int:
-    """Return the number of a key press, which combines its X key code and the server's time in ms.
+    """Return a number that identifies a key press by its X key code and the server's time in ms.
 
     An event without a time stamp has the number 0, which does not identify a press.
     """
@@ -57,19 +57,19 @@ class StopPress(NamedTuple):
 
 
 class FocusRecord(NamedTuple):
-    """X window numbers of TurnDesk's windows, and whether Esc starts feed hold now."""
+    """X window IDs of TurnDesk's windows, and whether Esc currently starts feed hold."""
 
     window_ids: frozenset[int]
     is_esc_stop_key: bool
 
     def to_bytes(self) -> bytes:
-        """Return the focus as a binary record with at most 1000 windows."""
+        """Return the focus record in binary form, with at most 1000 windows."""
         windows = sorted(self.window_ids)[:1000]
         return struct.pack(f"=?{len(windows)}I", self.is_esc_stop_key, *windows)
 
     @classmethod
     def from_bytes(cls, record: bytes) -> FocusRecord:
-        """Return the focus that a record contains. Raises ValueError if the record is invalid."""
+        """Return the focus record from its binary form. Raises ValueError if the data is invalid."""
         count, rest = divmod(len(record) - 1, 4)
         if rest or count < 0:
             raise ValueError(f"{len(record)} bytes are not a focus")

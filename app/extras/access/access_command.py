@@ -1,4 +1,4 @@
-"""Command ``turndesk access``, which manages users, levels and PINs, and the PIN prompt of other commands."""
+"""Command ``turndesk access`` for users, levels and PINs, and the PIN prompt of other commands."""
 
 from __future__ import annotations
 
@@ -88,9 +88,9 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Execute the action.
+    """Execute the action that the user specified.
 
-    Raises CommandError.
+    Raises CommandError if the action fails.
     """
     if args.action == "table":
         sys.stdout.write(_table(json_wanted=args.json))
@@ -206,9 +206,9 @@ _WRONG = "wrong PINs"  # setting, shared with the operator screen
 
 
 def require_pin(store: Store, row: UserRow, remedy: str) -> None:
-    """Ask for the PIN of a user, after a delay if wrong PINs were entered before.
+    """Ask for the PIN of a user. Previous wrong PINs delay the prompt.
 
-    Raises CommandError for a wrong PIN. Wrong PINs are logged.
+    Raises CommandError if no PIN is stored or the PIN is wrong. Wrong PINs are logged.
     """
     from core.extras.access.pins import PinHash, calculate_delay, hash_pin, is_hash_outdated, matches_hash
 
@@ -244,7 +244,7 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
 
 
 def read_pin(prompt: str) -> str:
-    """Return a hidden entry from the terminal, or a line from stdin if there is no terminal."""
+    """Return an entry from the terminal without echo, or a line from stdin if there is no terminal."""
     if sys.stdin.isatty():
         return getpass.getpass(prompt)
     return sys.stdin.readline().strip()

@@ -1,4 +1,4 @@
-"""Access levels: the signed-in user, sign-in by PIN, users, and the changes that each level permits."""
+"""Access levels: users, sign-in by PIN, and the level that each type of change requires."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DOT = "●"
 
 @dataclass(slots=True)
 class _Draft:
-    """Entry in several steps: the PIN of a user who signs in, or the data of a user."""
+    """Entry with several steps, either the PIN to sign in with or the data of a user."""
 
     entry_step: str  # sign in, name, level, pin or again
     name: str = ""
@@ -53,7 +53,7 @@ class AccessLevelsFunction(SpecialFunction):
 
     @property
     def access(self) -> UserAccess:
-        """Return the present user access of TurnDesk."""
+        """Return the current user access of TurnDesk."""
         return self.desk.user_access
 
     @property
@@ -68,7 +68,7 @@ class AccessLevelsFunction(SpecialFunction):
         return rows[min(self.marked, len(rows) - 1)] if rows and not self.shows_levels else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of users, or the table of the levels that the changes require."""
+        """Return the table of users, or the table of the level that each type of change requires."""
         if self.shows_levels:
             rows = tuple(TableRow((act.value, rule.level.name)) for act, rule in ACCESS_RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
@@ -114,7 +114,7 @@ class AccessLevelsFunction(SpecialFunction):
         }[draft.entry_step]
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         if self.service_reset.is_running:
             return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
@@ -146,7 +146,7 @@ class AccessLevelsFunction(SpecialFunction):
         self.draft, self.shows_levels, self.marked = None, not self.shows_levels, 0
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of a name or a PIN."""
+        """Return whether a character can be entered in the name or the PIN."""
         if self.draft is None or len(key) != 1:
             return False
         return (
@@ -259,13 +259,13 @@ class AccessLevelsFunction(SpecialFunction):
     def _save_user(self, row: UserRow, pin: str) -> None:
         """Store the user with a PIN.
 
-        This method runs on the worker. Raises StoreError.
+        This method runs on the worker. Raises StoreError if the user cannot be stored.
         """
         renewed = UserRow(row.name, row.level, *hash_pin(pin))
         self.persistence.require_store().people.save_user(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
-        """Change the users on the worker, reload them, report the change, and log it with the user name."""
+        """Change and reload the users on the worker. Report the change, and log it with the user name."""
 
         def done(_none: None) -> None:
             self.access.log_access(noted)
@@ -292,7 +292,7 @@ class AccessLevelsFunction(SpecialFunction):
     def change_pin(self) -> None:
         """Start the entry of a new PIN for the selected user (F4).
 
-        All users may change their own PIN.
+        Users of every level may change their own PIN.
         """
         row = self.selected_user
         if row is None or (
@@ -322,7 +322,7 @@ class AccessLevelsFunction(SpecialFunction):
         )
 
     def select_next_timeout(self) -> None:
-        """Select the next timeout of the automatic sign-out (F8)."""
+        """Select the next choice for the automatic sign-out timeout (F8)."""
         if not self.desk.is_refused(ProtectedChange.PEOPLE):
             self.desk.clear_prompt_line()
             self.session.set_timeout(following(TIMEOUT_CHOICES_MIN, self.session.timeout_min))
@@ -330,7 +330,7 @@ class AccessLevelsFunction(SpecialFunction):
     # --- service reset -------------------------------------------------------------------------------
 
     def ask_pin_reset(self) -> None:
-        """Ask for confirmation and start the reset of all PINs (F9).
+        """Ask for confirmation, and then start the reset of all PINs (F9).
 
         The E-stop must stay pressed during the reset.
         """
@@ -344,7 +344,7 @@ class AccessLevelsFunction(SpecialFunction):
     def _remove_all_users(self) -> None:
         """Remove all users.
 
-        If the store is unreadable, access levels are off until TurnDesk closes.
+        If the store is unreadable, access levels are turned off only until TurnDesk closes.
         """
 
         def remove() -> None:

@@ -1,4 +1,4 @@
-"""Registration of the optional feature for users with access levels and PINs."""
+"""Registration of the optional feature that adds users with access levels and PINs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class AccessExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Create the sign-in by PIN and attach it to the user access of TurnDesk."""
+        """Create the PIN sign-in, and attach it to the user access of TurnDesk."""
         from app.extras.access.sign_in import get_sign_in
 
         get_sign_in(desk.user_access)
@@ -45,7 +45,7 @@ class AccessExtra(OptionalFeature):
         return ((AccessLevelsFunction(desk, persistence, get_sign_in(desk.user_access)), "LAMPS AND SOUND"),)
 
     def require_pin(self, store: Store, user_row: UserRow, remedy: str) -> bool:
-        """Ask for the user's PIN on the command line, and return True because this feature supports PINs.
+        """Ask for the user's PIN on the command line. Return True because this feature supports PINs.
 
         ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.
         """
@@ -55,7 +55,7 @@ class AccessExtra(OptionalFeature):
         return True
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk access``, which follow ``scope FILE --json``."""
+        """Return the JSON outputs of ``turndesk access``, documented after ``scope FILE --json``."""
         from app.extras.access.access_command import OUTPUTS
 
         return OUTPUTS

@@ -45,7 +45,7 @@ class PinSignIn:
     def reload(self) -> None:
         """Load the timeout of the automatic sign-out and the number of wrong PINs.
 
-        Raises StoreError.
+        Raises StoreError if the data cannot be read.
         """
         persistence = self.access.persistence
         minutes, wrong = persistence.read_setting(_MINUTES), persistence.read_setting(_WRONG)
@@ -82,7 +82,7 @@ class PinSignIn:
             )
 
     def _check_pin(self, row: UserRow, pin: str) -> bool:
-        """Return whether the PIN is correct, and replace an outdated hash.
+        """Return whether the PIN is correct, and replace the stored hash if it is outdated.
 
         This method runs on the worker.
         """
@@ -133,7 +133,7 @@ class PinSignIn:
         self._used, self._warned = self.access.read_time_s(), False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process results, and warn and sign out when the timeout without input ends.
+        """Process results. After a timeout without input, warn the user and then sign the user out.
 
         This method is called once per frame.
         """
@@ -173,7 +173,7 @@ class PinSignIn:
 
 
 def get_sign_in(access: UserAccess) -> PinSignIn:
-    """Return the sign-in of TurnDesk, and create it if necessary."""
+    """Return the PIN sign-in of TurnDesk, and create it if it does not exist yet."""
     return access.sign_in_session if isinstance(access.sign_in_session, PinSignIn) else PinSignIn(access)
 
 
@@ -182,7 +182,7 @@ RESET_DELAY_S = 600.0  # seconds
 
 @dataclass(slots=True)
 class AccessReset:
-    """Service reset of the access levels.
+    """Service reset of the access levels after a waiting time.
 
     ``remove_all_users`` is called when the waiting time is over.
     """
@@ -197,7 +197,7 @@ class AccessReset:
 
     @property
     def access(self) -> UserAccess:
-        """Return the present user access of TurnDesk."""
+        """Return the current user access of TurnDesk."""
         return self.sign_in.access
 
     @property

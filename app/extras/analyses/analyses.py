@@ -1,7 +1,7 @@
-"""Analyses of a scope record: path error, thread passes, ball-bar plot, and axis and spindle response.
+"""Analyses of a scope record: path error, thread passes, ball-bar plot, axis or spindle response.
 
 An analysis uses the frozen curves of the scope, or else the last program run in the live samples. A worker
-calculates the results. If no result is possible, the reason is shown as a sentence.
+calculates the results. If no result is possible, the page shows the reason.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class AnalysesModel:
     # --- what is asked -------------------------------------------------------------------------------
 
     def restart_analysis(self) -> None:
-        """Discard the result and analyze the present data when the page opens."""
+        """Discard the result and analyze the current data when the page opens."""
         self._of = None
         self.result = None
 
@@ -93,7 +93,7 @@ class AnalysesModel:
     def select_next_arc(self) -> None:
         """Select the next arc of the record.
 
-        If another analysis is selected, select the ball-bar analysis instead.
+        If another type of analysis is selected, this method selects the ball-bar analysis instead.
         """
         self.desk.clear_prompt_line()
         if self.kind is not AnalysisKind.BALL_BAR:
@@ -116,7 +116,7 @@ class AnalysesModel:
         return True
 
     def select_row(self, row: int) -> None:
-        """Select a row of the table, whose position the drawing then marks."""
+        """Select a row of the table. The drawing then marks the position of that row."""
         self.selected_row = max(0, min(len(self.make_table().rows) - 1, row))
 
     def update(self) -> None:
@@ -163,7 +163,7 @@ class AnalysesModel:
     # --- what is shown -------------------------------------------------------------------------------
 
     def make_drawing(self) -> AnalysisDrawing:
-        """Return the drawing of the result, which is empty if there is no result."""
+        """Return the drawing of the result, or an empty drawing if there is no result."""
         found = self.result
         if found is None or found.missing_reason:
             return AnalysisDrawing()
@@ -191,7 +191,7 @@ class AnalysesModel:
 
     @property
     def description(self) -> str:
-        """Return the description of the analyzed data, which is shown above the drawing."""
+        """Return the text above the drawing, which describes the analyzed data."""
         found = self.result
         if found is None:
             return tr("CALCULATING …")
@@ -279,9 +279,9 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
 def _analyze_ball_bar(
     slides: tuple[str, ...], setpoints: FloatArray, actual: FloatArray, lines: FloatArray, arc: int
 ) -> Found:
-    """Return the ball-bar result of an arc, in whichever plane of two axes the arc is.
+    """Return the ball-bar result of an arc, which can be in any plane of two axes.
 
-    ``arc`` is the number of the arc, from 0. After the last arc, the numbers start again at the first arc.
+    ``arc`` is the index of the arc, counted from 0. After the last arc, the first arc follows again.
     """
     arcs = [
         (cut.start, line, cut, pair)
@@ -311,7 +311,7 @@ def _analyze_ball_bar(
 def _select_drawn_axes(slides: tuple[str, ...], setpoints: FloatArray) -> tuple[str, str]:
     """Return the two axes with the longest travel.
 
-    A path in three axes is drawn as seen along the third axis.
+    A path in three axes is drawn in the projection onto these two axes.
     """
     least = int(np.argmin(np.ptp(setpoints, axis=0))) if len(slides) > 2 else -1
     first, second = (each for number, each in enumerate(slides) if number != least)

@@ -28,7 +28,7 @@ class AnalysisChart(Chart):
         self.drawing = AnalysisDrawing()
 
     def show_drawing(self, drawing: AnalysisDrawing) -> bool:
-        """Show a drawing and return whether it is shown.
+        """Try to show a drawing, and return whether it is shown.
 
         The result is False while the plots are still being created. The caller must then try again.
         """
@@ -69,7 +69,7 @@ class AnalysisChart(Chart):
             _range(self.plots[1], list(drawing.lower_curves), equal=False)
 
     def apply_theme(self) -> None:
-        """Apply the present colors and fonts."""
+        """Apply the current colors and fonts."""
         super().apply_theme()
         if self.plots:
             self.show_drawing(self.drawing)
@@ -100,7 +100,7 @@ class AnalysisChart(Chart):
 def _range(plot: ChartPlot, parts: list[FloatArray], *, equal: bool) -> None:
     """Set the range of the plot so that all points are visible.
 
-    ``equal`` uses the same scale for both axes.
+    If ``equal`` is True, both axes have the same scale.
     """
     points = np.concatenate([each for each in parts if len(each)])
     low, high = points.min(axis=0), points.max(axis=0)

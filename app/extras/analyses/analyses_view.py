@@ -37,7 +37,7 @@ _PLOTS = 2  # maximum number of plots in a drawing
 
 
 def _chart_class() -> type[AnalysisChart]:
-    """Import the chart class and return it.
+    """Import and return the chart class.
 
     A worker calls this function, because importing pyqtgraph takes 0.3 s.
     """
@@ -76,9 +76,9 @@ class DrawingArea(QWidget):
     def show_drawing(
         self, drawing_id: object, make_drawing: Callable[[], AnalysisDrawing], *, metric: bool
     ) -> None:
-        """Show a drawing in mm or inches, unless ``drawing_id`` identifies the drawing that is shown.
+        """Show a drawing in mm or inches, unless it is already shown.
 
-        ``drawing`` is called to create the drawing.
+        ``drawing_id`` identifies the drawing. ``drawing`` is called to create it.
         """
         if self.chart is None or drawing_id == self._shown:
             return
@@ -86,13 +86,13 @@ class DrawingArea(QWidget):
             self._shown = drawing_id
 
     def apply_theme(self) -> None:
-        """Draw the chart again with the present colors and language."""
+        """Draw the chart again in the current colors and language."""
         self._shown = None
         if self.chart is not None:
             self.chart.apply_theme()
 
     def lay_out(self, place: QRect) -> None:
-        """Place the area and resize the chart, even while the area is hidden."""
+        """Place the area and resize the chart. The chart is resized even while the area is hidden."""
         self.setGeometry(place)
         if self.chart is not None:
             self.chart.setGeometry(self.rect())
@@ -103,7 +103,7 @@ _TABLE, _HEAD = 50.0, 3.4  # units
 
 
 class DescriptionLine(Panel):
-    """Line with the description of the analysis, or with the reason why there is no result."""
+    """Line that describes the analysis, or gives the reason why there is no result."""
 
     background_color = "panel"
     description_text = RedrawingAttribute("")
@@ -116,7 +116,7 @@ class DescriptionLine(Panel):
 
 
 class AnalysesPage(ListPage):
-    """Page that shows the model of the analyses."""
+    """Page that shows the analyses model."""
 
     NAME = page_table.ANALYSES
     model: _Keys
@@ -129,7 +129,7 @@ class AnalysesPage(ListPage):
         self.table = TablePanel(self.theme, analyses.select_row, self)
 
     def prepare_slice(self) -> bool:
-        """Create a part of the chart before the page is first shown, and return whether steps remain."""
+        """Create a part of the chart in advance, and return whether more parts must be created."""
         self.analyses.worker.deliver_results()
         return not self.drawing.is_ready()
 
@@ -173,7 +173,7 @@ class AnalysesPage(ListPage):
         event.accept()
 
     def handle_escape(self) -> bool:
-        """Clear the message and return whether there was a message.
+        """Clear the message, and return whether there was a message to clear.
 
         Without a message, the window handles Esc, which starts a feed hold during motion.
         """
@@ -183,7 +183,7 @@ class AnalysesPage(ListPage):
         return False
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update the model and show the present result."""
+        """Update the model and show the current result."""
         analyses = self.analyses
         analyses.update()
         self.description.description_text = analyses.description
@@ -193,7 +193,7 @@ class AnalysesPage(ListPage):
         self.drawing.show_drawing(shown, analyses.make_drawing, metric=metric)
 
     def apply_theme(self) -> None:
-        """Apply the present colors and language."""
+        """Apply the current colors and language."""
         self.drawing.apply_theme()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -207,7 +207,7 @@ class AnalysesPage(ListPage):
 
 
 class _Keys:
-    """Adapter that passes keys of the page to the model."""
+    """Adapter that passes key presses on the page to the model."""
 
     def __init__(self, analyses: AnalysesModel) -> None:
         self._analyses = analyses
@@ -217,11 +217,11 @@ class _Keys:
         return self._analyses.handle_key(key)
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False because this page has no entry."""
+        """Return False because this page has no entry field."""
         return False
 
     def on_open(self) -> None:
-        """Analyze the present data."""
+        """Analyze the current data."""
         self._analyses.restart_analysis()
 
     def handle_escape(self) -> bool:
@@ -229,7 +229,7 @@ class _Keys:
         return False
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE")
 
     def on_close(self) -> None:

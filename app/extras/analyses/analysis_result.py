@@ -1,4 +1,4 @@
-"""The result of one analysis of a record, with all values of its drawing and its table."""
+"""Result of one analysis of a record, with all values that the drawing and the table need."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class AnalysisKind(Enum):
 class Found:
     """Result of an analysis.
 
-    Only the field of the analysis that was run is set. ``missing_reason`` is the reason if there is no
-    result.
+    Only the field for this type of analysis is set. If there is no result, ``missing_reason`` is the
+    reason.
     """
 
     kind: AnalysisKind

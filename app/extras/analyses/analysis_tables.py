@@ -1,4 +1,4 @@
-"""The tables of path error, thread passes, ball-bar plot and responses, and the line above a response."""
+"""Tables of path error, thread passes, ball-bar plot and responses; text above a response."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def make_thread_table(
 
 
 def choose_response_table(title: str, found: Found, metric: bool) -> TableContent:
-    """Return the table of the response that was analyzed: drive test, spindle or axis."""
+    """Return the table of the analyzed response: drive test, spindle or axis."""
     if found.drive_test is not None:
         return make_results_table(title, found.drive_test, metric)
     if found.spindle_response is not None:
@@ -98,7 +98,7 @@ def choose_response_table(title: str, found: Found, metric: bool) -> TableConten
 
 
 def describe_response(found: Found, metric: bool) -> str:
-    """Return the line above the drawing of a response."""
+    """Return the description that is shown above the drawing of a response."""
     if found.drive_test is not None:
         return describe_test_path(found.drive_test.test_path, metric)
     if found.spindle_response is not None:

@@ -1,4 +1,4 @@
-"""Response of an axis to its last move: rise, overshoot, settling and lag, and the effect of other limits.
+"""Response of an axis to its last move: step response, lag, and the effect of other limits.
 
 The analysis uses a move from rest to rest, such as a jog step. It does not move an axis or write to a
 drive.
@@ -63,7 +63,7 @@ class AxisMotion:
         return self.setpoints - self.positions
 
     def predict_error(self, factor: float) -> FloatArray:
-        """Return the following error expected at ``factor`` times the present speed."""
+        """Return the following error expected at ``factor`` times the recorded speed."""
         return scale_error_to_speed(
             np.nan_to_num(calculate_velocity(self.times_s, self.setpoints)), self.following_error, factor
         )
@@ -79,9 +79,9 @@ class AxisResponse(AxisMotion):
 def make_motion(
     letter: str, axis: Axis, record: ScopeRecord, sample_range: slice, start_time_s: float
 ) -> AxisMotion:
-    """Return the motion of an axis in a part of a record.
+    """Return the motion of an axis in one part of a record.
 
-    The times of the motion are relative to ``start_time_s``, which is on the clock of the record in seconds.
+    The times of the motion are relative to ``start_time_s``, a time in seconds on the clock of the record.
     """
     times = record.times_s[sample_range] - start_time_s
     demand, actual = (
@@ -96,7 +96,7 @@ def make_motion(
 def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> AxisResponse:
     """Return the last move of one axis from rest to rest.
 
-    Raises AnalysisError.
+    Raises AnalysisError if the record contains no complete move.
     """
     found: tuple[int, int, str] | None = None
     for letter in linear_axes:
@@ -122,7 +122,7 @@ def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> Axis
 
 
 def find_moves(times_s: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
-    """Return the first and the last sample of every completed move, oldest move first."""
+    """Return the first and last sample index of every completed move, oldest move first."""
     moving = np.flatnonzero(np.abs(np.diff(setpoints)) > _STILL)
     if not len(moving):
         return []
@@ -152,7 +152,7 @@ def _response(letter: str, axis: Axis, record: ScopeRecord, cut: slice, zero: fl
 def draw_response(response: AxisMotion) -> AnalysisDrawing:
     """Return the drawing of a motion over time in seconds.
 
-    Commanded and actual position are above, and the following error is below.
+    The upper plot shows the commanded and actual positions, and the lower plot shows the following error.
     """
     asked = np.column_stack([response.times_s, response.setpoints])
     done = np.column_stack([response.times_s, response.positions])
@@ -165,7 +165,7 @@ def draw_response(response: AxisMotion) -> AnalysisDrawing:
 
 @dataclass(frozen=True, slots=True)
 class UnitFormat:
-    """Text format of lengths and speeds in the selected unit."""
+    """Text format for lengths and speeds in the selected unit of length."""
 
     metric: bool
 
@@ -197,7 +197,7 @@ class UnitFormat:
 
 
 def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tuple[str, ...]]:
-    """Return table rows with one row per value and one cell per step."""
+    """Return table rows for step responses, with one row per value and one cell per step."""
     return [
         (tr("RISE, 10 TO 90 %"), *(units.format_milliseconds(each.rise_time_s) for each in steps)),
         (tr("OVERSHOOT"), *(units.format_percentage(each.overshoot_fraction) for each in steps)),
@@ -206,7 +206,7 @@ def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tup
 
 
 def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, str, str]]:
-    """Return table rows about the following-error limit, other limits and other speeds.
+    """Return table rows that show the effect of other following-error limits and other speeds.
 
     Each row contains a name, a verdict and a value.
     """
@@ -249,7 +249,7 @@ def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, 
 
 
 def make_response_table(title: str, response: AxisResponse, metric: bool) -> TableContent:
-    """Return the table of the response, including the effect of other limits and speeds."""
+    """Return the table of a response, with rows for other following-error limits and other speeds."""
     units = UnitFormat(metric)
     rows = [
         TableRow((tr("TRAVEL"), "", units.format_length(response.step_response.step_size_mm))),

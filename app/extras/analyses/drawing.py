@@ -34,15 +34,15 @@ class AnalysisDrawing:
 
     @property
     def is_inverted(self) -> bool:
-        """Return whether the vertical axis points down, as X of a lathe does for the operator."""
+        """Return whether the vertical axis points down, as the X axis of a lathe does for the operator."""
         return self.has_equal_axes and self.axis_labels[0].startswith("X")
 
 
 def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
-    """Return the drawing in another unit of length.
+    """Return the drawing converted to another unit of length.
 
-    Axes with one scale are both multiplied by ``factor``. Otherwise only a vertical axis that is a length
-    is multiplied.
+    Axes that share a scale are both multiplied by ``factor``. Otherwise only a vertical axis that is a
+    length is multiplied.
     """
     by = np.array([factor if drawing.has_equal_axes else 1.0, factor if drawing.is_length else 1.0])
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.labeled_points)

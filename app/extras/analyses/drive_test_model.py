@@ -1,7 +1,7 @@
 """Model of the drive test: selection, travel, motion and results.
 
-The first press of an arrow key shows the travel. The next press of the same key moves the axis while the
-key is held down. The test does not write to a drive.
+The first press of an arrow key shows the travel of the test. When the same key is pressed again, the axis
+moves while the key is held down. The test does not write to a drive.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ TestDirection = tuple[str, int]  # axis and sign
 
 @dataclass(slots=True)
 class HeldTestKey(HeldJog):
-    """Key of a drive test that must be held down.
+    """Key that must be held down during a drive test.
 
     ``make_path`` returns the test path, and ``requested_direction`` is the direction whose travel is shown.
     """
@@ -85,8 +85,8 @@ class HeldTestKey(HeldJog):
 class DriveTestModel:
     """Model of the drive test page.
 
-    ``linear_axes`` contains the linear axes by letter. ``displayed_part`` is the displayed part of the last
-    results, or None while the selection is displayed.
+    ``linear_axes`` contains the linear axes by letter. ``displayed_part`` is the part of the last results
+    that is displayed, or None while the page shows the selection.
     """
 
     desk: Desk
@@ -135,14 +135,14 @@ class DriveTestModel:
         return self.scope.metric
 
     def _get_series_length(self, inches: tuple[float, ...], mm: tuple[float, ...], at: int) -> float:
-        """Return a length of a series in mm.
+        """Return one length of a series, converted to mm.
 
-        ``at`` is the index in the series of the selected unit.
+        ``at`` is the index in the series for the selected unit.
         """
         return mm[at] if self.is_metric else inches[at] * MM_PER_INCH
 
     def make_test_path(self, axis: str, sign: int) -> DriveTestMotion:
-        """Return the test path of the present selection for a direction."""
+        """Return the test path of the current selection for a direction."""
         if self.shape is Shape.RAMP:
             size = self._get_series_length(INCH_RAMPS, MM_RAMPS, self.ramp_index)
             return DriveTestMotion(
@@ -186,7 +186,7 @@ class DriveTestModel:
             self.frequency_index = (self.frequency_index + 1) % (len(SINE_FREQUENCIES_HZ) + 1)
 
     def show_next_results(self) -> None:
-        """Show the next part of the results, or the selection after the last part (F5)."""
+        """Show the next part of the results, or return to the selection after the last part (F5)."""
         self.desk.clear_prompt_line()
         if self.results is None:
             self.desk.say(tr("NO TEST VALUES YET. RUN A TEST FIRST"))
@@ -223,7 +223,7 @@ class DriveTestModel:
     def find_direction_refusal(self, direction: TestDirection) -> str:
         """Return the reason why this direction cannot be tested, or an empty string.
 
-        The control makes its own check before the motion.
+        The control makes its own check before the axis moves.
         """
         axis, sign = direction
         snapshot, model = self.desk.read_snapshot(), self.machine.find_axis(axis)
@@ -262,7 +262,7 @@ class DriveTestModel:
         )
 
     def make_travel_question(self) -> str:
-        """Return the question about the travel that the next press would start, or an empty string."""
+        """Return the question about the travel of the next test, or an empty string if none is pending."""
         asked = self.held_jog.requested_direction
         if asked is None or self.held_jog.active_jog is not None:
             return ""
@@ -280,7 +280,7 @@ class DriveTestModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the motion while the key is held down, and monitor the active test.
+        """Renew the jog lease while the key is held down, and monitor the active test.
 
         This method is called once per frame.
         """
@@ -303,7 +303,7 @@ class DriveTestModel:
     def _ended(self, snapshot: Snapshot) -> None:
         """Finish a test.
 
-        A complete test is analyzed when its last samples are available.
+        A test that was completed is analyzed when its last samples are available.
         """
         assert self._begun is not None
         test_status, live = snapshot.drive_test, self.scope.live_samples
@@ -351,11 +351,11 @@ class DriveTestModel:
         self.held_jog.press_direction(key_source, axis, direction_sign, is_rapid=False)
 
     def handle_key(self, _key: str) -> bool:
-        """Return False because this page has no entry."""
+        """Return False because this page has no entry field."""
         return False
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False because this page has no entry."""
+        """Return False because this page has no entry field."""
         return False
 
     def on_open(self) -> None:
@@ -376,7 +376,7 @@ class DriveTestModel:
         return self.held_jog.active_jog is not None
 
     def release_all(self) -> None:
-        """Stop the motion because the page, the window or the keyboard has lost the focus."""
+        """Stop the motion, because key releases are lost without the focus."""
         self.held_jog.release_all(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.requested_direction = None
 
@@ -394,7 +394,7 @@ class DriveTestModel:
     # --- display -------------------------------------------------------------------------------------
 
     def prompt_text(self) -> str:
-        """Return the prompt that applies in the present state."""
+        """Return the prompt for the current state of the test."""
         why = self.find_test_refusal()
         if why:
             return why
@@ -453,7 +453,7 @@ class DriveTestModel:
         )
 
     def _axis_rows(self, units: UnitFormat) -> list[TableRow]:
-        """Return rows with the permitted following error of each linear axis at standstill and full speed."""
+        """Return rows with the following-error limit of each linear axis at standstill and full speed."""
         return [
             TableRow(
                 (

@@ -1,4 +1,4 @@
-"""Results of a drive test: step, ramp and sine responses, bandwidth, and the effect of other limits.
+"""Results of a drive test: responses, bandwidth, and the effect of other limits.
 
 The record of a test contains the commanded test path, so a stored record gives the same results.
 """
@@ -66,10 +66,10 @@ def find_test_path(record: ScopeRecord) -> DriveTestMotion | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DriveTestResults:
-    """Results of one test.
+    """Results of one drive test.
 
-    A step or ramp has a response for the outbound and the return move. A sine has a response for each
-    frequency.
+    A step or ramp has two responses, one for the outbound and one for the return move. A sine has one
+    response per frequency.
     """
 
     test_path: DriveTestMotion
@@ -84,7 +84,7 @@ def calculate_results(
 ) -> DriveTestResults:
     """Calculate the results from the record of a complete test.
 
-    Raises AnalysisError.
+    Raises AnalysisError if the axis does not exist or the test was not completed.
     """
     name, axis = Message("{item} demand", item=path.axis), linear_axes.get(path.axis)
     if axis is None or name not in record.values_by_channel:
@@ -134,7 +134,7 @@ def _about(times: FloatArray, begin: float, end: float) -> slice:
 def _sine(
     record: ScopeRecord, path: DriveTestMotion, first: int, last: int, frequency: float
 ) -> SineResponse:
-    """Return the sine response without the first period, in which the axis settles."""
+    """Return the response to a sine. The first period is omitted, because the axis still settles."""
     times = record.times_s
     cut = _about(times, float(times[first]) + 1.0 / frequency, float(times[last]))
     asked, done = (record.values_by_channel[f"{path.axis} {what}"][cut] for what in ("demand", "actual"))
@@ -161,7 +161,7 @@ def describe_test_path(path: DriveTestMotion, metric: bool) -> str:
 
 
 class ResultsPart(Enum):
-    """Part of the results to display, because a small screen cannot show all results."""
+    """Part of the results that is displayed at one time. A small screen cannot show all results."""
 
     RESPONSE = "response"
     LIMITS = "window"

@@ -28,7 +28,7 @@ _TABLE, _HEAD, _PAD = 50.0, 3.4, 0.42  # units, units, ratio of the height
 class DriveTestPad(JogCross):
     """Arrow pad of the drive test.
 
-    The first press requests a direction. The next press runs the test while the key is held down.
+    The first press shows the travel. The next press runs the test while the key is held down.
     """
 
     displayed_state: RedrawingAttribute[object] = RedrawingAttribute(None)
@@ -38,7 +38,7 @@ class DriveTestPad(JogCross):
         self._model = model
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the arrow keys, and name the direction key that the operator must hold down."""
+        """Draw the arrow keys, and label the direction key that the operator must hold down."""
         self.controls.clear()
         self.frame(painter, tr("DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT"))
         asked = self._model.held_jog.requested_direction
@@ -52,7 +52,7 @@ class DriveTestPad(JogCross):
 class DriveTestPage(HeldKeysPage):
     """Page of the drive test.
 
-    ``refresh`` renews the motion while a key is held down. A frozen screen therefore stops the axis.
+    ``refresh`` renews the jog lease of a held key. If the screen freezes, the axis therefore stops.
     """
 
     NAME = "DRIVE TEST"
@@ -68,7 +68,7 @@ class DriveTestPage(HeldKeysPage):
         self.table = TablePanel(self.theme, model.change_setting, self)
 
     def prepare_slice(self) -> bool:
-        """Create a part of the chart before the page is first shown, and return whether steps remain."""
+        """Create a part of the chart in advance, and return whether more parts must be created."""
         self.model.scope.file_worker.deliver_results()
         return not self.drawing.is_ready()
 
@@ -85,29 +85,29 @@ class DriveTestPage(HeldKeysPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the results key (F5) as disabled until a test has run."""
+        """Return the disabled keys: the results key (F5) until a test has run."""
         return frozenset() if self.model.results is not None else frozenset({"F5"})
 
     def find_pending_question(self) -> str:
-        """Return the question about the travel that the next press would start."""
+        """Return the question about the travel of the next test, or an empty string if none is pending."""
         return self.model.make_travel_question()
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present state."""
+        """Return the prompt for the current state."""
         return self.model.prompt_text()
 
     def is_animating(self) -> bool:
-        """Return whether the page shows live measurements, because a test key is held down."""
+        """Return whether the page shows live measurements, which is the case while a test key is held."""
         return self.model.is_active
 
     def try_leave(self) -> bool:
-        """Stop all motion and return True."""
+        """Stop all motion, and return True because the page can always close."""
         self.jog_cross.release_all()
         self.model.stop_test()
         return True
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Renew the motion while a key is held down, and update the page."""
+        """Renew the jog lease while a key is held down, and update the page."""
         if not self._has_keyboard():
             self.release_if_active()
         model = self.model
@@ -124,7 +124,7 @@ class DriveTestPage(HeldKeysPage):
         )
 
     def apply_theme(self) -> None:
-        """Apply the present colors and language."""
+        """Apply the current colors and language."""
         self.drawing.apply_theme()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

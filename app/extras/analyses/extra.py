@@ -24,7 +24,7 @@ _DRIVE_TESTS = "app.extras.analyses.drive_test_model.DriveTestModel"
 
 
 class AnalysesExtra(OptionalFeature):
-    """Optional feature with the ANALYSES page, which the scope opens, and the DRIVE TEST page."""
+    """Optional feature with the pages ANALYSES (opened from the scope) and DRIVE TEST."""
 
     @property
     def page_descriptions(self) -> Sequence[PageDescription]:
@@ -51,7 +51,7 @@ class AnalysesExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Register the models of the analyses and the drive test, which are created at their first use."""
+        """Register the models of the analyses and the drive test. Each model is created at its first use."""
         desk.page_registry.attach_lazily(_ANALYSES, partial(_analyses, desk, machine))
         desk.page_registry.attach_lazily(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
 

@@ -1,6 +1,6 @@
-"""Response of the spindle to the last change of speed: rise, overshoot, settling time and variation.
+"""Response of the spindle to its last speed change: rise, overshoot, settling time and variation.
 
-The analysis uses the record of an ordinary run-up. It does not turn the spindle; only programs and MDI do.
+The analysis uses the record of an ordinary run-up. It never turns the spindle; only programs and MDI do.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class SpindleResponse:
 
     ``times_s`` (n,) are seconds from the change. ``commanded_rpm`` (n,) and ``measured_rpm`` (n,) are
     speeds in rpm. ``step_responses`` are the responses for the at-speed tolerance of the machine file and
-    for each of ``TOLERANCE_RATIOS``. ``variation_rpm`` is the peak-to-peak variation in rpm over the last
-    second, and ``mean_error_rpm`` is the mean error in rpm over the same time.
+    for each of ``TOLERANCE_RATIOS``. ``variation_rpm`` is the peak-to-peak variation and ``mean_error_rpm``
+    is the mean error over the last second, both in rpm.
     """
 
     times_s: FloatArray
@@ -48,7 +48,7 @@ class SpindleResponse:
 
     @property
     def acceleration_rpm_s(self) -> float:
-        """Return the acceleration between 10 and 90 % of the change in rpm/s.
+        """Return the acceleration between 10 and 90 % of the speed change, in rpm/s.
 
         The result is inf if both levels are reached within one sample.
         """
@@ -59,7 +59,7 @@ class SpindleResponse:
 def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0.
 
-    Raises AnalysisError.
+    Raises AnalysisError if the record has no such change or no measured spindle speed.
     """
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
@@ -116,7 +116,7 @@ def _shares(model: SpindleModel) -> tuple[float, ...]:
 
 
 def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepResponse:
-    """Return the response with a settling time of nan if the speed only passed through the tolerance band."""
+    """Return the response with a settling time of nan if the speed did not stay within the tolerance."""
     if times[-1] - step.settling_time_s >= model.at_speed_time:
         return step
     return replace(step, settling_time_s=math.nan)
@@ -132,7 +132,7 @@ def draw_spindle_response(response: SpindleResponse) -> AnalysisDrawing:
 
 
 def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
-    """Return the table of the response and of the settling times for narrower tolerances."""
+    """Return the table of the response, with settling times for narrower tolerances."""
     step, model = response.step_responses[0], response.spindle_model
     target = float(response.commanded_rpm[-1])
     rows = (

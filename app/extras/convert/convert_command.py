@@ -1,4 +1,4 @@
-"""The command ``turndesk convert FILE``, which converts a program of another control to OmniTurn.
+"""Command ``turndesk convert FILE``, which converts a program of another control to OmniTurn.
 
 The command also proves the converted program.
 """
@@ -72,7 +72,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def _m_codes(text: str) -> frozenset[int]:
     """Return the M codes in a list such as 41,42.
 
-    Raises ArgumentTypeError.
+    Raises ArgumentTypeError if the text is not a list of M codes.
     """
     parts = [each.strip().upper().removeprefix("M") for each in text.split(",")]
     if not all(each.isdecimal() for each in parts):
@@ -125,9 +125,9 @@ def _options(args: argparse.Namespace, control: SourceControl, machine: Machine)
 
 
 def _may_write(args: argparse.Namespace) -> str:
-    """Return the user who may write the ``--out`` file, or an empty string if the option is not given.
+    """Return the user who may write the ``--out`` file, or an empty string without this option.
 
-    Raises CommandError.
+    Raises CommandError if the file exists, has no folder, or may not be written.
     """
     if args.out is None:
         return ""

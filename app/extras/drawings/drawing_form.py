@@ -1,6 +1,6 @@
 """Form that makes a program from a drawing (DXF, SVG).
 
-Workers read and plan the drawing and try the program. The program consists of the lines of shapes.
+Workers read the drawing, plan the program and try it. The program consists of shape lines.
 """
 
 from __future__ import annotations
@@ -124,13 +124,13 @@ DRAWING_SHAPE = Shape(
 class FilledDrawing(FilledShape):
     """Form of a drawing with its values.
 
-    ``program_lines`` contains the lines of several shapes.
+    ``program_lines`` contains the program lines of several shapes.
     """
 
     program_lines: tuple[str, ...] = ()
 
     def make_lines(self, settings: ProgramSettings) -> list[str]:
-        """Return the program lines that the shapes have written."""
+        """Return the program lines that the shapes of the form write."""
         code = CodeWriter(settings)
         self.shape.write_lines(self, settings, code)
         return code.lines
@@ -141,9 +141,9 @@ class DrawingForm(ShapeForm):
     """Form of a drawing.
 
     ``drawing_files`` are the available drawings, and ``preceding_lines`` are the program lines before the
-    form. ``pending_request`` is the request that is being planned. After the trial, ``comparison`` compares
-    the part with the drawing, and ``remarks`` contains the requirements of the program and its uncut
-    sections.
+    form. ``pending_request`` is the request for a plan that is not finished. After the trial,
+    ``comparison`` compares the part with the drawing, and ``remarks`` lists what the program requires and
+    which sections stay uncut.
     """
 
     drawing_files: Mapping[str, Path] = field(default_factory=dict)
@@ -154,7 +154,7 @@ class DrawingForm(ShapeForm):
     is_canceled: bool = False
 
     def calculate(self) -> None:
-        """Request a plan for the entries.
+        """Request a plan for the current entries.
 
         The previous plan remains until the new plan arrives.
         """
@@ -177,7 +177,7 @@ class DrawingForm(ShapeForm):
         self._show()
 
     def apply_settings(self, settings: ProgramSettings) -> None:
-        """Calculate again with other tool data, unless reading was canceled.
+        """Calculate the form again with other tool data, unless the operator canceled reading.
 
         After a cancellation, F6 starts reading the drawing again.
         """
@@ -205,7 +205,7 @@ class DrawingForm(ShapeForm):
     def cancel(self) -> None:
         """Cancel reading the drawing.
 
-        F6 then requests a new plan.
+        F6 then starts reading again.
         """
         self.pending_request, self.is_canceled = None, True
         self.calculation_count += 1
@@ -234,7 +234,7 @@ class DrawingForm(ShapeForm):
         )
 
     def show_trial(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
-        """Show the result of the trial, which consists of the proof and the comparison with the drawing."""
+        """Show the result of the trial: the proof, and the comparison with the drawing."""
         plan = self.plan
         if plan is None or plan.program is None or plan.profile is None:
             return
@@ -272,14 +272,14 @@ class DrawingForm(ShapeForm):
         return self.plan.choices.get(field.word, ())
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a word that can be translated.
+        """Return whether a choice is a word to translate.
 
         Layer names are not translated.
         """
         return choice in field.choices or choice in _WORDS.get(field.word, ())
 
     def get_dimension_text(self, word: str) -> str:
-        """Return the number of a contour, or the value of another dimension as text."""
+        """Return the number of a contour, or the text of another dimension."""
         return (
             word.removeprefix("CONTOUR ")
             if word.startswith("CONTOUR ")
@@ -287,7 +287,7 @@ class DrawingForm(ShapeForm):
         )
 
     def select_word(self, word: str) -> None:
-        """Select a field, or select a contour by its number in the drawing."""
+        """Select a field by its word, or a contour by its number in the drawing."""
         if word.startswith("CONTOUR "):
             self._set("CONTOUR", word.removeprefix("CONTOUR "))
             word = "CONTOUR"
@@ -334,7 +334,7 @@ TrialFunction = Callable[
 def skip_trial(
     _text: str, _plan: DrawingPlan, _watch: ProgressCallback
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Return no result.
+    """Return an empty result.
 
     This function replaces the trial if no machine data are available.
     """
@@ -342,7 +342,7 @@ def skip_trial(
 
 
 class AddedDrawingForm(AddedForm):
-    """Form for drawings that is added to the list of shapes.
+    """Drawing form in the list of shapes.
 
     ``find_drawing_files`` returns the available drawings, and ``run_trial`` tries a program.
     """
@@ -362,7 +362,7 @@ class AddedDrawingForm(AddedForm):
     def open_form(
         self, settings: ProgramSettings, preceding_lines: tuple[str, ...], requested_file: Path | None
     ) -> DrawingForm:
-        """Return a form with the available drawings, with the requested drawing first."""
+        """Return a form that lists the available drawings, starting with the requested drawing."""
         files = dict(self.find_drawing_files())
         if requested_file is not None:
             files = {
@@ -395,9 +395,9 @@ class AddedDrawingForm(AddedForm):
     def _try(
         self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
     ) -> None:
-        """Try the program ``text``.
+        """Try the program ``text`` on a worker.
 
-        ``text`` is None if the form has been closed. No trial is then made.
+        If the form has been closed, ``text`` is None and nothing is tried.
         """
         if not form.program_lines or text is None:
             return
@@ -428,7 +428,7 @@ class AddedDrawingForm(AddedForm):
         )
 
     def prompt_text(self, form: ShapeForm) -> str:
-        """Return the progress of reading, the error, or the prompt that explains the keys."""
+        """Return the reading progress, the error, or else the prompt that explains the keys."""
         if not form.is_calculating:
             keys = tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
             return tr(form.current_error or keys)

@@ -62,7 +62,7 @@ class PlanRequest:
 class PlacedElement:
     """Element of a drawing as (z, r) points relative to the axis of rotation.
 
-    ``line_number`` and ``contour_number`` count from 1. A value of 0 means that the number does not apply.
+    ``line_number`` and ``contour_number`` count from 1. An element without such a number has the value 0.
     """
 
     points: tuple[tuple[float, float], ...]
@@ -74,7 +74,7 @@ class PlacedElement:
 class DrawingPlan:
     """Plan of a program from a drawing.
 
-    ``errors`` contains the errors by field. ``program`` and ``profile`` are None if there is an error.
+    ``errors`` contains the errors by field name. ``program`` and ``profile`` are None if there is an error.
     """
 
     request: PlanRequest
@@ -88,7 +88,7 @@ class DrawingPlan:
 
 
 class DrawingPlanner:
-    """Planner that caches the last drawing and is used by one worker.
+    """Planner that caches the last drawing. Only one worker uses it.
 
     ``is_reading`` is True while a file is being read.
     """
@@ -99,7 +99,7 @@ class DrawingPlanner:
         self.is_reading = False
 
     def make_plan(self, request: PlanRequest, report_progress: ProgressCallback) -> DrawingPlan:
-        """Return the plan with its errors by field.
+        """Return the plan. The errors in the plan are stored by field.
 
         ``watch`` can raise an exception to cancel the work.
         """
@@ -255,7 +255,7 @@ class _PlanBuilder:
         return self.nets[int(number) - 1]
 
     def _check_unit(self, net: ElementGroup) -> None:
-        """Reject the unit of the file if the contour fits the machine only in another unit."""
+        """Report an error if the contour fits the machine only in a unit other than that of the file."""
         assert self.view is not None
         if "DUNIT" in self.request.entered_values:
             return
@@ -299,7 +299,7 @@ _FIELDS = frozenset(
 
 
 def _find_form_field(word: str) -> str:
-    """Return the form field that shows an error of a shape in the field ``word``."""
+    """Return the form field that shows an error of a shape about its field ``word``."""
     return word if word in _FIELDS else "CONTOUR" if word.startswith("#") else "T"
 
 
@@ -322,7 +322,7 @@ def _placed(
 
 
 def _polyline(element: Element) -> tuple[tuple[float, float], ...]:
-    """Return the (z, r) points of an element, with arcs divided into chords."""
+    """Return the (z, r) points of an element. Arcs are divided into chords."""
     if isinstance(element, Line):
         return _turned([element.start, element.end])
     assert isinstance(element, Arc)
@@ -341,9 +341,9 @@ def _turned(points: Iterable[tuple[float, float]]) -> tuple[tuple[float, float],
 
 
 def draw_plan(plan: DrawingPlan, contour_number: int, comparison: DrawingComparison | None = None) -> Sketch:
-    """Return the sketch of the drawing with its axis and the selected contour.
+    """Return the sketch of the drawing with its axis of rotation and the selected contour.
 
-    Sections that are uncut or cut incorrectly are red.
+    Contour sections that the program does not cut, or cuts incorrectly, are red.
     """
     drawn = [Outline(each.points, "part") for each in plan.elements if each.line_number]
     outlines = [

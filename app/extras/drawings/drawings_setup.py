@@ -1,4 +1,4 @@
-"""Setup of the drawing form with the available drawings and the trial with the present tools."""
+"""Setup of the drawing form with the available drawings and a trial that uses the current tools."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def run_trial(
     plan: DrawingPlan,
     report_progress: ProgressCallback,
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Prove the program with the stock of the form and the present tools, and compare the part."""
+    """Prove the program with the form's stock and the current tools, and compare the part."""
     made, chosen, mm = plan.program, plan.profile, plan.request.settings.mm
     if made is None or chosen is None:
         return None, ()

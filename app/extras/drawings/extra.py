@@ -31,13 +31,13 @@ class DrawingsExtra(OptionalFeature):
             add_drawing_form(model, desk, machine)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk profile``, which follow ``access table --json``."""
+        """Return the JSON outputs of ``turndesk profile``, documented after ``access table --json``."""
         from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
-        """Return the screen texts of the DRAWING form, including texts that its table does not contain."""
+        """Return the screen texts of the DRAWING form, including texts that are not in its field table."""
         from app.extras.drawings.drawing_form import DRAWING_SHAPE
         from app.extras.shapes.shape_form import list_translatable_texts
 

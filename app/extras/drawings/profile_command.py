@@ -1,4 +1,4 @@
-"""Command ``turndesk profile DRAWING``, which makes a turning program from a contour of a drawing.
+"""Command ``turndesk profile DRAWING``, which makes a turning program from a drawing's contour.
 
 The module also declares the JSON keys of the command.
 """
@@ -216,9 +216,9 @@ def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, mac
 
 
 def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
-    """Return the language that the output file name indicates, or else the language of the machine.
+    """Return the language of the output file name, or else the language of the machine.
 
-    Raises CommandError for Klartext.
+    Raises CommandError if the language is Klartext.
     """
     if args.out is None:
         return Dialect.SINUMERIK if machine.mdi_language == Dialect.SINUMERIK else Dialect.OMNITURN
@@ -366,7 +366,7 @@ def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 def _typed(
     chosen: ContourProfile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]
 ) -> dict[str, FieldValue]:
-    """Return the field values of the shapes, with lengths in the unit of the program."""
+    """Return the command's options as field values of the shapes, in the length unit of the program."""
     from core.extras.drawings.profile_description import propose_fields
 
     said: dict[str, FieldValue | None] = {

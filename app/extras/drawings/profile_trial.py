@@ -1,4 +1,4 @@
-"""Trial of a program from a drawing, with a proof and a comparison of the part with the drawing."""
+"""Trial of a program from a drawing: the proof, and the comparison of the part with the drawing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HOME = ToolOffset(12.7, -76.2)
 
 @dataclass(frozen=True, slots=True)
 class TrialStock:
-    """Stock of a trial in mm: bar diameter, material in front of the face, and predrilled hole diameter."""
+    """Stock of a trial in mm: bar diameter, stock in front of the face, predrilled hole diameter."""
 
     bar_diameter_mm: float
     face_stock_mm: float = 0.0
@@ -56,7 +56,7 @@ def run_profile_trial(
 ) -> TrialResult:
     """Prove the program and compare the part with the profile.
 
-    All tools are at the same position and have the required nose offset ``nose_offset``.
+    The trial uses the same position and the required nose offset ``nose_offset`` for all tools.
     """
     of_edge = nose_offset is not None and nose_offset.quadrant
     secondary = (

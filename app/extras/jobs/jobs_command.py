@@ -54,9 +54,9 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Execute the action.
+    """Execute the action that the user specified.
 
-    Raises CommandError.
+    Raises CommandError if the action fails.
     """
     with open_store(read_only=args.action == "list") as store:
         who = (

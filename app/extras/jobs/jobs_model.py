@@ -1,4 +1,4 @@
-"""Model of the JOBS page without Qt: the queue, the setup of the selected job, and the keys."""
+"""Model of the JOBS page, independent of Qt: the queue, the selected job's setup, and the keys."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ _WIDE = 46  # characters of a cell
 class JobsModel:
     """Model of the JOBS page.
 
-    ``entry_kind`` is the kind of value that the operator is entering, a count or a note. The value is for
-    the selected job or a new job.
+    ``entry_kind`` is the kind of value that the operator is entering: a count or a note. The entry is for
+    the selected job or for a new job.
     """
 
     desk: Desk
@@ -80,7 +80,7 @@ class JobsModel:
         )
 
     def update(self) -> None:
-        """Keep the selection within the queue and request the proof of the selected job.
+        """Limit the selection to the rows of the queue, and request the proof of the selected job.
 
         This method is called once per frame.
         """
@@ -93,11 +93,11 @@ class JobsModel:
         )
 
     def find_proof(self, job: JobRow) -> ProvedJob | str | None:
-        """Return the proof of a job, the reason why proving failed, or None while proving is pending."""
+        """Return the proof of a job, the reason why it failed, or None while the proof is pending."""
         return self.job_watch.proofs.find_proof(job.program, self.desk.offset_book.changes)
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table of the queue, with the pending question below the table."""
+        """Return the table of the queue, with the pending question if there is one."""
         rows = tuple(self._row(number, job, snapshot) for number, job in enumerate(self.jobs, 1))
         question = ""
         if self.entry_kind == "count":
@@ -164,7 +164,7 @@ class JobsModel:
         )
 
     def make_setup_table(self) -> TableContent:
-        """Return the setup table of the selected job with tools, findings of the proof, and notes."""
+        """Return the setup table of the selected job, with tools, proof findings and notes."""
         job = self.selected_job
         title = tr("SETUP SHEET") + (f"  ·  {job.program}" if job is not None else "")
         rows = tuple(self._setup_rows(job)) if job is not None else ()
@@ -229,7 +229,7 @@ class JobsModel:
         return self._notes[1]
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         if self.entry_kind:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.selected_job is None:
@@ -275,14 +275,14 @@ class JobsModel:
     def load_job(self) -> None:
         """Load the selected job.
 
-        Only the palm buttons can start its cycle.
+        Loading does not start a cycle; only the palm buttons can do that.
         """
         job = self.selected_job
         if job is not None:
             self.job_watch.load_job(job)
 
     def add_job(self) -> None:
-        """Start the entry of a job for the loaded program, and ask for the number of parts."""
+        """Start the entry of a job for the loaded program by asking for the number of parts."""
         name = self.desk.program_loader.loaded_program.name
         if not name:
             self.desk.say(NO_PROGRAM_MESSAGE)
@@ -290,7 +290,7 @@ class JobsModel:
         self.add_program(name)
 
     def add_program(self, name: str) -> None:
-        """Start the entry of a job for a program, and ask for the number of parts."""
+        """Start the entry of a job for the given program by asking for the number of parts."""
         self.desk.clear_prompt_line()
         self.entry_kind, self.entry_program, self.entry = "count", name, InputField()
 
@@ -328,7 +328,7 @@ class JobsModel:
     def remove_job(self) -> None:
         """Remove the selected job after confirmation.
 
-        The part count of its program does not change.
+        The part count of the program is not changed.
         """
         job = self.selected_job
         if job is None:
@@ -421,11 +421,11 @@ class JobsModel:
         self.entry_kind = ""
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the entry."""
+        """Return whether a character can be entered in the open entry."""
         return bool(self.entry_kind) and self.entry.accepts_key(key)
 
     def select_row(self, row: int) -> None:
-        """Select a job by its row, unless an entry is open."""
+        """Select a job by its row number, unless an entry is open."""
         if not self.entry_kind and self.jobs:
             self.desk.clear_prompt_line()
             self.selected_row = max(0, min(len(self.jobs) - 1, row))
@@ -433,7 +433,7 @@ class JobsModel:
     def on_open(self) -> None:
         """Discard cached notes and proofs when the page opens.
 
-        Programs and shapes can have changed while the page was closed.
+        Programs and tool shapes can have changed while the page was closed.
         """
         self._notes = "", ()
         self.job_watch.proofs.clear_proofs()
@@ -451,7 +451,7 @@ class JobsModel:
     def on_close(self) -> None:
         """Cancel the entry when the page closes.
 
-        While the page is closed, the selected job is no longer proved first.
+        The selected job is then no longer proved before the other jobs.
         """
         self.entry_kind, self.job_watch.selected_program = "", ""
 
@@ -460,7 +460,7 @@ class JobsModel:
 
 
 def _folded(text: str) -> str:
-    """Return a text divided into the two lines of a table cell."""
+    """Return a text split into the two lines of a table cell."""
     first, *more = wrap(text, _WIDE) or [""]
     return f"{first}\n{' '.join(more)}" if more else first
 

@@ -56,7 +56,7 @@ def _proved(
     program: str,
     watch: ProgressCallback,
 ) -> ProvedJob:
-    """Prove a program with the present offsets and shapes, and return its setup sheet.
+    """Prove a program with the current offsets and tool shapes, and return its setup sheet.
 
     This function runs on a worker. Raises ValueError if the program is not in the list.
     """

@@ -22,7 +22,7 @@ PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; ratio of the height
 
 
 class JobsPage(ListPage):
-    """Page that shows the job model and passes keys to the model."""
+    """Page that shows the job model. The page passes key presses to the model."""
 
     NAME = "JOBS"
     model: JobsModel
@@ -36,7 +36,7 @@ class JobsPage(ListPage):
         self._asked = ""
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys of the model, and F2 if no job can be loaded."""
+        """Return the disabled keys of the model. Add F2 if no job can be loaded."""
         return super().find_disabled_keys() | ({"F2"} if self.model.load_refusal else set())
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
@@ -58,7 +58,7 @@ class JobsPage(ListPage):
     def _load(self) -> None:
         """Open the Automatic page and load the job.
 
-        If an interrupted job causes a question, the question is then visible.
+        The Automatic page is opened first because loading can ask about an interrupted job.
         """
         model = self.model
         if model.check_loadable() and self.host.open_page(page_table.AUTOMATIC):

@@ -1,6 +1,6 @@
-"""Watch of the job queue: the active job, the next job and the setup that it requires.
+"""Watch of the job queue: the active job, the next job and its required setup.
 
-A worker proves the next job while another job runs. The proof does not affect the executor.
+A worker proves the next job while another job runs. The proof does not affect the running program.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ _TOLD = 3  # maximum number of displayed findings
 
 @dataclass(frozen=True, slots=True)
 class ProvedJob:
-    """Program of the queue that was proved with the offsets at that time.
+    """Program of the queue, proved with the offsets at the time of the proof.
 
     ``tools_at_last_start`` contains the tools at the last start of the program. ``last_start_utc`` is the
-    UTC time of that start, or empty if the program has never run.
+    UTC time of that start, or an empty string if the program has never run.
     """
 
     setup_sheet: SetupSheet
@@ -77,7 +77,7 @@ def list_job_tools(
 
 
 def count_open_items(job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
-    """Return the number of open items that must be solved before the job can start.
+    """Return the number of open items that the operator must resolve before the job can start.
 
     Open items are required tool actions and errors of the proof.
     """
@@ -113,7 +113,7 @@ def _of_life(tool: SetupTool, life: ToolLife | None, parts: int) -> Iterator[str
 
 
 def _parts_left(life: ToolLife, seconds: float) -> int | None:
-    """Return the number of parts that the remaining tool life covers.
+    """Return the number of parts that can be made in the remaining tool life.
 
     ``seconds`` is the cutting time per part of this job. The result is None if the tool life has no limit.
     """
@@ -124,7 +124,7 @@ def _parts_left(life: ToolLife, seconds: float) -> int | None:
 
 
 def _list_tip_actions(tool: SetupTool, job: ProvedJob) -> Iterator[str]:
-    """Yield a note if the tool tip has changed since the last start of the program."""
+    """Yield a note if the tip of a tool has changed since the last start of the program."""
     then, now = job.tools_at_last_start.get(tool.tool_number), tool.tool_offset
     if then is None or now is None:
         return
@@ -199,7 +199,7 @@ MAX_PROOFS = 20
 
 @dataclass(slots=True)
 class JobProofs:
-    """Proofs of jobs, identified by program and offsets.
+    """Proofs of jobs, by program and offsets.
 
     ``request_proofs`` and ``find_proof`` never block.
     """
@@ -210,7 +210,7 @@ class JobProofs:
     _asked: tuple[str, int] | None = None
 
     def request_proofs(self, program_names: Sequence[str], offset_revision: int) -> None:
-        """Request proofs in the order of ``programs`` and cancel an obsolete proof.
+        """Request proofs in the order of ``programs``, and cancel a running proof that is not needed.
 
         ``offset_revision`` identifies the state of the offset tables. This method is called once per frame.
         """
@@ -224,11 +224,11 @@ class JobProofs:
         self.worker.request_work(partial(self.prove_program, wanted[0]), done, done)
 
     def find_proof(self, program: str, offset_revision: int) -> ProvedJob | str | None:
-        """Return the proof of a program, the reason why proving failed, or None while proving is pending."""
+        """Return the proof of a program, the reason why it failed, or None while the proof is pending."""
         return self._made.get((program, offset_revision))
 
     def clear_proofs(self) -> None:
-        """Discard all proofs because files and shapes can have changed."""
+        """Discard all proofs, because files and tool shapes may have changed."""
         self._made.clear()
         self._asked = None
 
@@ -239,7 +239,7 @@ class JobProofs:
             del self._made[next(iter(self._made))]
 
     def close(self) -> None:
-        """Cancel the present proof and stop the worker."""
+        """Cancel the current proof and stop the worker."""
         self.worker.close()
 
 
@@ -271,19 +271,19 @@ class JobWatch:
 
     @property
     def active_job(self) -> JobRow | None:
-        """Return the active job, for which finished parts are counted, or None."""
+        """Return the job for which finished parts are counted, or None if no job is active."""
         return next((row for row in self.jobs if row.is_active), None)
 
     def is_active_and_loaded(self, job: JobRow) -> bool:
         """Return whether a job is active and its program is loaded.
 
-        After a restart, a job can be active although its program is not loaded.
+        After a restart, the program of the active job may not be loaded.
         """
         return job.is_active and self.desk.program_loader.loaded_program.name == job.program
 
     @property
     def next_job(self) -> JobRow | None:
-        """Return the first unfinished job that is not active, or None."""
+        """Return the first unfinished job other than the active job, or None if there is no such job."""
         return next((row for row in self.jobs if not row.is_done and not row.is_active), None)
 
     @property
@@ -324,7 +324,7 @@ class JobWatch:
     def load_job(self, job: JobRow) -> None:
         """Load the program of a job that the operator has selected.
 
-        Parts count for the job after its program is loaded.
+        Parts count for the job only after its program is loaded.
         """
         if not self.desk.program_choice.can_choose():
             return
@@ -341,7 +341,7 @@ class JobWatch:
     def _begin(self, loaded: LoadedProgram) -> None:
         """Start the job after its program is loaded.
 
-        A question about an interrupted job can still cancel loading.
+        The operator can still cancel loading when asked about an interrupted job.
         """
         if self._loading is None:
             return
@@ -362,9 +362,9 @@ class JobWatch:
     # --- messages ------------------------------------------------------------------------------------
 
     def _report_finished(self, job: JobRow | None) -> None:
-        """Report a finished job once, when its count is reached.
+        """Report a finished job once, when its part count is reached.
 
-        Jobs that were finished before TurnDesk started appear only in the notice.
+        Jobs that were finished before TurnDesk started are shown only in the notice.
         """
         if not self.parts_watch.parts_book.load_count:
             return
@@ -396,10 +396,7 @@ class JobWatch:
         return Message("{words}, {job}", words=words, job=self.describe_state(job))
 
     def describe_state(self, job: JobRow) -> str:
-        """Return the state of a waiting job as text.
-
-        The text says that the job is not proved, has open items or is ready.
-        """
+        """Return the state of a waiting job as text: not proved, open items, or ready."""
         made = self.proofs.find_proof(job.program, self.desk.offset_book.changes)
         if made is None:
             return tr("NOT PROVED YET")
@@ -413,7 +410,7 @@ class JobWatch:
         )
 
     def make_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice about a finished job and the next job for the Automatic page, or None."""
+        """Return the notice for the Automatic page about finished and next jobs, or None."""
         job = self.active_job
         if (
             job is None
@@ -425,7 +422,7 @@ class JobWatch:
         return NoticeRow(self._done_words(job), self._next_words(), ((JOBS_KEY, "SHIFT+F6"),), "run")
 
     def find_reminder(self) -> str:
-        """Return an empty string because the notice replaces the text on the prompt line."""
+        """Return an empty string, because the job notice is used instead of a reminder."""
         return ""
 
     def close(self) -> None:
@@ -434,4 +431,4 @@ class JobWatch:
 
 
 def _nothing() -> None:
-    """Do nothing because the queue shows the stored change."""
+    """Do nothing, because the queue shows each change after it is stored."""

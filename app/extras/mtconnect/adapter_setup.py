@@ -1,4 +1,4 @@
-"""Setup of the MTConnect adapter of a machine and of its device model."""
+"""Setup of the MTConnect adapter of a machine, and of its device model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from drivers.wakeups import RealClock
 def start_adapter(
     machine: Machine, read_snapshot: Callable[[], Snapshot], report_error: Callable[[str], None]
 ) -> Callable[[], None] | None:
-    """Start to report the state of the machine to agents, and return a function that stops reporting.
+    """Start to report the machine state to MTConnect agents, and return a function that stops this.
 
     If the port cannot be opened, the error is reported and the machine runs without the adapter. Returns
     None if the adapter is not enabled or cannot run.
@@ -74,7 +74,7 @@ def is_adapter_enabled(machine: Machine) -> bool:
 def check_adapter(machine: Machine, table: MtconnectTable) -> None:
     """Check that the port can be opened and that the device model is valid.
 
-    Raises DriverError.
+    Raises DriverError if one of these checks fails.
     """
     open_listening_socket(table.bind, table.port).close()
     make_device_model(machine, get_utc_now())
@@ -83,9 +83,9 @@ def check_adapter(machine: Machine, table: MtconnectTable) -> None:
 def make_adapter(
     machine: Machine, table: MtconnectTable, read_snapshot: Callable[[], Snapshot]
 ) -> MtconnectAdapter:
-    """Return the adapter, which uses the real-time clock.
+    """Return an adapter that uses the real-time clock.
 
-    All data of the adapter are from snapshots.
+    The adapter reads all its data from snapshots.
     """
     device = make_device(machine, table.device)
     reader = MachineReader(machine, time.monotonic)
@@ -117,7 +117,7 @@ def make_device_model(machine: Machine, creation_time: datetime) -> str:
 
 
 def make_device(machine: Machine, name: str) -> Component:
-    """Return the device model of a machine with the given name.
+    """Return the device model of a machine, with the given device name.
 
     On a lathe, the spindle is also the C axis unless C has a separate drive.
     """

@@ -30,8 +30,8 @@ class MtconnectExtra(OptionalFeature):
     ) -> CloseFunction | None:
         """Start the MTConnect adapter, and return the function that stops it.
 
-        The result is None if the machine file has no [mtconnect] table or the adapter cannot run.
-        ``report_reason`` shows the reason if the adapter cannot run.
+        The result is None if the machine file has no [mtconnect] table or the adapter cannot run. If the
+        adapter cannot run, ``report_reason`` receives the reason.
         """
         if desk.machine.machine is None or _TABLE not in desk.machine.machine.hardware.tables:
             return None
@@ -47,10 +47,10 @@ class MtconnectExtra(OptionalFeature):
         *,
         is_real_time: bool,
     ) -> CloseFunction | None:
-        """Start the MTConnect adapter for a run without a screen, and return the function that stops it.
+        """Start the adapter for a run without a screen, and return the function that stops the adapter.
 
         The result is None if the machine file has no [mtconnect] table or the adapter cannot run. A run
-        that is faster than real time is not reported, and ``report_reason`` shows the reason.
+        that is faster than real time is not reported, and ``report_reason`` receives the reason.
         """
         if _TABLE not in machine.hardware.tables:
             return None

@@ -1,6 +1,6 @@
 """Command ``turndesk machine mtconnect``, which prints the device model.
 
-The module also adds the row of the adapter to ``turndesk machine check``.
+The module also adds a row for the adapter to ``turndesk machine check``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def add_parser(actions: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write ``Devices.xml`` for a machine file to stdout.
 
-    Raises CommandError.
+    Raises CommandError if the machine file or the device model is invalid.
     """
     from app.compose.machine.machine_setup import read_machine
     from app.extras.mtconnect.adapter_setup import is_adapter_enabled, make_device_model

@@ -21,8 +21,8 @@ _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
 class Announcement:
     """Announcement of an event.
 
-    ``kind`` is part, stop, alarm, tool-life or runs. ``text`` is a sentence, and ``status`` is the status
-    at the event.
+    ``kind`` is part, stop, alarm, tool-life or runs. ``text`` describes the event in a sentence, and
+    ``status`` is the machine status at that time.
     """
 
     kind: str
@@ -30,14 +30,14 @@ class Announcement:
     status: StatusDocument
 
     def make_json(self) -> bytes:
-        """Return the JSON with the keys of the status, and with the kind and the text of the event."""
+        """Return JSON with the keys of the status, plus the kind and the text of the event."""
         return json.dumps({"event": self.kind, "text": self.text, **self.status}).encode()
 
 
 def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterator[Announcement]:
-    """Yield the events between two statuses.
+    """Yield the events that happened between two statuses.
 
-    Without a previous status, there are no events.
+    If there is no previous status, no events are found.
     """
     state, was = str(current["state"]), previous.get("state")
     if was is None:
@@ -59,9 +59,9 @@ def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterato
 
 
 def _more(before: object, now: object) -> bool:
-    """Return whether the count of parts made since the start has increased.
+    """Return whether the number of parts made since TurnDesk started has increased.
 
-    The count of the program is not used, because the operator can edit it.
+    The part count of the program is not used, because the operator can edit it.
     """
     return isinstance(now, int) and isinstance(before, int) and now > before
 
@@ -78,7 +78,7 @@ def _changed(was: str, state: str, now: StatusDocument) -> Iterator[Announcement
 
 
 class AnnouncementReceiver(Protocol):
-    """Receiver of announcements.
+    """Interface of a receiver of announcements.
 
     No method waits for a response of the other system.
     """
@@ -94,7 +94,7 @@ class AnnouncementReceiver(Protocol):
 
 
 class Announcer:
-    """Announcer that polls the status twice per second in its own thread."""
+    """Announcer that polls the status in a separate thread, twice per second."""
 
     def __init__(
         self, read_status: Callable[[], StatusDocument], receivers: Sequence[AnnouncementReceiver]

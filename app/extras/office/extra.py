@@ -20,7 +20,7 @@ _TABLES = frozenset({"status_page", "announce"})  # tables whose presence loads 
 class OfficeExtra(OptionalFeature):
     """Optional feature with the office status page and announcements.
 
-    The feature declares the tables [status_page] and [announce] of the machine file.
+    The feature declares the machine file tables [status_page] and [announce].
     """
 
     supervised_threads = {

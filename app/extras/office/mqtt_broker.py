@@ -1,6 +1,6 @@
 """MQTT receiver of announcements.
 
-The topics are TOPIC/available (set to offline by the last will), TOPIC/state and TOPIC/event.
+The topics are TOPIC/state, TOPIC/event and TOPIC/available, which the last will sets to offline.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ _log = logging.getLogger(__name__)
 
 
 class _Client(mqtt.Client):
-    """Paho client that reports the reason if it cannot connect."""
+    """Paho client that reports the reason if a connection fails."""
 
     on_failed: Callable[[Exception], None]
 
     def reconnect(self) -> MQTTErrorCode:
         """Reconnect to the broker.
 
-        The thread of paho calls this method and continues only after an OSError.
+        Paho's thread calls this method. The thread continues only if the error is an OSError.
         """
         try:
             return super().reconnect()
@@ -60,7 +60,7 @@ class _Client(mqtt.Client):
 class MqttReceiver:
     """Receiver that publishes to an MQTT broker.
 
-    The thread of paho reconnects after the broker was unavailable.
+    Paho's thread reconnects when the broker is available again.
     """
 
     def __init__(self, table: AnnounceTable) -> None:

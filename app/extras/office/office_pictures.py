@@ -1,4 +1,4 @@
-"""Pictures of the office page: an SVG with the following errors around an alarm, and a PNG of an image."""
+"""Pictures of the office page: following errors around an alarm as SVG, and an image as PNG."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ERROR = " following error"
 def make_alarm_svg(record: ScopeRecord) -> bytes:
     """Return an SVG of the following errors over time, with the text and the time of the alarm.
 
-    All errors have the same scale. The result is empty if there are no data.
+    All following errors are drawn to the same scale. The result is an empty string if there are no data.
     """
     curves = _curves(record)
     times = record.times_s - record.times_s[0] if len(record.times_s) else record.times_s
@@ -87,10 +87,10 @@ _BITS, _RGBA = 8, 6  # bits per sample; the color type
 
 
 def encode_png(pixels: bytes, width: int, height: int) -> bytes:
-    """Return an image as a PNG file.
+    """Return the PNG file of an image.
 
-    Pixels have 32 bits: alpha, red, green and blue, from the highest bits to the lowest. Rows start at the
-    top.
+    Pixels have 32 bits: alpha, red, green and blue, from the highest bits to the lowest. The first row is
+    the top row.
     """
     argb = np.frombuffer(pixels, dtype=np.uint32).reshape(height, width)
     rgba = np.stack([argb >> 16, argb >> 8, argb, argb >> 24], axis=-1).astype(np.uint8)

@@ -42,7 +42,7 @@ MAX_LISTED_STOPS = 6  # number of latest stops
 
 @dataclass(frozen=True, slots=True)
 class StatusSource:
-    """Source of the status, which can be read from any thread.
+    """Source of the status. Any thread can read the status.
 
     ``calculate_time_left`` returns seconds, or inf while the machine is stopped.
     """
@@ -55,7 +55,7 @@ class StatusSource:
     get_current_utc: Callable[[], datetime]
 
     def read_status(self) -> StatusDocument:
-        """Return the values for status.json and the page by key.
+        """Return the values for status.json and the status page, by key.
 
         Times are in seconds. None means that a value is not known.
         """
@@ -118,8 +118,8 @@ def start_office(
 ) -> Callable[[], None]:
     """Start the status page and the announcer, and return a function that stops them.
 
-    Each of them starts only if the machine file enables it. If one fails, the error is reported and the
-    machine runs without it.
+    Each service starts only if the machine file enables it. If a service fails, the error is reported and
+    the machine runs without that service.
     """
     look = _look(desk, machine)
     closing: list[Callable[[], None]] = []
@@ -242,7 +242,7 @@ class PartPicture:
             self._drawn = job.digest, self._png(job)
 
     def get_png(self) -> bytes:
-        """Return the PNG, or empty bytes if the part of the loaded program is not drawn yet."""
+        """Return the PNG, or empty bytes if the part has not been drawn yet."""
         job, (digest, png) = self.get_job(), self._drawn
         return png if job is not None and job.digest == digest else b""
 
@@ -265,7 +265,7 @@ class AlarmPicture:
     _drawn: tuple[str, bytes] = ("", b"")
 
     def update(self) -> None:
-        """Draw a new alarm record if no program runs."""
+        """Draw a new alarm record, but only while no program runs."""
         from core.records.record_file import RECORD_SUFFIX
 
         names = sorted(self.folder.glob(f"*-alarm*{RECORD_SUFFIX}")) if self.folder is not None else []

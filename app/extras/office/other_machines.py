@@ -1,6 +1,6 @@
-"""Status of other machines, which are TurnDesk systems or MTConnect agents.
+"""Status of other machines, which run TurnDesk or an MTConnect agent.
 
-The status is read only while the page is viewed.
+The status is read only while a browser views the page.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _ASK = make_timed_opener(ProxyHandler({}))  # machines of one shop are accessed 
 
 
 def make_status_address(address: str) -> str:
-    """Return the address of the status document of a TurnDesk page.
+    """Return the address of the status document for the address of a TurnDesk page.
 
     The token remains in the query of the address.
     """
@@ -70,9 +70,9 @@ def read_status(
 ) -> OtherMachine:
     """Send a request to another machine and return its status.
 
-    ``request_address`` is the requested address, and ``address`` names the machine. ``convert_response``
-    converts the response and raises ValueError for invalid data. ``max_bytes`` limits the number of bytes
-    that are read. An error is returned as ``error_text`` of the result.
+    ``request_address`` is the requested address, and ``address`` identifies the machine.
+    ``convert_response`` converts the response and raises ValueError for invalid data. ``max_bytes`` limits
+    the number of bytes that are read. An error is returned as ``error_text`` of the result.
     """
     name = _name(address)
     try:
@@ -101,9 +101,9 @@ _FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"}
 
 
 def _fits(key: str, value: object) -> bool:
-    """Return whether the page can show a value.
+    """Return whether a received value has a valid type and size for the page.
 
-    The value is checked because data of another system are not trusted.
+    The value is checked because data from another system are not trusted.
     """
     figure = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
     return (key in _TEXTS and isinstance(value, str)) or (key in _FIGURES and figure)
@@ -112,8 +112,8 @@ def _fits(key: str, value: object) -> bool:
 class OtherMachines:
     """Status of other machines.
 
-    One thread per machine reads the status as long as ``read_states`` is called. A machine that does not
-    respond or responds slowly does not delay the others. An outdated status is not shown.
+    One thread per machine reads the status as long as ``read_states`` is called. A machine with a slow
+    response or no response does not delay the others. An outdated status is not shown.
     """
 
     def __init__(
@@ -153,7 +153,7 @@ class OtherMachines:
         return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
     def close(self) -> None:
-        """Let the threads stop after their pending requests, without waiting for them."""
+        """Stop the threads after their pending requests, without waiting for the threads to end."""
         self._closing.set()
         self._looked.set()
 
@@ -197,7 +197,7 @@ _LONGEST = 15  # digits of a number
 
 
 def make_current_address(address: str) -> str:
-    """Return the address of the current state of an agent.
+    """Return the address at which an agent provides the current state of a device.
 
     ``address`` includes the path of the device.
     """
@@ -213,7 +213,7 @@ def read_agent_status(address: str) -> OtherMachine:
 def parse_streams(data: bytes) -> MachineResponse:
     """Return the status and the faults in an MTConnectStreams document.
 
-    Raises ValueError.
+    Raises ValueError if the document is invalid or contains no device.
     """
     if b"<!DOCTYPE" in data:  # agents do not send a DOCTYPE, and entities could grow without limit
         raise ValueError(data[:40])
@@ -259,7 +259,7 @@ def _whole(text: str | None) -> int | None:
 
 
 def _named(inside: Element, name: str) -> Iterator[Element]:
-    """Yield the elements with a name in any version of the namespace."""
+    """Yield the elements that have a given name, in any version of the namespace."""
     return (each for each in inside.iter() if each.tag.rpartition("}")[2] == name)
 
 

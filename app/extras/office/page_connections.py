@@ -1,4 +1,4 @@
-"""Browser connections of the status page, with a limited number and a time limit per request.
+"""Browser connections of the status page, with limits on their number and on the request time.
 
 This module is imported only if waitress is installed.
 """
@@ -24,9 +24,9 @@ _NO_HTTP = b"?\r\n\r\n"  # data that waitress rejects as a bad request
 class BrowserConnection(HTTPChannel):
     """Connection of a browser.
 
-    ``last_activity_s`` is the time of the connection or of the last response. A new connection above the
-    limit closes the oldest connection without a request in progress. Incomplete requests of other clients
-    therefore cannot block a complete request.
+    ``last_activity_s`` is the time of the connection or of the last response. When a new connection exceeds
+    the maximum number, the oldest connection without a request in progress is closed. Incomplete requests
+    therefore cannot block other browsers.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class BrowserConnection(HTTPChannel):
     def received(self, data: bytes) -> bool:
         """Process received bytes.
 
-        Bytes that cannot be parsed become a bad request.
+        Bytes that cannot be parsed are treated as a bad request.
         """
         try:
             return bool(super().received(data))

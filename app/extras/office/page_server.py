@@ -96,7 +96,7 @@ class StatusPageServer:
 def open_listening_socket(bind: str, port: int) -> socket.socket:
     """Return the listening socket for browsers.
 
-    Raises DriverError.
+    Raises DriverError if the address cannot be used.
     """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(bind, port, type=socket.SOCK_STREAM)[0]

@@ -1,8 +1,8 @@
-"""Status page of TurnDesk and of other machines for an office computer or a phone.
+"""Status page of TurnDesk and other machines for an office computer or a phone.
 
 The page only displays values. It is a WSGI application with the addresses ``/`` (the page), ``/now`` (the
 part of the page that changes), ``status.json``, ``part.png`` and ``alarm.svg``. The page uses the language
-of the screen. ``status.json`` does not depend on the language.
+of the screen. ``status.json`` is the same in every language.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ HeaderList = list[tuple[str, str]]
 class OtherMachine:
     """Latest state of another machine.
 
-    ``status`` is None if the status is not known. ``error_text`` is then the reason.
+    ``status`` is None if the status is not known, and ``error_text`` is then the reason.
     """
 
     address: str
@@ -114,7 +114,7 @@ class StatusPage:
         return "text/html; charset=utf-8", page.encode()
 
     def make_changing_content(self) -> tuple[str, bytes]:
-        """Return the content type and the content of the part of the page that changes."""
+        """Return the content type and the content of the changing part of the page."""
         return "text/html; charset=utf-8", self._now().encode()
 
     def get_style_sheet(self) -> tuple[str, bytes]:
@@ -187,12 +187,12 @@ def _look(state: str) -> str:
 
 
 def _mark(picture: bytes) -> str:
-    """Return a checksum that changes with the picture, or an empty string if there is no picture."""
+    """Return a checksum that identifies the picture, or an empty string if there is no picture."""
     return f"{crc32(picture):x}" if picture else ""
 
 
 def _picture(name: str, address: str, picture: bytes, words: str) -> str:
-    """Return the HTML figure of a picture with its caption, hidden if there is no picture."""
+    """Return the HTML figure with a picture and its caption. The figure is hidden without a picture."""
     mark = _mark(picture)
     source = f'src="{address}?{mark}"' if mark else ""
     hidden = "" if mark else " hidden"
@@ -217,7 +217,7 @@ def _alarm(alarm: Mapping[str, Any]) -> str:
 
 
 def _head(status: Mapping[str, Any], error_text: str = "") -> str:
-    """Return the HTML of the state and its reason."""
+    """Return the HTML heading with the machine state and the reason for that state."""
     state = str(status.get("state") or status.get("execution") or "?")
     why = error_text or str(status.get("stop") or status.get("waiting_for") or "")
     said = f'<p class="why">{escape(tr(why))}</p>' if why else ""
@@ -225,9 +225,9 @@ def _head(status: Mapping[str, Any], error_text: str = "") -> str:
 
 
 def _local(at: object, *, short: bool = False) -> str:
-    """Return an ISO 8601 time as local time, or the text unchanged if it is not a time.
+    """Return an ISO 8601 time as local time, or any other text unchanged.
 
-    ``short`` omits the date if it is today, or else omits the seconds.
+    If ``short`` is True, the date is omitted for a time today, and the seconds are omitted for other times.
     """
     try:
         here = datetime.fromisoformat(str(at)).astimezone()

@@ -1,4 +1,4 @@
-"""HTTP requests with a time limit for the whole exchange, and the causes of failed connections."""
+"""HTTP requests with a time limit for the whole exchange, and texts for failed connections."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class _TimedReader(io.RawIOBase):
     """Reader of a socket with a time limit.
 
     The ``left`` parameter is a function that returns the remaining seconds. Reading raises TimeoutError
-    when no time remains.
+    after the time limit.
     """
 
     def __init__(self, raw: io.RawIOBase, sock: socket.socket, left: Callable[[], float]) -> None:
         self._raw, self._socket, self._left = raw, sock, left
 
     def readable(self) -> bool:
-        """Return True because the reader can always be read."""
+        """Return True because this stream supports reading."""
         return True
 
     def readinto(self, buffer: Any, /) -> int | None:
@@ -55,7 +55,7 @@ class _TimedReader(io.RawIOBase):
 
 
 class _TimedResponse(HTTPResponse):
-    """HTTP response that is read with a time limit.
+    """HTTP response that must be read within a time limit.
 
     The ``left`` parameter is a function that returns the remaining seconds.
     """
@@ -67,7 +67,7 @@ class _TimedResponse(HTTPResponse):
 
 
 def _timed(kind: Callable[..., HTTPConnection], clock: Clock, host: str, **more: Any) -> HTTPConnection:
-    """Return a connection with a time limit for the whole exchange, which starts now."""
+    """Return a connection with a time limit for the whole exchange. The time starts now."""
     connection, end = kind(host, **more), clock() + more["timeout"]
     connection.response_class = partial(_TimedResponse, left=lambda: end - clock())  # type: ignore[assignment]
     return connection
@@ -90,7 +90,7 @@ class _TimedHandler(HTTPHandler, HTTPSHandler):
 def make_timed_opener(
     *handlers: BaseHandler | type[BaseHandler], clock: Clock = time.monotonic
 ) -> OpenerDirector:
-    """Return a urllib opener with a ``timeout`` that limits the whole exchange after connecting."""
+    """Return a urllib opener whose ``timeout`` also limits the whole exchange after connecting."""
     return build_opener(_TimedHandler(clock), *handlers)
 
 
@@ -104,7 +104,7 @@ _CAUSES = 10  # reported causes of one problem, because a server can respond dif
 def find_cause(error: Exception) -> str:
     """Return the cause of a failed connection as text, without passwords and tokens.
 
-    The text has the wording of the operating system or of the server.
+    The operating system or the server provides the wording.
     """
     cause = error.reason if isinstance(error, URLError) else error  # URLError wraps the error of the system.
     match cause:
@@ -131,7 +131,7 @@ def find_cause(error: Exception) -> str:
 
 
 def extract_host(address: str) -> str:
-    """Return the scheme, host and port of an address, without parts that can contain a password or token."""
+    """Return the scheme, host and port of an address. Other parts can contain a password or token."""
     parts = urlsplit(address)
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
@@ -144,7 +144,7 @@ def make_one_line(text: str) -> str:
 class DeliveryErrorLog:
     """Log of failed deliveries.
 
-    Each cause is logged only once until a delivery succeeds.
+    After a cause is logged, it is not logged again until a delivery succeeds.
     """
 
     def __init__(self, logger: logging.Logger, receiver_name: str) -> None:
@@ -161,5 +161,5 @@ class DeliveryErrorLog:
             self._log.warning("%s cannot be told: %s", self._who, cause)
 
     def clear_causes(self) -> None:
-        """Clear the logged causes after a successful delivery."""
+        """Clear the logged causes because a delivery has succeeded."""
         self._said.clear()

@@ -32,9 +32,9 @@ _log = logging.getLogger(__name__)
 class WebhookReceiver:
     """Webhook that posts each announcement as JSON.
 
-    Announcements are posted in order by a separate thread. After a failed connection or a server error, the
-    post is repeated after the retry time ``retry_time_s`` in seconds. An announcement that is rejected (4xx)
-    or redirected (3xx) is discarded.
+    A separate thread posts the announcements in order. After a failed connection or a server error, the
+    thread posts again after ``retry_time_s`` seconds. An announcement that is rejected (4xx) or redirected
+    (3xx) is discarded.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class WebhookReceiver:
         self._there.set()
 
     def close(self) -> None:
-        """Let the thread end after the present post, and return without waiting for it."""
+        """Stop the thread after its current post, and return without waiting for that."""
         self._closing.set()
         self._there.set()
 
@@ -75,7 +75,7 @@ class WebhookReceiver:
                 return
 
     def _settled(self, announcement: Announcement) -> bool:
-        """Return whether an announcement was accepted or finally rejected."""
+        """Post an announcement, and return False if the post must be repeated."""
         try:
             self._post(self._address, announcement.make_json())
         except (URLError, HTTPException, OSError, ValueError) as error:
@@ -92,7 +92,7 @@ class _Stay(HTTPRedirectHandler):
     """
 
     def redirect_request(self, *_request: object, **_more: object) -> None:
-        """Return None so that a redirection counts as a rejection."""
+        """Return None, so that a redirection counts as a rejection."""
 
 
 def post_json(address: str, data: bytes, clock: Clock = time.monotonic) -> None:

@@ -23,7 +23,7 @@ class PendantExtra(OptionalFeature):
     def remove_own_inputs(self, machine: Machine) -> Machine:
         """Return the machine without the inputs and the handwheel of the pendant.
 
-        The machine is returned unchanged if the machine file has no [pendant] table.
+        If the machine file has no [pendant] table, the machine is returned unchanged.
         """
         if _TABLE not in machine.hardware.tables:
             return machine
@@ -34,7 +34,7 @@ class PendantExtra(OptionalFeature):
     def add_ports(self, machine: Machine, connected: ConnectedMachine) -> ConnectedMachine:
         """Return the connected machine with its pendant.
 
-        The machine is returned unchanged if the machine file has no [pendant] table.
+        If the machine file has no [pendant] table, the machine is returned unchanged.
         """
         if _TABLE not in machine.hardware.tables:
             return connected

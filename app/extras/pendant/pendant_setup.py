@@ -1,4 +1,4 @@
-"""Setup of the pendant of a machine file, which TurnDesk opens and reads in addition to the machine ports."""
+"""Setup of the pendant of a machine file, which TurnDesk reads in addition to the machine ports."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DeviceFinder = Callable[[PendantModel, Mapping[str, PendantControl]], Sequence[E
 def remove_pendant(machine: Machine) -> Machine:
     """Return the machine without the inputs and the handwheel of the pendant.
 
-    The backend is wired to the remaining inputs.
+    The backend uses only the remaining inputs.
     """
     inputs = {name: each for name, each in machine.inputs.items() if not _at_pendant(each.terminal)}
     pots = {
@@ -48,7 +48,7 @@ def open_devices(
 ) -> Sequence[EventSource]:
     """Open the nodes of the matching device and return them.
 
-    Raises DriverError with the remedy.
+    Raises DriverError, with the remedy, if the device cannot be opened.
     """
     if sys.platform != "linux":
         raise DriverError("a USB pendant works only on Linux; remove [pendant] from the machine file")
@@ -64,7 +64,7 @@ def open_devices(
 def add_pendant(
     machine: Machine, connected: ConnectedMachine, find_devices: DeviceFinder | None = None
 ) -> ConnectedMachine:
-    """Return the machine with its pendant, if one is configured.
+    """Return the machine with the pendant that its machine file configures, if there is one.
 
     If the pendant is missing, the fault is reported and the search for the pendant continues.
     """

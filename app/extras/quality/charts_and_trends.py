@@ -1,4 +1,4 @@
-"""Control charts of the features with Cpk, and trends of cycle time, load, wear, stops and availability."""
+"""Control charts and Cpk of features; trends of cycle time, load, wear, stops and availability."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class TrendsSection(QualitySection):
     def trend_names(self) -> tuple[str, ...]:
         """Return the names of the trends of this machine.
 
-        A mill has no wear trend, because DL and DR are not recorded.
+        A mill has no wear trend, because changes of DL and DR are not recorded.
         """
         return tuple(each for each in TREND_NAMES if each != "WEAR" or not self.is_mill)
 
@@ -106,7 +106,7 @@ class TrendsSection(QualitySection):
         return self._shift
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with the present value of each trend."""
+        """Return the table with the current value of each trend."""
         self.limit_selection()
         minute = int(self._now().timestamp() // 60)
         of = (
@@ -217,7 +217,7 @@ class TrendsSection(QualitySection):
         )
 
     def find_shift_availability(self) -> Availability | None:
-        """Return the availability of all programs in the present or last shift.
+        """Return the availability of all programs in the current shift, or else in the last shift.
 
         Returns None if no time of the shift has passed yet.
         """
@@ -260,9 +260,9 @@ class TrendsSection(QualitySection):
         )
 
     def _wear_plots(self) -> tuple[Plot, ...]:
-        """Return the wear charts, with X of tools as a diameter.
+        """Return the wear charts. Wear of tools in X is a diameter.
 
-        A correction applies until the next correction.
+        Each correction applies until the next correction.
         """
         unit, made = (
             self.control_unit.unit_mm,
@@ -314,7 +314,7 @@ class TrendsSection(QualitySection):
     # --- the shift -----------------------------------------------------------------------------------
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the shift hours."""
+        """Return whether a character can be entered in the shift hours."""
         return self.selected_trend == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
 
     def handle_key(self, key: str) -> bool:
@@ -337,9 +337,9 @@ class TrendsSection(QualitySection):
         return True
 
     def accept_entry(self, text: str) -> bool:
-        """Set the first and the last hour of the shift, and return whether they were accepted.
+        """Set the first and last hour of the shift, and return whether they were accepted.
 
-        Raises EntryError.
+        Raises EntryError if the text is not a valid pair of hours.
         """
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
@@ -357,7 +357,7 @@ class TrendsSection(QualitySection):
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt, or the reason why no data are stored."""
+        """Return the prompt, or the reason why data are not stored."""
         return self.watch.parts_book.lock_reason or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
@@ -386,11 +386,11 @@ class ChartsSection(QualitySection):
         return len(self.parts_data.features)
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False because this section has no entry."""
+        """Return False because this section has no entry field."""
         return False
 
     def accept_entry(self, _text: str) -> bool:
-        """Return False because this section has no entry."""
+        """Return False because this section has no entry field."""
         return False
 
     def handle_key(self, key: str) -> bool:
@@ -443,7 +443,7 @@ class ChartsSection(QualitySection):
         return self.parts_data.select_readings(row.id)[-CHART_READING_COUNT:]
 
     def _drift(self, row: FeatureRow, values: list[float]) -> str:
-        """Return the latest rule violation within the last ten points, or an empty string."""
+        """Return the text of the latest rule violation in the last ten points, or an empty string."""
         try:
             chart = make_charts(values, row.sample).location
         except QualityError:
@@ -456,7 +456,7 @@ class ChartsSection(QualitySection):
     def make_chart(self) -> ChartDrawing:
         """Return the charts of location and spread of the selected feature.
 
-        The charts are created again only after a change.
+        The charts are cached until the data change.
         """
         row, mode = self.selected_feature, self.control_unit
         of = (self.watch.parts_book.load_count, self.program_name, row.id if row is not None else 0, mode)
@@ -483,7 +483,7 @@ class ChartsSection(QualitySection):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt, which explains the lines in the chart."""
+        """Return the prompt that explains the lines in the chart."""
         return self.find_missing_precondition() or (
             "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )

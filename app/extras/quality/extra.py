@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class QualityExtra(OptionalFeature):
-    """Optional feature with the MEASURED PARTS page, the shift report, commands, and the table [gauge]."""
+    """Optional feature with the MEASURED PARTS page, the shift report, commands and table [gauge]."""
 
     subcommands = {
         "parts": Subcommand(
@@ -56,7 +56,7 @@ class QualityExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Attach the measured parts and the sampling plan to TurnDesk if production data are available."""
+        """Attach the measured parts and the sample plan to TurnDesk if production data are available."""
         from app.extras.quality.quality_setup import attach_quality
 
         attach_quality(desk, machine)
@@ -64,7 +64,7 @@ class QualityExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return the functions MEASURED PARTS, which follows SCOPE, and shift report, which follows JOBS."""
+        """Return MEASURED PARTS (after SCOPE in the list) and the shift report (after JOBS)."""
         from app.desk.data_folder import find_data_folder
         from app.extras.quality.quality_setup import MeasuredPartsFunction
         from app.extras.quality.shift_function import ShiftReportFunction
@@ -74,7 +74,7 @@ class QualityExtra(OptionalFeature):
         return ((parts, "SCOPE"), (report, "JOBS"))
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of measured parts and shifts, which follow ``offsets history --json``."""
+        """Return the JSON outputs for parts and shifts, documented after ``offsets history --json``."""
         from app.extras.quality.quality_json_keys import OUTPUTS
 
         return OUTPUTS

@@ -1,4 +1,4 @@
-"""Features of the parts of a program: name, nominal size, tolerance, offset to correct, and sampling."""
+"""Features of a program's parts: name, nominal size, tolerance, offset to correct, and sampling."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class FeatureDraft:
         return format_size(value, value_mode) if field == "NOMINAL" else format_deviation(value, value_mode)
 
     def toggle_choice(self) -> None:
-        """Switch the selected field to the other of its two choices."""
+        """Switch the selected field from one of its two choices to the other."""
         feature = self.feature
         if self.selected_field == "MEASURED":
             diameter = feature.kind is FeatureKind.DIAMETER
@@ -110,7 +110,7 @@ class FeatureDraft:
     def set_field(self, text: str, value_mode: ValueMode) -> None:
         """Set the selected field to the typed text.
 
-        Raises EntryError.
+        Raises EntryError if the text is not valid for the field.
         """
         field = self.selected_field
         if field == "NAME":
@@ -141,7 +141,7 @@ class FeaturesSection(QualitySection):
 
     @property
     def field_names(self) -> tuple[str, ...]:
-        """Return the names of the fields that a feature has in the language of the machine."""
+        """Return the names of the fields of a feature, in the language of the machine."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
         return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.program_language])
 
@@ -219,7 +219,7 @@ class FeaturesSection(QualitySection):
         }
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the entry.
+        """Return whether a character can be entered in the selected field.
 
         A name accepts any character, and a number accepts the characters of an expression.
         """
@@ -229,7 +229,7 @@ class FeaturesSection(QualitySection):
         return len(key) == 1 and (draft.selected_field == "NAME" or key in EXPRESSION_CHARACTERS)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the feature that is being edited, or of the list."""
+        """Handle a key for the feature that is being edited, or for the list."""
         draft = self.draft
         if draft is None:
             return self.move_selection(key) or (key == "Enter" and self._opened())
@@ -253,7 +253,7 @@ class FeaturesSection(QualitySection):
     def accept_entry(self, text: str) -> bool:
         """Set the selected field to the typed text, and select the next field.
 
-        Returns whether the entry was accepted. Raises EntryError.
+        Returns whether the entry was accepted. Raises EntryError if the text is not valid.
         """
         draft = self.draft
         if draft is None:
@@ -269,7 +269,7 @@ class FeaturesSection(QualitySection):
     def choose(self, row: int) -> None:
         """Select the touched row.
 
-        While a feature is edited, a second touch acts like Enter.
+        While a feature is edited, a second touch on the same row acts like Enter.
         """
         if self.draft is None:
             super().choose(row)
@@ -327,7 +327,7 @@ class FeaturesSection(QualitySection):
         self.desk.show_success(tr(Message("{name} SAVED", name=name)))
 
     def remove_feature(self) -> None:
-        """Ask for confirmation and stop measuring the selected feature (F4)."""
+        """Ask for confirmation, and then stop measuring the selected feature (F4)."""
         row = self.selected_feature
         if row is None:
             self.desk.say(self.find_missing_precondition())
@@ -358,7 +358,7 @@ class FeaturesSection(QualitySection):
             self.desk.try_save(self.plan.toggle_waiting)
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         if self.draft is not None:
             return "FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL"
         return self.find_missing_precondition() or (
@@ -366,7 +366,7 @@ class FeaturesSection(QualitySection):
         )
 
     def handle_escape(self) -> bool:
-        """Cancel the entry or the edited feature, and return whether something was canceled."""
+        """Cancel the entry or discard the edited feature, and return whether there was one."""
         if super().handle_escape():
             return True
         open_one, self.draft = self.draft is not None, None

@@ -11,7 +11,7 @@ from core.table_schema import DriverDeclaration, DriverTable
 class GaugeModel:
     """Settings of the serial port of the gauge.
 
-    ``unit`` applies to received lines that do not state a unit.
+    ``unit`` applies to received lines that contain no unit.
     """
 
     port: str = declare_key(meaning="Serial port of the gauge, such as `/dev/serial/by-id/…`.")

@@ -1,4 +1,4 @@
-"""Command ``turndesk parts``, which prints the stored counts, times, readings and corrections of parts."""
+"""Command ``turndesk parts``, which prints stored part counts, times, readings and corrections."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the stored data.
 
-    Raises CommandError for a program that has no data.
+    Raises CommandError if the requested program has no data.
     """
     from app.cli.store_command import open_store
 
@@ -78,7 +78,7 @@ def _data(store: Store, name: str) -> PartsData:
 
 
 def _make_json(store: Store, names: Sequence[str]) -> dict[str, object]:
-    """Return the JSON object.
+    """Return the JSON object with the stored data.
 
     Lengths are in mm, durations are in seconds and times are in UTC. X of corrections is a radius.
     """

@@ -32,9 +32,9 @@ _DAYS = timedelta(days=2)
 
 @dataclass(frozen=True, slots=True)
 class PartsData:
-    """Data of one program, oldest rows first.
+    """Data of one program, with the oldest rows first.
 
-    ``last_corrections`` is the number of the latest change of each offset axis.
+    ``last_corrections`` contains the number of the latest change of each offset axis.
     """
 
     program_name: str = ""
@@ -49,9 +49,9 @@ class PartsData:
 
     @property
     def complete_cycles(self) -> tuple[CycleRow, ...]:
-        """Return the complete cycles that were not finished by a restart.
+        """Return the complete cycles that have a representative time.
 
-        Only these cycles have a representative time.
+        Cycles that were finished by a restart are excluded.
         """
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
@@ -60,9 +60,9 @@ class PartsData:
         return tuple(row for row in self.readings if row.feature == feature_id)
 
     def select_readings_since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
-        """Return the readings of parts that were started after the last change of the feature's offset.
+        """Return the readings of parts started after the last change of the feature's offset.
 
-        A part with an unknown start is included only if the offset was never changed.
+        A part with an unknown start time is included only if the offset was never changed.
         """
         last = self.last_corrections.get((row.by_kind, row.number, make_feature(row).axis), 0)
         return tuple(each for each in self.select_readings(row.id) if not last or each.offset_change >= last)
@@ -111,7 +111,7 @@ def read_parts_data(store: Store, program: str, max_rows: int = MAX_ROWS) -> Par
     """Read the stored data of a program.
 
     The result contains the latest ``max_rows`` rows of each type, or all rows if ``max_rows`` is -1. The
-    call can take a long time. Raises StoreError.
+    call can take a long time. Raises StoreError if the data cannot be read.
     """
     with store.read() as connection:
         return PartsData(
@@ -128,7 +128,7 @@ def read_parts_data(store: Store, program: str, max_rows: int = MAX_ROWS) -> Par
 def get_loaded_parts_data(book: PartsBook) -> PartsData:
     """Return the data of the loaded program from the parts book.
 
-    The data are empty until they have been read.
+    The result is empty while the data are still being read.
     """
     found = book.current_data.feature_data.get(BOOK_KEY)
     if isinstance(found, PartsData) and found.program_name == book.current_data.program_name:
@@ -167,7 +167,7 @@ def make_csv_rows(data: PartsData) -> Iterator[tuple[object, ...]]:
 def write_readings_csv(data: PartsData, folder: Path) -> Path:
     """Write the file ``PROGRAM-readings.csv`` atomically and return its path.
 
-    Raises OSError.
+    Raises OSError if the file cannot be written.
     """
     path = folder / f"{Path(data.program_name).stem}-readings.csv"
     write_atomically(path, make_readings_csv(data).encode())

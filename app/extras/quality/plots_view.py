@@ -31,7 +31,7 @@ _PLOTS = 2  # usual number of plots in a drawing
 class PlotsPane(QWidget):
     """Pane with the plots of one drawing.
 
-    The plots are drawn again when the drawing, the size or the theme changes.
+    The plots are drawn again after a change of the drawing, the size or the theme.
     """
 
     accessible_name = "CHART"
@@ -77,12 +77,12 @@ class PlotsPane(QWidget):
         self._lay_out()
 
     def apply_theme(self) -> None:
-        """Draw the present drawing again after a change of theme."""
+        """Draw the current drawing again after a change of theme."""
         if self._shown is not None:
             self.show_drawing(self._shown)
 
     def showEvent(self, _event: QShowEvent) -> None:
-        """Request a new drawing, because plots that were drawn while hidden have no layout."""
+        """Draw the plots again, because plots that were drawn while hidden have no layout."""
         self._shown = None
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -141,7 +141,7 @@ class PlotsPane(QWidget):
         drawn.add_item(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
     def _range(self, drawn: chart.ChartPlot, plot: Plot, across: tuple[float, float]) -> None:
-        """Set the range so that all points and levels are visible, with space for the title.
+        """Set the range so that all points and levels are visible below the title.
 
         All plots have the same horizontal range.
         """
@@ -156,7 +156,7 @@ class PlotsPane(QWidget):
     def _title(self, drawn: chart.ChartPlot, words: str) -> None:
         """Draw the title in the upper left corner.
 
-        The title has a background, so no limit line crosses it.
+        The title has a background, so that limit lines do not cross the text.
         """
         (left, _), (_, top) = drawn.vb.viewRange()
         ground = self.theme.get_color("panel")
@@ -168,7 +168,7 @@ class PlotsPane(QWidget):
 
 
 class BarsPane(QWidget):
-    """Pane with horizontal bars and their names, longest bar first, or a text if there is nothing to draw."""
+    """Pane with named horizontal bars, longest bar first, or with a text if there is nothing to draw."""
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)

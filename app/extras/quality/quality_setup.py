@@ -1,4 +1,4 @@
-"""Setup of measured parts and trends, and of their entry in the special functions."""
+"""Setup of measured parts and trends, and of their row in the list of special functions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MEASURED_PARTS_PAGE = "MEASURED PARTS"  # name of the page in app.screen.page_ta
 
 
 class MeasuredPartsFunction(PageFunction):
-    """Special function that shows the numbers of features and readings and the measurements that are due."""
+    """Special function that shows the numbers of features and readings, and the due measurements."""
 
     name = "MEASURED PARTS"
     use = "features, readings, charts, trends"
@@ -27,7 +27,7 @@ class MeasuredPartsFunction(PageFunction):
     key_hint = "Press Enter to open the page, or press W in the main menu."
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
-        """Return the rows for the numbers of features and readings and the measurements that are due."""
+        """Return rows with the numbers of features and readings, and with the due measurements."""
         watch = self.desk.page_registry.find_model(PartsWatch)
         if watch is None or watch.parts_book.lock_reason:
             return (
@@ -61,7 +61,7 @@ def attach_quality(desk: Desk, machine: Machine) -> None:
 def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
     """Return the sections of the page.
 
-    The sections are imported only now, so that TurnDesk starts faster.
+    The sections are imported at the first call, so that TurnDesk starts faster.
     """
     from app.extras.quality.sections_setup import make_sections
 
@@ -74,7 +74,7 @@ SectionFactory = Callable[[], Sequence[SpecialFunction]]
 class QualityFunctions(SpecialFunctionList):
     """Sections of the page for measured parts.
 
-    Readings of a gauge are used only while the section of readings is displayed.
+    Readings of a gauge are used only while the readings section is displayed.
     """
 
     __slots__ = ("_made", "_make")
@@ -86,7 +86,7 @@ class QualityFunctions(SpecialFunctionList):
 
     @property
     def functions(self) -> Sequence[SpecialFunction]:
-        """Return the sections.
+        """Return the sections of the page.
 
         They are created at the first access, so that TurnDesk starts faster.
         """
@@ -101,13 +101,13 @@ class QualityFunctions(SpecialFunctionList):
     def process_results(self) -> None:
         """Read the gauge once per frame.
 
-        A reading belongs to the feature that is displayed at that time.
+        A reading belongs to the feature that is displayed when the reading arrives.
         """
         for section in self.functions:
             section.process_wire_input(is_displayed=section is self.shown_function)
 
     def on_open(self) -> None:
-        """Open the page and discard earlier readings, because it is not known which part they belong to."""
+        """Open the page and discard earlier gauge readings, because their parts are not known."""
         super().on_open()
         for section in self.functions:
             section.process_wire_input(is_displayed=False)
@@ -115,7 +115,7 @@ class QualityFunctions(SpecialFunctionList):
     def close(self) -> None:
         """Finish pending work of the sections.
 
-        The worker is not stopped, because it belongs to the parts book.
+        The worker continues to run, because it belongs to the parts book.
         """
         for function in self._made:
             function.close()

@@ -1,6 +1,6 @@
-"""Page MEASURED PARTS (W), with the sections on the left and the displayed section on the right.
+"""Page MEASURED PARTS (W), with the sections on the left and the open section on the right.
 
-The chart is below the displayed section.
+The chart is below the open section.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def _pane_class() -> type[PlotsPane]:
-    """Import the class of the chart and return it.
+    """Import and return the class of the chart.
 
     A worker calls this function, because importing pyqtgraph takes 0.3 s.
     """
@@ -34,7 +34,7 @@ def _pane_class() -> type[PlotsPane]:
 class MeasuredPartsPage(SpecialPage):
     """Page of measured parts.
 
-    The page is like that of the special functions, with a chart that is loaded on first use.
+    The page works like the special functions page, but also has a chart that is loaded at its first use.
     """
 
     NAME = "MEASURED PARTS"
@@ -61,9 +61,9 @@ class MeasuredPartsPage(SpecialPage):
             self.chart.show_drawing(shown.make_chart())
 
     def prepare_slice(self) -> bool:
-        """Create the sections, the chart and its plots in steps before the page is first shown.
+        """Create the sections, the chart and its plots step by step before the page is first shown.
 
-        Returns whether steps remain.
+        Returns whether more steps remain.
         """
         self._ask_pane()
         self.model.worker.deliver_results()
@@ -80,7 +80,7 @@ class MeasuredPartsPage(SpecialPage):
         self._lay_out()
 
     def apply_theme(self) -> None:
-        """Apply the present colors to the chart."""
+        """Apply the current colors to the chart."""
         if self.chart is not None:
             self.chart.apply_theme()
 

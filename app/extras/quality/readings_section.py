@@ -1,4 +1,4 @@
-"""Readings of parts, which are typed or received from a gauge, and the wear correction that they require."""
+"""Readings of parts, typed or received from a gauge, and the wear correction that they require."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MM_PER_UNIT = {"mm": 1.0, "in": 25.4}
 
 @dataclass(frozen=True, slots=True)
 class NewReading:
-    """Reading that will be stored."""
+    """Reading that is to be stored."""
 
     feature: FeatureRow
     part_number: int
@@ -51,9 +51,9 @@ class NewReading:
 
 
 class ReadingsSection(QualitySection):
-    """Section with one row per feature, for the entry of readings.
+    """Section for the entry of readings, with one row per feature.
 
-    A typed size belongs to the selected feature and the present part.
+    A typed size belongs to the selected feature and the current part.
     """
 
     name = "READINGS"
@@ -83,9 +83,9 @@ class ReadingsSection(QualitySection):
     # --- display -------------------------------------------------------------------------------------
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with the nominal size, last reading, deviation and rating of each feature.
+        """Return the table with nominal size, last reading, deviation and rating of each feature.
 
-        While a correction is proposed, return the table of its effect instead.
+        While a correction is proposed, the table shows the effect of the correction instead.
         """
         self.limit_selection()
         mode, feature = self.control_unit, self.selected_feature
@@ -146,7 +146,7 @@ class ReadingsSection(QualitySection):
         return self.gauge.status_text
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for the part number, the gauge, the file and the correction."""
+        """Return the function keys for the part number, the gauge, the CSV file and the correction."""
         correct = {
             "F8": FunctionKey("CORRECT", self.propose_correction),
             "F4": FunctionKey("UNDO", self.undo_correction),
@@ -167,7 +167,7 @@ class ReadingsSection(QualitySection):
             self._part = 0
 
     def prompt_text(self) -> str:
-        """Return the prompt for the entry of a reading, or the missing precondition."""
+        """Return the prompt for entering a reading, or the reason why no reading can be entered."""
         return self.find_missing_precondition() or (
             "TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST"
         )
@@ -183,9 +183,9 @@ class ReadingsSection(QualitySection):
     # --- readings ------------------------------------------------------------------------------------
 
     def accept_entry(self, text: str) -> bool:
-        """Store the typed size of the selected feature, and return whether it was accepted.
+        """Store the typed size of the selected feature, and return whether the size was accepted.
 
-        Raises EntryError.
+        Raises EntryError if the text is not a valid size.
         """
         feature = self.selected_feature
         if feature is None:
@@ -196,7 +196,7 @@ class ReadingsSection(QualitySection):
         return self._offer(NewReading(feature, self.part_number, value, mode.name, "typed"))
 
     def _offer(self, reading: NewReading) -> bool:
-        """Store a reading, after confirmation if the size is implausible.
+        """Store a reading. If the size is implausible, first ask for confirmation.
 
         Raises EntryError for a size of 0 or less.
         """
@@ -258,7 +258,7 @@ class ReadingsSection(QualitySection):
             self.marked = (self.marked + 1) % max(1, self.row_count)
 
     def remove_last_reading(self) -> None:
-        """Ask for confirmation and remove the latest reading of the selected feature (F9)."""
+        """Ask for confirmation, and then remove the latest reading of the selected feature (F9)."""
         feature = self.selected_feature
         taken = self.parts_data.select_readings(feature.id) if feature is not None else ()
         if feature is None or not taken:
@@ -294,7 +294,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
 
     def process_wire_input(self, *, is_displayed: bool) -> None:
-        """Store received gauge readings for the selected feature if the section is displayed.
+        """Store received gauge readings for the selected feature while the section is displayed.
 
         This method is called once per frame.
         """
@@ -330,7 +330,7 @@ class ReadingsSection(QualitySection):
     def propose_correction(self) -> None:
         """Propose a correction from the readings of the selected feature (F8).
 
-        The operator applies the correction with Y.
+        Y applies the proposed correction.
         """
         feature = self.selected_feature
         if feature is None:
@@ -354,9 +354,9 @@ class ReadingsSection(QualitySection):
         self.correction_effect.show_proposal(self.desk.prompt_notice, found, change, taken)
 
     def _settled(self) -> bool:
-        """Return whether all data are stored and loaded, and show a message if they are not.
+        """Return whether all data are stored and loaded. If they are not, show a message.
 
-        This check prevents a second proposal for a correction that is still being stored.
+        This prevents a second proposal while an earlier correction is still being stored.
         """
         settled = self.watch.parts_book.is_settled and not self.desk.offset_book.is_saving
         if not settled:
@@ -364,7 +364,7 @@ class ReadingsSection(QualitySection):
         return settled
 
     def _correct(self, feature: FeatureRow) -> None:
-        """Apply the correction, which is calculated again from the present data."""
+        """Calculate the correction again from the current data, and apply it."""
         if not self._settled():
             return
         try:
@@ -397,7 +397,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
 
     def _undo_barred(self) -> str:
-        """Return the reason why the last correction cannot be undone, or an empty string."""
+        """Return the reason why the last correction cannot be undone now, or an empty string."""
         if self._last is None:
             return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9")
         kind, _number, reason = self._last

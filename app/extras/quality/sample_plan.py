@@ -1,4 +1,4 @@
-"""Sample plan, which determines the features and parts to measure and whether the next part must wait."""
+"""Sample plan: the features and parts to measure, and whether the next part must wait."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.store.store_errors import StoreError
 
 
 def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
-    """Return the number of the part to measure for each feature that is due.
+    """Return the number of the part to measure for each due feature.
 
     A feature is due if neither its latest planned part nor a later part has a reading.
     """
@@ -43,14 +43,14 @@ def find_block_reason(due_parts: dict[str, int]) -> str:
 
 
 def _newest(due_parts: dict[str, int]) -> tuple[int, str]:
-    """Return the latest part to measure and the names of its features."""
+    """Return the number of the latest part to measure and the names of the features due on that part."""
     part = max(due_parts.values(), default=0)
     return part, ", ".join(name for name, planned in due_parts.items() if planned == part)
 
 
 @dataclass(slots=True)
 class SamplePlan:
-    """Sample plan of the loaded program, with the setting that makes parts wait for measurements."""
+    """Sample plan of the loaded program. It can make the next part wait for required measurements."""
 
     desk: Desk
     parts_watch: PartsWatch
@@ -62,7 +62,7 @@ class SamplePlan:
     def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return the reason why the next part must not start, or an empty string.
 
-        The part that is in progress counts as made.
+        A part in progress counts as made.
         """
         if not self.waits_for_measurements:
             return ""
@@ -86,7 +86,7 @@ class SamplePlan:
 
     @property
     def waits_for_measurements(self) -> bool:
-        """Return whether parts of this program wait until the required measurements are done."""
+        """Return whether the next part of this program waits until the required measurements are done."""
         program = self.parts_watch.program_name
         if self._waits[0] != program:
             try:
@@ -97,7 +97,7 @@ class SamplePlan:
         return self._waits[1]
 
     def toggle_waiting(self) -> None:
-        """Turn waiting for measurements on or off.
+        """Turn waiting for required measurements on or off.
 
         Raises StoreError if the setting cannot be stored.
         """

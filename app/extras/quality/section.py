@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PlotCurve:
-    """Curve over part numbers.
+    """Curve in a plot over part numbers.
 
     ``color_number`` selects the color. ``has_dots`` draws a dot at each point. ``has_steps`` draws the
     curve as steps.
@@ -42,7 +42,7 @@ class PlotCurve:
 class PlotLevel:
     """Horizontal line in a plot.
 
-    ``kind`` is centre, limit (for a control limit) or tolerance.
+    ``kind`` is centre, limit (a control limit) or tolerance.
     """
 
     value: float
@@ -72,7 +72,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class ChartDrawing:
-    """Drawing with plots below each other.
+    """Drawing with plots that are arranged vertically.
 
     Drawings with equal ``drawing_key`` are considered equal and are not drawn again.
     """
@@ -117,7 +117,7 @@ def make_correction_plot(
     names: tuple[str, str],
     unit_mm: float,
 ) -> Plot:
-    """Return the plot of sizes over part numbers, with the mean and the size expected after a correction.
+    """Return the plot of sizes by part number, with the mean and the size after a correction.
 
     Lengths are in units of ``unit`` mm. Repeated readings of a part are drawn next to each other.
     """
@@ -196,7 +196,7 @@ class QualitySection(NumericFunction):
 
     @property
     def control_unit(self) -> ValueMode:
-        """Return the unit of the control, which applies to all entries and displayed values."""
+        """Return the control's unit of length, which applies to all entries and displayed values."""
         return ValueMode(self.desk.read_snapshot().modal.metric, is_diameter=True)
 
     @property
@@ -217,11 +217,11 @@ class QualitySection(NumericFunction):
         return self.move_selection(key) or super().handle_key(key)
 
     def limit_selection(self) -> None:
-        """Move the selection to a row of the table if it is outside the table."""
+        """Limit the selection to the rows of the table."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
 
     def find_missing_precondition(self) -> str:
-        """Return the missing precondition of this section, or an empty string."""
+        """Return the reason why this section cannot be used, or an empty string."""
         if not self.program_name:
             return NO_PROGRAM_MESSAGE
         return self.watch.parts_book.lock_reason or ("" if self.parts_data.features else NO_FEATURE_MESSAGE)

@@ -1,6 +1,6 @@
 """Gauge on a serial port.
 
-A thread receives readings in the Digimatic format or as plain values.
+A thread receives readings in Digimatic format or as plain numbers.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _ERRORS = {
 
 
 class GaugeError(CodedError, ValueError):
-    """Error for a received line that is not a reading."""
+    """Error if a received line is not a reading."""
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeReading:
     """Reading of a gauge.
 
-    ``unit`` is mm or in, or empty if the received line does not state the unit.
+    ``unit`` is mm or in, or an empty string if the received line contains no unit.
     """
 
     value: float
@@ -64,7 +64,7 @@ def parse_reading(line: str) -> GaugeReading:
 
 
 class LineSplitter:
-    """Splitter that divides received bytes into lines at CR or LF."""
+    """Splitter that splits received bytes into lines at CR or LF."""
 
     def __init__(self) -> None:
         self._text = ""
@@ -72,7 +72,7 @@ class LineSplitter:
     def split_lines(self, data: bytes) -> list[str]:
         """Return the lines that are now complete.
 
-        An incomplete line is buffered, or returned if it is too long.
+        An incomplete line is buffered. An incomplete line that is too long is returned.
         """
         self._text += data.decode("ascii", "replace")
         *whole, self._text = re.split(r"[\r\n]+", self._text)
@@ -83,7 +83,7 @@ class LineSplitter:
 
 
 class Gauge(Protocol):
-    """Gauge on a serial port.
+    """Interface of a gauge.
 
     No method blocks.
     """
@@ -95,23 +95,23 @@ class Gauge(Protocol):
 
     @property
     def name(self) -> str:
-        """Return the name of the gauge in the machine file, which is stored with the readings."""
+        """Return the name of the gauge in the machine file. This name is stored with the readings."""
         ...
 
     @property
     def default_unit(self) -> str:
-        """Return the unit of received lines that do not state a unit, mm or in."""
+        """Return the unit of received lines that contain no unit, mm or in."""
         ...
 
     @property
     def status_text(self) -> str:
-        """Return a text that shows whether data are being received, and the number or age of the readings."""
+        """Return a text about the reception: whether it is on, and the number or age of the readings."""
         ...
 
     def toggle_receiving(self) -> str:
-        """Start or stop receiving.
+        """Start or stop receiving data.
 
-        Returns the reason if this is not possible, or an empty string.
+        Returns the reason if this is not possible, or else an empty string.
         """
         ...
 
@@ -137,7 +137,7 @@ class NoGauge:
         return tr("No gauge is configured: enter its serial port under [gauge] in the machine file.")
 
     def toggle_receiving(self) -> str:
-        """Return the reason why no readings can be received."""
+        """Return the reason why TurnDesk cannot receive readings."""
         return tr("NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …")
 
     def fetch_readings(self) -> Sequence[GaugeReading | str]:
@@ -154,7 +154,7 @@ PortOpener = Callable[[LineSettings], SerialTransport]
 
 
 class SerialGauge:
-    """Implementation of ``Gauge`` for a serial port, which its thread opens and closes."""
+    """Implementation of ``Gauge`` for a serial port. A thread opens and closes the port."""
 
     def __init__(
         self,
@@ -181,12 +181,12 @@ class SerialGauge:
 
     @property
     def default_unit(self) -> str:
-        """Return the unit of received lines that do not state a unit, mm or in."""
+        """Return the unit of received lines that contain no unit, mm or in."""
         return self._model.unit
 
     @property
     def status_text(self) -> str:
-        """Return a text that shows whether data are being received, and whether readings arrive."""
+        """Return a text about the reception: whether it is on, and whether readings arrive."""
         if not self.is_receiving:
             return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last
@@ -200,7 +200,7 @@ class SerialGauge:
         return tr(Message("Listening to the gauge: {count} readings.", count=self._count))
 
     def toggle_receiving(self) -> str:
-        """Start or stop receiving, and return an empty string."""
+        """Start or stop receiving data, and return an empty string because this is always possible."""
         if self.is_receiving:
             self.close()
             return ""
@@ -218,7 +218,7 @@ class SerialGauge:
         return found
 
     def close(self) -> None:
-        """Stop receiving.
+        """Stop receiving data.
 
         The thread then closes the port.
         """

@@ -1,6 +1,6 @@
 """Command ``turndesk shift``, which writes the shift report as text, JSON or HTML.
 
-The report contains parts, stops and reasons.
+The report contains parts, stops and stop reasons.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the report.
 
-    Raises CommandError.
+    Raises CommandError if the options are invalid or the report cannot be written.
     """
     from app.extras.quality.shift_results import calculate_shift_results
 
@@ -135,7 +135,7 @@ def _text(found: ShiftResults) -> str:
 
 
 def _make_json(results: ShiftResults) -> dict[str, object]:
-    """Return the JSON object.
+    """Return the JSON object of the report.
 
     Lengths are in mm, durations are in seconds and times are in UTC. X of offsets is a radius.
     """

@@ -38,7 +38,7 @@ _OLDEST = 366  # maximum number of shifts back
 class ShiftReportFunction(SpecialFunction):
     """Special function for the shift report.
 
-    A worker updates the report when the function opens, and then every minute.
+    A worker calculates the report when the function opens, and then once per minute.
     """
 
     name = "SHIFT REPORT"
@@ -55,7 +55,7 @@ class ShiftReportFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of listed locations for saving, or 0 while the report is shown."""
+        """Return the number of listed save locations, or 0 while the report is shown."""
         return len(self.save_locations)
 
     def _store(self) -> Store | None:
@@ -63,7 +63,7 @@ class ShiftReportFunction(SpecialFunction):
         return watch.parts_book.store if watch is not None else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the main results, or of the locations for saving while they are listed."""
+        """Return the table of the main results, or the table of save locations while it is open."""
         self._make()
         if self.save_locations:
             return self._sheet_of_places()
@@ -121,20 +121,20 @@ class ShiftReportFunction(SpecialFunction):
             self.shifts_back, self.results = back, None
 
     def on_open(self) -> None:
-        """Show the present shift when the function opens."""
+        """Show the current shift when the function opens."""
         self.shifts_back, self._asked, self.save_locations = 0, None, ()
 
     def on_close(self) -> None:
-        """Close the list of locations when the function closes."""
+        """Close the list of save locations when the function closes."""
         self.save_locations = ()
 
     def handle_escape(self) -> bool:
-        """Close the list of locations and return whether it was open."""
+        """Close the list of save locations, and return whether the list was open."""
         shut, self.save_locations = bool(self.save_locations), ()
         return shut
 
     def reload_locations(self) -> None:
-        """Start listing the locations for saving.
+        """Start to list the save locations.
 
         The result arrives in a later frame.
         """
@@ -166,14 +166,14 @@ class ShiftReportFunction(SpecialFunction):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         if self.save_locations:
             return "ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS"
         return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK"
 
 
 def _rows(results: ShiftResults) -> list[tuple[str, str]]:
-    """Return the rows of the main results, followed by one row per program and one row per stop reason."""
+    """Return the rows of the main results, followed by one row for each program and each stop reason."""
     rows = make_summary_rows(results)
     for each in results.program_results:
         mean = f", {sum(each.cycle_times_s) / len(each.cycle_times_s):.1f} s" if each.cycle_times_s else ""
@@ -187,7 +187,7 @@ def _rows(results: ShiftResults) -> list[tuple[str, str]]:
 def _calculate(store: Store, desk: Desk, back: int) -> ShiftResults:
     """Calculate the results on the worker.
 
-    Raises StoreError.
+    Raises StoreError if the data cannot be read.
     """
     now = datetime.now().astimezone()
     watch = desk.page_registry.find_model(PartsWatch)
@@ -207,7 +207,7 @@ def _places(folder: Path, plugged: Sequence[UsbStick]) -> tuple[BackupLocation, 
 def _write(results: ShiftResults, machine: str, folder: Path, *, metric: bool) -> str:
     """Write the report atomically and return its file name.
 
-    This function runs on the worker. Raises FileOperationError.
+    This function runs on the worker. Raises FileOperationError if the file cannot be written.
     """
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
     name = f"shift-{datetime.fromtimestamp(results.shift.start_s).strftime('%Y-%m-%d-%H%M')}.html"

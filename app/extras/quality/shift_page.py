@@ -46,7 +46,7 @@ def make_title(results: ShiftResults, machine_name: str) -> str:
 def make_shift_html(results: ShiftResults, machine_name: str, created_at: str, *, is_metric: bool) -> str:
     """Return the HTML page of the shift report.
 
-    Lengths are in mm if ``metric`` is set, or else in inches. X of tools is a diameter.
+    Lengths are in mm if ``metric`` is True, or else in inches. X of tools is a diameter.
     """
     body = "".join(
         f"<h2>{escape(head)}</h2>{text}" if head else text
@@ -207,7 +207,7 @@ def _change(row: OffsetChange, *, metric: bool) -> tuple[str, ...]:
 
 
 def _side(row: object, *, metric: bool) -> str:
-    """Return the values of an offset row as text."""
+    """Return the values of one offset row as text."""
     if row is None:
         return tr("not set")
     if isinstance(row, ToolRow):
@@ -244,7 +244,7 @@ def _size(mm: float, *, metric: bool) -> str:
 
 
 def _time_line(results: ShiftResults) -> str:
-    """Return an SVG with the time line of cycles, stops and alarms, and the hours below the time line."""
+    """Return an SVG timeline of cycles, stops and alarms, with the hours below."""
     start, length = results.shift.start_s, results.shift.end_s - results.shift.start_s
 
     def x(moment: float) -> float:

@@ -1,6 +1,6 @@
 """Results of a shift, calculated from stored data, and the start and end of a shift.
 
-The results use the same rows as the trends and ``turndesk part_count``. Nothing is counted again.
+The results use the same stored rows as the trends and ``turndesk part_count``, so all counts agree.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Shift(NamedTuple):
 
     @property
     def utc_texts(self) -> tuple[str, str]:
-        """Return the start and the end of the shift in the time format of the store."""
+        """Return the start and the end of the shift as UTC texts in the format of the store."""
         first, last = (format_utc(datetime.fromtimestamp(each, UTC)) for each in self)
         return first, last
 
@@ -69,7 +69,7 @@ class ShiftTimesError(CodedError, ValueError):
 
 
 def get_shift_hours(stored: object) -> tuple[int, int]:
-    """Return the stored first and last hour of a shift, or the default hours."""
+    """Return the stored first and last hour of a shift, or the default hours if none are stored."""
     match stored:
         case [int(first), int(last)] if 0 <= first < 24 and 0 <= last <= 24:
             return first, last
@@ -78,7 +78,7 @@ def get_shift_hours(stored: object) -> tuple[int, int]:
 
 
 def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> Shift:
-    """Return the shift that is ``shifts_back`` shifts before the present or last shift.
+    """Return the shift that is ``shifts_back`` shifts before the current or last shift.
 
     The start and the end are hours of the local clock. A night shift is one hour longer if the clock is set
     back during the night.
@@ -95,7 +95,7 @@ def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> S
 def parse_local_time(text: str) -> float:
     """Return a typed local time, such as ``2026-11-23 06:00`` or only the date, in seconds of UTC.
 
-    Raises ShiftTimesError.
+    Raises ShiftTimesError if the text is not a time.
     """
     for form in _TIME_FORMATS:
         try:
@@ -110,7 +110,7 @@ def parse_local_time(text: str) -> float:
 def make_period(start: str, end: str) -> Shift:
     """Return the period between two typed times.
 
-    Raises ShiftTimesError.
+    Raises ShiftTimesError if the end is not after the start or the period is too long.
     """
     shift = Shift(parse_local_time(start), parse_local_time(end))
     if shift.end_s <= shift.start_s:
@@ -146,7 +146,7 @@ class ProgramResults(NamedTuple):
 class ShiftResults:
     """Results of a shift.
 
-    ``evaluated_until_s`` is the end of the shift, or the present time while the shift runs, in seconds of
+    ``evaluated_until_s`` is the end of the shift, or the current time while the shift runs, in seconds of
     UTC.
     """
 
@@ -177,7 +177,7 @@ class ShiftResults:
 
     @property
     def unrecorded_s(self) -> float:
-        """Return the duration without stored data in seconds.
+        """Return the duration in seconds for which no data are stored.
 
         During this time, the control was off or no part was started.
         """
@@ -187,14 +187,14 @@ class ShiftResults:
 
 
 def parse_store_time(time_text: str) -> float:
-    """Return a time of the store, converted to seconds of UTC."""
+    """Return a time of the store in seconds of UTC."""
     return datetime.fromisoformat(time_text).timestamp()
 
 
 def make_cycle_span(row: CycleRow | CycleTime, now_s: float) -> TimeSpan | None:
     """Return the time span of a cycle, or None if the cycle has not ended.
 
-    The span begins at the start of the cycle and has its duration, but does not extend beyond ``now``.
+    The span has the start and the duration of the cycle, but does not extend beyond ``now``.
     """
     start = parse_store_time(row.started)
     if row.ended is None or start > now_s:
@@ -208,7 +208,7 @@ def make_cycle_spans(rows: Iterable[CycleRow | CycleTime], now_s: float) -> list
 
 
 def convert_stops(rows: Iterable[StopRow]) -> list[ProductionStop]:
-    """Return stored stops in the form that the calculation of reasons and availability requires."""
+    """Return stored stops in the format that the calculation of stop reasons and availability needs."""
     return [ProductionStop(row.reason, parse_store_time(row.at), row.seconds) for row in rows]
 
 
@@ -217,7 +217,7 @@ def calculate_shift_results(
 ) -> ShiftResults:
     """Calculate and return the results of a shift.
 
-    This function runs on a worker. Raises StoreError.
+    This function runs on a worker. Raises StoreError if the data cannot be read.
     """
     since, end = shift.utc_texts
     until = max(shift.start_s, min(shift.end_s, now_s))
@@ -270,16 +270,16 @@ def _make_program_results(
 
 
 def _select_interrupted(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRow]:
-    """Return the cycles without a stored end.
+    """Return the cycles that have no stored end.
 
-    If ``on`` is set, the shift is running. Its last cycle is then omitted, because it may still run.
+    If ``on`` is True, the shift is running. Its last cycle is omitted, because that cycle may still run.
     """
     known = cycles[:-1] if on else cycles
     return [row for row in known if row.ended is None]
 
 
 def _limit_stops(stops: Iterable[ProductionStop], start: float, end: float) -> list[ProductionStop]:
-    """Return the parts of the stops that are within a period."""
+    """Return the stops of a period. Stops that extend beyond the period are shortened."""
     clipped = [
         (each.reason, max(each.start_s, start), min(each.start_s + each.duration_s, end)) for each in stops
     ]
@@ -287,7 +287,7 @@ def _limit_stops(stops: Iterable[ProductionStop], start: float, end: float) -> l
 
 
 def _make_remarks(shift: Shift, until: float, now: float, cycles: Sequence[CycleRow]) -> Iterable[str]:
-    """Yield remarks about the times of the report."""
+    """Yield remarks about the period of the report, such as a shift that is still running."""
     if now < shift.start_s:
         yield tr("The shift has not started.")
     elif until < shift.end_s:

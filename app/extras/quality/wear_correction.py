@@ -1,4 +1,4 @@
-"""Wear correction that is proposed for a feature, with its effect on the part and its application."""
+"""Wear correction that is proposed for a feature: calculation, effect and application."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ CORRECTION_STEP_MM = {
 
 
 def make_proposal(data: PartsData, row: FeatureRow, value_mode: ValueMode) -> CorrectionProposal:
-    """Return the correction that is required by the readings since the last correction.
+    """Return the correction that the readings since the last correction require.
 
-    Raises QualityError.
+    Raises QualityError if no correction can be calculated from these readings.
     """
     feature = make_feature(row)
     sizes = [each.value for each in data.select_readings_since_correction(row)]
@@ -67,7 +67,7 @@ class OffsetCorrection:
 
 
 def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueMode) -> OffsetCorrection:
-    """Return the proposal as a change of the offset table.
+    """Return the proposed correction as a change of the offset table.
 
     Raises EntryError with the reason if the change is not possible.
     """
@@ -111,7 +111,7 @@ def _tool_value(
 ) -> FieldValue:
     """Return the new wear value.
 
-    The correction is added as F2 of the tool table adds an entry.
+    The correction is added in the same way as an F2 entry in the tool table.
     """
     if not isinstance(row, ToolRow):
         raise EntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
@@ -121,7 +121,7 @@ def _tool_value(
 def _secondary_value(name: str, row: object, proposal: CorrectionProposal, mode: ValueMode) -> FieldValue:
     """Return the new value of a D offset, with X as a radius.
 
-    An offset that is not set counts as 0.
+    If the offset has no value yet, its old value is assumed to be 0.
     """
     before = row if isinstance(row, SecondaryRow) else SecondaryRow()
     value = add_correction(getattr(before, name), proposal.offset_change_mm / mode.unit_mm, mode.is_metric)
@@ -192,7 +192,7 @@ class CorrectionPreview:
     def make_table(self, value_mode: ValueMode) -> TableContent | None:
         """Return the table of diameters and shoulders before and after the correction.
 
-        Returns None if no simulated part is available.
+        Returns None if there is no simulated part.
         """
         effect = self._effect
         if effect is None or effect.is_busy or effect.error_text or effect.compared_part is None:

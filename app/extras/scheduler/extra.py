@@ -1,4 +1,4 @@
-"""Registration of the optional feature for proofs on other computers."""
+"""Registration of the optional feature that runs proofs on other computers."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Option ``prove --scheduler``, which sends work units to the workers of a dask.distributed scheduler.
+"""Option ``prove --scheduler``, which sends work units to workers of a Dask scheduler.
 
-The workers need the same version of TurnDesk. The programs and the machine are sent to the workers.
+The workers must run the same version of TurnDesk. They receive the programs and the machine.
 """
 
 from __future__ import annotations
@@ -58,12 +58,12 @@ class ProofScheduler:
             sys.stderr.write(f"turndesk: {address} has no workers yet; waiting for one\n")
 
     def start_workers(self, _jobs: int | None = None) -> Executor:
-        """Return an executor for all present and future workers of the scheduler."""
+        """Return an executor for all workers of the scheduler, including workers that connect later."""
         executor: Executor = self._client.get_executor(pure=False)
         return executor
 
     def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
-        """Cancel units that are not proved yet, and disconnect from the scheduler."""
+        """Cancel work units that are not proved yet, and disconnect from the scheduler."""
         if executor is not None:
             executor.shutdown(wait=is_done)
         self._client.close()

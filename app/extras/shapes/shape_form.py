@@ -38,7 +38,7 @@ _LONGEST = 24
 
 
 class FormCell(NamedTuple):
-    """Displayed field of a form, with its label, its value, whether the value was typed, and its error."""
+    """Displayed field of a form: its label, its value, whether the value was typed, and its error."""
 
     field_word: str
     label: str
@@ -52,10 +52,9 @@ class FormCell(NamedTuple):
 class ShapeForm:
     """Form of a shape.
 
-    ``entered_texts`` contains the typed text of each field. ``point_texts`` contains the typed text of each
-    column for each point. ``selected_row`` is the index of the selected row; the fields come first,
-    followed by the points. ``replaced_piece`` is the piece of the program text from which the form was
-    opened.
+    ``entered_texts`` contains the typed text by field. ``point_texts`` contains one entry per point, with
+    the typed text by column. ``selected_row`` is the index of the selected row; rows of fields come before
+    rows of points. ``replaced_piece`` is the piece of the program text that was opened in the form.
     """
 
     shape: Shape
@@ -81,12 +80,12 @@ class ShapeForm:
         self.selected_row = self._first()
 
     def apply_settings(self, settings: ProgramSettings) -> None:
-        """Set other tool data and calculate the form again."""
+        """Apply other tool data and calculate the form again."""
         self.settings = settings
         self.calculate()
 
     def _enter_values(self, filled_shape: FilledShape) -> None:
-        """Enter all values of a piece of the program text as typed entries."""
+        """Enter all values of a piece of the program text as if they were typed."""
         for word, value in filled_shape.values.items():
             self.entered_texts[word] = value if isinstance(value, str) else format_short_number(value, 6)
         for row in filled_shape.contour_points:
@@ -95,7 +94,7 @@ class ShapeForm:
             self.point_texts.append({c: format_short_number(v, 6) for c, v in keep.items()})
 
     def _first(self) -> int:
-        """Return the row of the first field without a proposed value, or else of the second point."""
+        """Return the row of the first field without a value, or else the row of the second point."""
         for place, each in enumerate(self.fields):
             if self.filled_shape.values.get(each.word) is None:
                 return place
@@ -104,7 +103,7 @@ class ShapeForm:
     # --- calculation ---------------------------------------------------------------------------------
 
     def calculate(self) -> None:
-        """Calculate the values, errors and lines from the entries."""
+        """Calculate the values, the errors and the program lines from the entries."""
         self.calculation_count += 1
         self.error_texts = {}
         values = {word: value for word in self.entered_texts if (value := self._value(word)) is not None}
@@ -154,7 +153,7 @@ class ShapeForm:
 
     @property
     def fields(self) -> tuple[ShapeField, ...]:
-        """Return the fields that apply to the present choices."""
+        """Return the fields that apply to the current choices."""
         return self.filled_shape.fields if hasattr(self, "filled_shape") else self.shape.fields
 
     @property
@@ -174,12 +173,12 @@ class ShapeForm:
 
     @property
     def selected_word(self) -> str:
-        """Return the word of the selected field or the label of the selected point."""
+        """Return the address word of the selected field, or the label of the selected point."""
         here = self.selected_field
         return here.word if here is not None else make_point_label(self.selected_point + 1)
 
     def make_cells(self) -> list[FormCell]:
-        """Return all fields in the form in which they are displayed."""
+        """Return all fields as display cells."""
         return [
             FormCell(
                 each.word,
@@ -202,12 +201,12 @@ class ShapeForm:
         return value if isinstance(value, str) else format_short_number(value, 6)
 
     def get_display_text(self, field: ShapeField) -> str:
-        """Return the text of a field for the operator, with a translated choice."""
+        """Return the text of a field as the operator sees it. A choice is translated."""
         said = self.get_value_text(field)
         return translate_choice(field, said) if self.is_translatable(field, said) else said
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a word that can be translated, and not a name or a size."""
+        """Return whether a choice is a word to translate, and not a name or a size."""
         return choice in field.choices
 
     def get_dimension_text(self, word: str) -> str:
@@ -252,7 +251,7 @@ class ShapeForm:
         self.selected_column, self.replaces_text = column, True
 
     def select_word(self, word: str) -> None:
-        """Select the field with a word or the point with a label."""
+        """Select the field that has a given word, or the point that has a given label."""
         if word.startswith("#"):
             self.select_row(len(self.fields) + int(word[1:]) - 1)
             return
@@ -261,7 +260,7 @@ class ShapeForm:
                 self.select_row(place)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered at the selection."""
+        """Return whether a character can be entered in the selected field or point."""
         if len(key) != 1:
             return False
         here = self.selected_field
@@ -311,7 +310,7 @@ class ShapeForm:
             self.replaces_text = False
 
     def _pick(self, here: ShapeField, key: str) -> None:
-        """Select the next choice that begins with a letter.
+        """Select the next choice that begins with the typed letter.
 
         Delete restores the proposed choice.
         """
@@ -325,15 +324,15 @@ class ShapeForm:
         self._set(here.word, next(each for each in order if self._begins(here, each, key)))
 
     def _begins(self, here: ShapeField, choice: str, key: str) -> bool:
-        """Return whether the displayed text of a choice begins with a letter."""
+        """Return whether the displayed text of a choice begins with the typed letter."""
         said = translate_choice(here, choice) if self.is_translatable(here, choice) else choice
         return said.upper().startswith(key.upper())
 
     def _write_point(self, key: str) -> None:
         """Handle a key while a point is selected.
 
-        A letter selects the column of that name. Digits edit the value. Editing the empty point at the end
-        adds a point.
+        A letter selects the column with that name. Digits edit the value. Editing the empty point at the
+        end adds a point.
         """
         if key.upper() in POINT_COLUMNS:
             self.selected_column, self.replaces_text = POINT_COLUMNS.index(key.upper()), True
@@ -394,7 +393,7 @@ It returns None if the form is closed.
 
 
 class AddedForm(ABC):
-    """Form that another feature adds to the list of shapes.
+    """Interface of a form that another feature adds to the list of shapes.
 
     A worker calculates the form. ``key`` is the key that opens the form.
     """
@@ -447,7 +446,7 @@ class AddedForm(ABC):
 
 
 def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
-    """Return the names of shapes, fields and choices that the check of translations requires."""
+    """Return the names of shapes, fields and choices that the translation check must find translated."""
     shapes = tuple(shapes)
     fields = [field for shape in shapes for field in shape.fields]
     labels = {field.label for field in fields if len(field.label) > 1}
@@ -456,9 +455,9 @@ def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
 
 
 def _list_translatable(field: ShapeField) -> tuple[str, ...]:
-    """Return the choices of a field that are words which can be translated.
+    """Return the choices of a field that are words to translate.
 
-    The names of thread series and classes are international.
+    The names of thread series and classes are the same in all languages.
     """
     if field.word == "SERIES":
         return (ThreadSeries.CUSTOM.value,)

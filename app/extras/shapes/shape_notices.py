@@ -12,7 +12,7 @@ from core.message import Message
 
 
 def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: Dialect) -> str:
-    """Return the notice that the lines of a form at a line can no longer be read, or an empty string."""
+    """Return a notice if the form comment at a line can no longer be read, or an empty string."""
     found = find_damaged_comment(program_lines, line, dialect)
     if found is None or line >= len(program_lines):
         return ""
@@ -22,7 +22,7 @@ def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: D
 
 
 def describe_manual_edits(piece: ShapePiece) -> str:
-    """Return the notice about changes that were made by hand, or an empty string."""
+    """Return a notice about changes that were made by hand, or an empty string."""
     if piece.adopted_fields:
         words = ", ".join(
             each.label for each in piece.filled_shape.fields if each.word in piece.adopted_fields

@@ -1,4 +1,4 @@
-"""The places of shapes: programs that can contain them, the shape at a line, and the line for a new shape."""
+"""Locations of shapes: programs that support shapes, the shape at a line, and the insertion line."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def supports_shapes(name: str) -> bool:
 
 
 def find_piece(pieces: Sequence[ShapePiece], line: int) -> ShapePiece | None:
-    """Return the piece that contains a line, counted from 0, or None."""
+    """Return the piece that contains a line (counted from 0), or None if no piece contains the line."""
     return next((each for each in pieces if each.first_line <= line < each.next_line), None)
 
 

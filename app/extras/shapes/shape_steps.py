@@ -1,6 +1,6 @@
-"""Shapes from a file, which contains steps with the fields of the forms.
+"""Generation of a program from a file of steps. Each step contains the fields of one form.
 
-The program is the same as the program that the forms of the editor write.
+The generated program is identical to the program that the editor's forms write.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class StepError(Exception):
 class GeneratedProgram:
     """Program that was generated from steps.
 
-    ``step_kinds`` are the kinds of the steps, and ``remarks`` are the remarks about the program lines.
+    ``step_kinds`` are the kinds of the steps. ``remarks`` are remarks about the program lines.
     """
 
     program_lines: tuple[str, ...]
@@ -47,19 +47,19 @@ class GeneratedProgram:
 
 
 def get_shapes_by_kind(dialect: Dialect) -> dict[str, Shape]:
-    """Return the shapes of a language by the kind that a step specifies."""
+    """Return the shapes of a programming language, by the kind that a step specifies."""
     return {shape.name.lower(): shape for shape in SHAPES_BY_DIALECT[dialect].values()}
 
 
 def get_words_by_key(shape: Shape) -> dict[str, str]:
-    """Return the words of the fields of a shape by the key that a step uses."""
+    """Return the field words of a shape, by the key that a step uses."""
     return {_KEYS.get(each.word, each.word.lower()): each.word for each in shape.fields}
 
 
 def generate_program(steps: Sequence[ShapeStep], settings: ProgramSettings) -> GeneratedProgram:
     """Return the program that the forms write for the steps.
 
-    Raises StepError.
+    Raises StepError if a step is invalid or the first step is not a head.
     """
     shapes = [_shape(number, step, settings.dialect) for number, step in enumerate(steps, 1)]
     mistakes = [text for number, step in enumerate(steps, 1) for text in _strange(number, step, shapes)]
@@ -172,7 +172,7 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
 def _rows(where: str, points: object) -> list[dict[str, str]]:
     """Return the entries of contour points.
 
-    The keys of a point are x, z, c (chamfer), r (radius) and a (arc). Raises StepError.
+    The keys are x, z, c (chamfer), r (radius) and a (arc). Raises StepError if the points are invalid.
     """
     if not isinstance(points, list) or not all(isinstance(each, dict) for each in points):
         raise StepError(
@@ -205,7 +205,7 @@ def _text(value: object) -> str:
 
 
 def _key(shape: Shape, word: str) -> str:
-    """Return the key that a step uses for a field, or the word point with the number of the point."""
+    """Return the key that a step uses for a field, or a text such as ``point 2`` for a point."""
     return next(
         (key for key, own in get_words_by_key(shape).items() if own == word), f"point {word.lstrip('#')}"
     )

@@ -1,4 +1,4 @@
-"""Command ``turndesk shapes FORM.toml --out part.nc``, which writes a program from forms in a file.
+"""Command ``turndesk shapes FORM.toml --out part.nc``, which writes a program from form steps.
 
 The module also declares the JSON keys of the command.
 """
@@ -77,7 +77,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the program and prove it.
 
-    Returns exit status 1 if the program has errors. Raises CommandError.
+    Returns exit status 1 if the program has errors. Raises CommandError if no program can be written.
     """
     from app.compose.machine.machine_setup import read_machine
 
@@ -100,9 +100,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _language(out: str | None, machine: Machine) -> Dialect:
-    """Return the language that the output file name indicates, or else the language of the machine.
+    """Return the language of the output file name, or else the language of the machine.
 
-    Raises CommandError for Klartext.
+    Raises CommandError if the language is Klartext.
     """
     said = Dialect(machine.mdi_language) if out is None else guess_dialect(Path(out).name)
     if said is Dialect.KLARTEXT:
@@ -213,9 +213,9 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
 
 
 def authorize_writing(args: argparse.Namespace) -> str:
-    """Return the user who may write the ``--out`` file, or an empty string if the option is not given.
+    """Return the user who may write the ``--out`` file, or an empty string without this option.
 
-    Raises CommandError.
+    Raises CommandError if the file exists, has no folder, or may not be written.
     """
     if args.out is None:
         return ""
@@ -232,7 +232,7 @@ def authorize_writing(args: argparse.Namespace) -> str:
 
 
 def save_generated_program(args: argparse.Namespace, text: str, author: str) -> None:
-    """Write ``--out``, which must not exist. Raises CommandError."""
+    """Write the new file ``--out``. Raises CommandError if the file exists or cannot be written."""
     from app.programs.atomic_files import FileOperationError, write_new_file
 
     with convert_to_command_error(FileOperationError):

@@ -1,4 +1,4 @@
-"""Model of the shapes in the editor without Qt, with the list, the form and the program text."""
+"""Model of the editor's shapes, independent of Qt, with the list, the form and the program text."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ class ShapesModel(PanelModel):
     """Model of the shapes panel.
 
     ``read_shop_data`` reads machine and tool data from the store on a worker. ``text`` is the program with
-    the lines of the form, and ``text_number`` counts the texts to prove. ``cursor_line`` is the line,
-    counted from 0, before which a new shape is written.
+    the lines of the form. ``text_number`` increases with each text to prove. A new shape is inserted before
+    the line ``cursor_line``, counted from 0.
     """
 
     read_shop_data: Callable[[], ShopData] = ShopData
@@ -85,9 +85,9 @@ class ShapesModel(PanelModel):
     def open_for_text(self, name: str, text: str, cursor_line: int, *, lists_helpers: bool = False) -> str:
         """Open the shapes for a program text.
 
-        ``cursor_line`` is the cursor line, counted from 1. ``lists_helpers`` lists calculators and templates
-        instead of shapes, and does not open the piece at the cursor. Returns the reason if opening is not
-        possible, or an empty string.
+        ``cursor_line`` is the cursor line, counted from 1. If ``lists_helpers`` is True, the list contains
+        calculators and templates instead of shapes, and the piece at the cursor is not opened. Returns the
+        reason if opening is not possible, or an empty string.
         """
         if not supports_shapes(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
@@ -112,7 +112,7 @@ class ShapesModel(PanelModel):
 
     @property
     def lists_shapes(self) -> bool:
-        """Return whether the list contains shapes and not calculators and templates."""
+        """Return whether the list contains shapes instead of calculators and templates."""
         return all(self.shape_table is not each for each in CALCULATORS_BY_DIALECT.values())
 
     @property
@@ -122,7 +122,7 @@ class ShapesModel(PanelModel):
 
     @property
     def listed_pieces(self) -> list[ShapePiece]:
-        """Return the pieces of the program that the list shows after the forms."""
+        """Return the pieces of the program that are listed after the forms."""
         return self.pieces if self.lists_shapes else []
 
     def _take(self, text: str) -> None:
@@ -204,7 +204,7 @@ class ShapesModel(PanelModel):
 
     @property
     def _adder(self) -> AddedForm | None:
-        """Return the added form to which the open form belongs, or None for a shape."""
+        """Return the added form that created the open form, or None if the open form is a shape."""
         return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: ShapePiece) -> None:
@@ -239,7 +239,7 @@ class ShapesModel(PanelModel):
         return found
 
     def toggle_pad(self) -> None:
-        """Show or hide the number pad."""
+        """Show or hide the number pad on the screen."""
         self.is_pad_visible = not self.is_pad_visible
 
     def handle_key(self, key: str) -> bool:
@@ -267,7 +267,7 @@ class ShapesModel(PanelModel):
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered, or opens a form."""
+        """Return whether a character can be entered in the form, or opens a form of the list."""
         if self.form is not None:
             return self.form.accepts_key(key)
         return len(key) == 1 and key.upper() in self.shape_table
@@ -328,7 +328,7 @@ class ShapesModel(PanelModel):
         return True
 
     def return_to_list(self) -> None:
-        """Return to the list and discard entries that were not written."""
+        """Return to the list of shapes, and discard entries that were not written to the program."""
         self.pending_action, self.notice, self.form = None, "", None
         self._show("\n".join(self.program_lines) + "\n" if self.program_lines else "")
 
@@ -388,7 +388,7 @@ class ShapesModel(PanelModel):
         self.selected_row = 0 if not self.pieces else max(1, self.selected_row)
 
     def delete_piece(self) -> None:
-        """Ask for confirmation and delete the piece from the program text (F5)."""
+        """Ask for confirmation, and then delete the piece from the program text (F5)."""
         form = self.form
         if form is None or form.replaced_piece is None:
             return
@@ -427,7 +427,7 @@ class ShapesModel(PanelModel):
         ) + len(form.program_lines)
 
     def _preview(self) -> None:
-        """Show the program text with the lines of the form, or unchanged while the form is incomplete."""
+        """Show the program text with the lines of the form. If the form is incomplete, show the old text."""
         form = self.form
         if form is None:
             return
@@ -442,7 +442,7 @@ class ShapesModel(PanelModel):
         self._show("\n".join(text) + "\n")
 
     def _show_calculated(self, form: ShapeForm) -> str | None:
-        """Show a calculated form and return the program text, or None if the form is closed."""
+        """Show a calculated form, and return the program text, or None if the form was closed."""
         if self.form is not form:
             return None
         self._preview()
@@ -457,7 +457,7 @@ class ShapesModel(PanelModel):
             self.text_number += 1
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         if self.notice:
             return self.notice
         if self.form is None and not self.lists_shapes:

@@ -20,7 +20,7 @@ _USUAL = (15, 16)
 def make_shapes_model(desk: Desk, machine: Machine) -> ShapesModel:
     """Return the model of the shapes panel.
 
-    The tool data are read again each time the panel opens.
+    The tool data are read each time the panel opens.
     """
     found = ShapesModel(
         lambda: make_shop_data(machine, try_read_shapes()), ProgramSettings(metric=not machine.is_inch)
@@ -31,7 +31,7 @@ def make_shapes_model(desk: Desk, machine: Machine) -> ShapesModel:
 
 
 def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData:
-    """Return the machine and tool data that determine the proposals and limits of a shape."""
+    """Return the machine and tool data that determine the proposed values and limits of a shape."""
     by_name = {axis.name: axis for axis in machine.axes}
     z, c = by_name.get("Z"), by_name.get("C")
     return ShopData(
@@ -66,7 +66,7 @@ def _chuck(machine: Machine) -> tuple[int, int] | None:
 def _live(machine: Machine) -> tuple[int, int]:
     """Return the M codes that turn the live tool on and off.
 
-    The codes are found by the name of the output. If there are several, the lowest codes are returned.
+    The codes are found by the name of their output. If several codes match, the lowest are returned.
     """
     for code, (output, state) in sorted(machine.m_codes.items()):
         if state and _LIVE.search(output):

@@ -1,4 +1,4 @@
-"""Shapes panel, which replaces the text of the editor with the list of shapes, a form and a sketch."""
+"""Shapes panel with the list of shapes, a form and a sketch. It replaces the text in the editor."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _DRAWN = 12.0  # units: minimum useful height of the drawing
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """Row for a shape, a piece of the program, a field, or the ``point_cells`` of a point.
+    """Row for a shape, a piece of the program, a field, or a point with its ``point_cells``.
 
     ``tone`` is the color of the value.
     """
@@ -56,7 +56,7 @@ class _Line:
 
 
 class ShapeRowsPanel(RowPanel):
-    """List whose selected row always stays visible.
+    """List that always scrolls to its selected row.
 
     A touch selects a row or a cell.
     """
@@ -130,7 +130,7 @@ class ShapeRowsPanel(RowPanel):
             painter.draw_text_line(box, figure, 2.1, tone, at=ALIGN_RIGHT, raw=True, bold=tone != "soft")
 
     def _cells(self, painter: ThemedPainter, area: QRectF, line: _Line, number: int, *, marked: bool) -> None:
-        """Draw the number and the values of a point."""
+        """Draw the number and the values of one point."""
         u = self.theme.unit_px
         first = QRectF(area.x(), area.y(), 2.4 * u, area.height())
         painter.draw_text_line(
@@ -165,7 +165,7 @@ class ShapeLinesPanel(Panel):
     )  # displayed page of remarks that are longer than the panel
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Show the next page of long remarks, or the first page after the last."""
+        """Show the next page of long remarks, or the first page after the last page."""
         self._page += 1
         event.accept()
 
@@ -210,7 +210,7 @@ class ShapeLinesPanel(Panel):
         return area.adjusted(0, area.height(), 0, 0)
 
     def _draw_remark_page(self, painter: ThemedPainter, area: QRectF, flags: Qt.TextFlag, text: str) -> None:
-        """Draw one page of the remarks, which contains only whole lines, with the page number below."""
+        """Draw one page of the remarks with the page number below. The page contains only whole lines."""
         line = painter.fontMetrics().lineSpacing()
         lines = max(1, int((area.height() - 2.0 * self.theme.unit_px) / line))
         whole = painter.boundingRect(QRectF(0, 0, area.width(), 0), flags, text).height()
@@ -252,7 +252,7 @@ class ShapesView(EditorPanel):
         self._seen: tuple[object, ...] = ()
 
     def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:
-        """Return the key for calculators, preceded by the key for shapes if the program supports shapes."""
+        """Return the key for calculators. If the program supports shapes, the key for shapes comes first."""
         calculators = HeaderKey(tr("CALCULATOR ⇧F4"), "Calculators")
         return (
             (HeaderKey(tr("SHAPES ⇧F3"), "Shapes"), calculators)
@@ -400,7 +400,7 @@ class ShapesView(EditorPanel):
 
 
 def _find_shapes_model(desk: Desk) -> ShapesModel:
-    """Return the shapes model of TurnDesk, or else attach and return a new model without machine data."""
+    """Return the shapes model of TurnDesk. If it is missing, attach a new model without machine data."""
     found = desk.page_registry.find_model(ShapesModel)
     if found is None:
         found = ShapesModel()

@@ -49,7 +49,7 @@ class SharingExtra(OptionalFeature):
     ) -> None:
         """Attach the page of shared programs to TurnDesk.
 
-        Without a store or a [sharing] table, the page shows the reason why no programs are shared.
+        If there is no store or no [sharing] table, the page shows the reason why no programs are shared.
         """
         from app.extras.sharing.sharing_setup import attach_sharing
 
@@ -58,24 +58,24 @@ class SharingExtra(OptionalFeature):
     def start_services(
         self, desk: Desk, journal: Journal, report_reason: ReportFunction
     ) -> CloseFunction | None:
-        """Start the synchronization thread, and return the function that stops it.
+        """Start the synchronization thread, and return the function that stops the thread.
 
-        The result is None if the machine file has no [sharing] table or the location cannot be used.
+        The result is None if the machine file has no [sharing] table or the shared location cannot be used.
         """
         from app.extras.sharing.sharing_setup import start_sharing
 
         return start_sharing(desk, journal)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk share``, with the output that precedes them."""
+        """Return the JSON outputs of ``turndesk share``, by the command after which they are documented."""
         from app.extras.sharing.share_command import OUTPUTS, PRECEDING_COMMAND
 
         return {PRECEDING_COMMAND: OUTPUTS}
 
     def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
-        """Add a row that shows whether the shared location responds and is set up.
+        """Add a row that shows whether the shared location responds and is set up for sharing.
 
-        No row is added if the machine file has no [sharing] table.
+        If the machine file has no [sharing] table, no row is added.
         """
         from app.extras.sharing.sharing_check import check_sharing
 

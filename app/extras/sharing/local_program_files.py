@@ -1,4 +1,4 @@
-"""The program files in the folder of this machine, with their digests, as sharing sees them."""
+"""Program files in the program folder of this machine, with their digests, for program sharing."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ProgramFile:
 
 @dataclass(slots=True)
 class LocalProgramFiles:
-    """Program files in the folder of the operator.
+    """Program files in the operator's program folder.
 
     A file is read again only if its time or size has changed.
     """
@@ -47,7 +47,7 @@ class LocalProgramFiles:
     def read_files(self, *, is_settled: bool) -> dict[str, ProgramFile]:
         """Return the program files by program key.
 
-        If ``is_settled`` is set, a file that is still being written is skipped until the next scan.
+        If ``is_settled`` is True, a file that is still being written is skipped until the next scan.
         """
         found, refused, stamps = dict[str, ProgramFile](), dict[str, str](), dict[str, _Stamp]()
         names = [path.name for path in _program_files(self.folder)]

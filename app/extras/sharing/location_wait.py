@@ -1,6 +1,6 @@
 """Waiting of a command for the shared location.
 
-The location may never respond if it is on a failed network drive.
+A location on a failed network drive may never respond.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ def wait_for_location(
 def _wait_for_folder(location: SharedFolder, told_after: float) -> None:
     """Wait until a separate process has opened the marker file of the folder.
 
-    A system call that blocks on a failed FUSE drive survives SIGKILL. In a thread, this call would block
-    the whole command, but a separate process can be left running. The file must be opened, because file
-    names can come from a cache. Raises SharingError.
+    A system call that blocks on a failed FUSE drive survives SIGKILL. In a thread, it would block the whole
+    command; a separate process can be left running. The file is opened because file names can come from a
+    cache. Raises SharingError if the folder does not respond.
     """
     opening = subprocess.Popen(
         [sys.executable, "-I", "-S", "-c", _OPEN, str(location.marker_path)],

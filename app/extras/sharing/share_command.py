@@ -64,9 +64,9 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Execute the action.
+    """Execute the action that the user specified.
 
-    Raises CommandError.
+    Raises CommandError if there is no [sharing] table or the action fails.
     """
     from app.compose.machine.machine_setup import read_machine
     from app.extras.sharing.location_wait import wait_for_location
@@ -94,7 +94,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _acts(args: argparse.Namespace) -> tuple[ProtectedChange, ...]:
-    """Return the permissions that the action requires, or an empty tuple if the action only reads."""
+    """Return the permissions that the action requires, or an empty tuple if it changes nothing."""
     if args.action in _LOOKING:
         return ()
     alone = args.action == "begin" or getattr(args, "claim", False)

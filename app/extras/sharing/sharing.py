@@ -1,4 +1,4 @@
-"""Sharing of programs with other machines, which publishes local versions and reads remote versions.
+"""Program sharing between machines, which publishes local versions and reads remote versions.
 
 The store of this machine is authoritative. Every version is stored before it is published. While the
 location is not available, versions wait in the store. Versions of other machines are copied to the program
@@ -40,8 +40,7 @@ _PATIENCE = 2.0  # seconds that closing waits; a thread that hangs in a dead net
 class SharingThread:
     """Thread that synchronizes shared programs at regular intervals.
 
-    The ``interval_s`` parameter is the interval in seconds. The ``result_handler`` parameter is called with
-    each result.
+    ``interval_s`` is the interval in seconds. ``result_handler`` is called with each result.
     """
 
     def __init__(
@@ -64,21 +63,21 @@ class SharingThread:
         self._thread.start()
 
     def synchronize_now(self) -> None:
-        """Start a synchronization now, without waiting for its end.
+        """Start a synchronization now, and return without waiting until it is finished.
 
         This method can be called from any thread.
         """
         self._wake.set()
 
     def get_waiting_time_s(self) -> float:
-        """Return the time in seconds for which the present synchronization has waited for the location."""
+        """Return how long the current synchronization has waited for the location, in seconds."""
         since = self._since
         return self._now() - since if since >= 0.0 else 0.0
 
     def close(self) -> None:
         """Stop the thread.
 
-        Unfinished work is repeated when TurnDesk starts again.
+        Unfinished work is repeated after TurnDesk starts again.
         """
         self._closing.set()
         self._wake.set()
@@ -100,9 +99,9 @@ _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published togethe
 
 
 class VersionCopyError(CodedError):
-    """Error for a version that could not be copied.
+    """Error if a version could not be copied.
 
-    The program is unchanged. The message states the reason.
+    The program is then unchanged. The message states the reason.
     """
 
 
@@ -110,7 +109,7 @@ class VersionCopyError(CodedError):
 class SharingResult:
     """Immutable result of a synchronization.
 
-    ``error_text`` is the reason if the location could not be used, or else empty.
+    ``error_text`` is the reason if the location could not be used, or else an empty string.
     """
 
     programs: Mapping[str, ProgramVersions] = field(default_factory=dict)
@@ -135,7 +134,7 @@ class SharingResult:
 class ProgramSharing:
     """Synchronization of programs with the shared location.
 
-    The methods can wait for disk and network, so only workers may call them.
+    The methods can wait for the disk or the network, so only workers may call them.
     """
 
     def __init__(
@@ -177,7 +176,7 @@ class ProgramSharing:
     def preview_synchronization(self) -> SharingResult:
         """Return the result that a synchronization would have, without storing anything.
 
-        Raises StoreError.
+        Raises StoreError if the store cannot be read.
         """
         with self._lock:
             store, found, error_text = self._store(), None, ""
@@ -205,7 +204,7 @@ class ProgramSharing:
         return found
 
     def _note(self, store: Store, *, is_settled: bool) -> None:
-        """Store the present files as versions, and mark the programs whose file no longer exists."""
+        """Store the current files as versions. Mark the programs whose files no longer exist."""
         files = self._files.read_files(is_settled=is_settled)
         store.write(partial(self._noted, files)).result()
 
@@ -308,7 +307,7 @@ class ProgramSharing:
     def read_text(self, version: SharedVersion) -> bytes:
         """Return the text of a version from the store, or else from the shared location.
 
-        Raises SharingError and StoreError.
+        Raises StoreError or SharingError if the text cannot be read.
         """
         with self._store().read() as connection:
             text = shared_versions.read_version_text(connection, version.text)
@@ -317,7 +316,7 @@ class ProgramSharing:
     def read_local_text(self, program_key: str) -> bytes:
         """Return the local text of a program, or empty bytes if there is no local version.
 
-        Raises StoreError.
+        Raises StoreError if the store cannot be read.
         """
         family = self.last_result.programs.get(program_key, ProgramVersions())
         here = family.versions.get(family.local_version_id)
@@ -330,8 +329,8 @@ class ProgramSharing:
         """Copy a version into the program folder and return the file name.
 
         The previous text remains stored as a version. If both sides have changed the program, the new
-        version follows both versions, so other machines detect that the conflict is resolved. Raises
-        VersionCopyError, SharingError and StoreError; the program is then unchanged.
+        version follows both versions, so that other machines detect the resolved conflict. If the copy
+        fails, VersionCopyError, SharingError or StoreError is raised and the program is unchanged.
         """
         text = self.read_text(version)
         with self._lock:
@@ -366,7 +365,7 @@ class ProgramSharing:
     def resolve_with_local(self, program_key: str) -> None:
         """Resolve a conflict in favor of the local version.
 
-        Raises VersionCopyError and StoreError.
+        Raises VersionCopyError if there is no conflict, and StoreError if the store fails.
         """
         with self._lock:
             store = self._store()
@@ -399,8 +398,8 @@ class ProgramSharing:
     def _free_name(self, version: SharedVersion) -> str:
         """Return the file name to which a version is copied.
 
-        If a local file has the same name except for case, this is the name of that file. Otherwise it is
-        the name of the version. Raises VersionCopyError.
+        This is the name of a local file that differs only in case, or else the name of the version. Raises
+        VersionCopyError if sharing does not accept a local file with that name.
         """
         names = [each for each in self._files.rejected_files if make_program_key(each) == version.program_key]
         if names:

@@ -1,4 +1,4 @@
-"""Check of the shared location for a row of ``turndesk machine check``."""
+"""Check of the shared location, which adds a row to ``turndesk machine check``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.machine.machine_model import Machine
 
 
 def check_sharing(machine: Machine, results: CheckResults) -> None:
-    """Add a row that shows whether the shared location responds and whether it is set up."""
+    """Add a row that shows whether the shared location responds and is set up for sharing."""
     table = machine.hardware.find_driver_table(SharingTable)
     if table is None:
         return

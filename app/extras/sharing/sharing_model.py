@@ -1,4 +1,4 @@
-"""Model of the SHARED PROGRAMS page without Qt, with newer versions, their authors and their machines."""
+"""Model of the SHARED PROGRAMS page, independent of Qt: newer versions, authors and machines."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RemoteVersions(VersionHistory):
         return "CHANGES IF YOU USE THE SELECTED VERSION"
 
     def words(self) -> str:
-        """Return the status of the selected version as text."""
+        """Return a text that describes the status of the selected version."""
         if self.error_text:
             return self.error_text
         if not self.rows:
@@ -61,13 +61,13 @@ class RemoteVersions(VersionHistory):
         return "" if self.changes else "SAME TEXT AS ON THIS CONTROL"
 
     def order_texts(self, selected: str, current: str) -> tuple[str, str]:
-        """Return the texts of the comparison: the local text and the text of the selected version."""
+        """Return the two texts to compare: the local text and the text of the selected version."""
         return current, selected
 
 
 @dataclass(slots=True)
 class RemoteVersionArchive:
-    """Archive for ``RemoteVersions``.
+    """Version archive for ``RemoteVersions``.
 
     It contains the remote versions found by the last synchronization, numbered from 1.
     """
@@ -75,17 +75,17 @@ class RemoteVersionArchive:
     sharing: ProgramSharing
 
     def find_remote_versions(self, program_key: str) -> Sequence[SharedVersion]:
-        """Return the newest versions that this machine does not have."""
+        """Return the latest versions that are missing on this machine."""
         return self.sharing.last_result.programs.get(program_key, ProgramVersions()).newest_remote_versions
 
     def versions(self, name: str) -> Sequence[VersionRow]:
-        """Return the versions with their authors and the machines that have them."""
+        """Return the versions, with their authors and with the machines on which they are."""
         return [self._row(number, each) for number, each in enumerate(self.find_remote_versions(name), 1)]
 
     def read_version_text(self, name: str, version: int) -> bytes:
         """Return the text of a version.
 
-        Raises SharingError and StoreError.
+        Raises SharingError or StoreError if the text cannot be read.
         """
         return self.sharing.read_text(self.find_remote_versions(name)[version - 1])
 
@@ -108,8 +108,8 @@ class SharingModel:
     """Model of the SHARED PROGRAMS page.
 
     ``sharing`` is None if no shared location is configured. ``synchronize_now`` starts a synchronization on
-    the sharing thread. ``get_waiting_time_s`` returns the time in seconds for which the thread has waited for
-    the location.
+    the sharing thread. ``get_waiting_time_s`` returns how long the thread has waited for the location, in
+    seconds.
     """
 
     desk: Desk
@@ -160,7 +160,7 @@ class SharingModel:
 
     @property
     def selected_version(self) -> SharedVersion | None:
-        """Return the selected version of another machine, or None."""
+        """Return the selected version of another machine, or None if no version is selected."""
         here, number = self.selected_program, self.remote_versions.number
         if (
             here is None
@@ -238,7 +238,7 @@ class SharingModel:
         return TableRow(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the present keys."""
+        """Return the prompt that explains the current keys."""
         if self.sharing is None:
             return NO_LOCATION_MESSAGE
         if self.selected_version is None:
@@ -250,7 +250,7 @@ class SharingModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the present function keys."""
+        """Return the function keys that apply now."""
         return {
             "F2": FunctionKey(
                 "USE",
@@ -265,7 +265,7 @@ class SharingModel:
     def copy_version(self) -> None:
         """Copy the selected version into the program folder.
 
-        If a program would be replaced, the operator must confirm.
+        If the copy would replace a program, the operator must confirm.
         """
         version, here = self.selected_version, self.selected_program
         if version is None or here is None:
@@ -303,12 +303,12 @@ class SharingModel:
 
     @property
     def _both(self) -> bool:
-        """Return whether the selected program was changed both on this machine and on another machine."""
+        """Return whether both this machine and another machine have changed the selected program."""
         here = self.selected_program
         return here is not None and self.last_result.states_by_program.get(here[0]) == "both"
 
     def keep_local_version(self) -> None:
-        """Ask for confirmation, and resolve the conflict in favor of the local version."""
+        """Ask for confirmation, and then resolve the conflict in favor of the local version."""
         here = self.selected_program
         if here is None or not self._both:
             self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
@@ -344,7 +344,7 @@ class SharingModel:
         self.worker.enqueue_work(work, done, self.desk.show_refusal)
 
     def _find_use_refusal(self, key: str) -> str:
-        """Return the reason why a program must not be replaced now, or an empty string."""
+        """Return the reason why a program in use must not be replaced now, or an empty string."""
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         if snapshot.interrupted is not None and make_program_key(snapshot.interrupted.program) == key:
             words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
@@ -358,7 +358,7 @@ class SharingModel:
         return ""
 
     def select_next_version(self) -> None:
-        """Select the next remote version if several machines have changed the program."""
+        """Select the next remote version if more than one machine has changed the program."""
         count = len(self.remote_versions.rows)
         if count:
             self.desk.clear_prompt_line()
@@ -388,7 +388,7 @@ class SharingModel:
         return True
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False because this page has no entry."""
+        """Return False because this page has no entry field."""
         return False
 
     def select_row(self, row: int) -> None:
@@ -408,7 +408,7 @@ class SharingModel:
         return True
 
     def on_close(self) -> None:
-        """Do nothing because there is nothing to cancel."""
+        """Do nothing, because the page has no work to cancel."""
 
     def close(self) -> None:
         """Stop the worker after pending changes are finished."""

@@ -73,9 +73,9 @@ def _model(desk: Desk, sharing: ProgramSharing | None) -> SharingModel:
 
 
 def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
-    """Start the synchronization thread and return a function that stops it.
+    """Start the synchronization thread, and return a function that stops the thread.
 
-    Returns None if there is no [sharing] table or the location cannot be used.
+    Returns None if there is no [sharing] table or the shared location cannot be used.
     """
     table = (
         desk.machine.machine.hardware.find_driver_table(SharingTable)
@@ -99,7 +99,7 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
 
 @dataclass(slots=True)
 class SharingResultHandler:
-    """Handler of synchronization results, which runs on the sharing thread.
+    """Handler of synchronization results. It runs on the sharing thread.
 
     Each message is reported only once.
     """
@@ -145,9 +145,9 @@ def make_location(table: SharingTable) -> SharedLocation:
 
 
 def read_machine_id(folder: Path) -> str:
-    """Return the unique id of this machine, which is created and stored at the first call.
+    """Return the unique id of this machine. The id is created and stored at the first call.
 
-    Raises CommandError.
+    Raises CommandError if the id cannot be read or stored.
     """
     from core.extras.sharing.version_record import is_machine_id
 

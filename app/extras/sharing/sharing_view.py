@@ -21,7 +21,7 @@ LIST_HEIGHT_RATIO = 0.5  # ratio of the height
 
 
 class SharedProgramsPage(ListPage):
-    """Page that shows the sharing model and passes keys to the model."""
+    """Page that shows the sharing model. The page passes key presses to the model."""
 
     NAME = "SHARED PROGRAMS"
     model: SharingModel
@@ -38,7 +38,7 @@ class SharedProgramsPage(ListPage):
         return self.model.function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the function keys of the model and of the scroll keys."""
+        """Return the labels of the model's function keys and of the scroll keys."""
         return self.make_function_key_labels({"F6": "UP", "F8": "DOWN"}, self.make_function_keys())
 
     def make_key_actions(self) -> KeyActions:

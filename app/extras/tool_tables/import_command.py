@@ -1,6 +1,6 @@
-"""Import of a tool table, with a preview and questions.
+"""Import of a tool table with a preview and questions.
 
-The import is one step in the offset history.
+The whole import is one step in the offset history.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _ALIASES = {"t": "number", "tool": "number", "r": "nose_radius", "tip": "quadran
 def import_table(args: argparse.Namespace) -> int:
     """Show the changes that a tool table would make, and import the table after confirmation.
 
-    Raises CommandError.
+    Raises CommandError if the table is invalid or cannot be imported.
     """
     if args.machine:
         read_machine(args.machine)  # reports a mistake in the option before anything is asked
@@ -81,7 +81,7 @@ def _tell(saved: tuple[ToolPlan, ...]) -> None:
 def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
     """Return the format and the tools of the file.
 
-    Raises CommandError.
+    Raises CommandError if the file is not a valid tool table.
     """
     options = ReadingOptions(args.unit, args.x, _columns(args.columns), 0, _only(args.only))
     try:
@@ -94,7 +94,7 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 def _columns(entries: Iterable[str]) -> dict[str, str]:
     """Return the columns that the option ``--map`` specifies, by field.
 
-    Raises CommandError.
+    Raises CommandError if the option is invalid.
     """
     found: dict[str, str] = {}
     parts = [part for entry in entries for part in re.split(r",(?=\s*\w+\s*=)", entry)]
@@ -118,7 +118,7 @@ def _columns(entries: Iterable[str]) -> dict[str, str]:
 def _only(text: str) -> frozenset[int]:
     """Return the tool numbers that the option ``--only`` specifies.
 
-    Raises CommandError.
+    Raises CommandError if the option is invalid.
     """
     found: set[int] = set()
     for part in filter(None, (each.strip() for each in text.split(","))):
@@ -137,7 +137,7 @@ def _only(text: str) -> frozenset[int]:
 
 
 def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[ToolPlan, ...]:
-    """Return the plans that the user confirms.
+    """Ask the user to confirm the plans, and return the confirmed plans.
 
     Raises CommandError if there is no terminal for the question.
     """

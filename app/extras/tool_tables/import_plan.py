@@ -1,6 +1,6 @@
 """Comparison of an imported tool table with the stored offsets and tool shapes.
 
-The plan contains only values that are different. The import does not change wear, the master mark or
+The resulting plan contains only values that differ. The import does not change wear, the master mark or
 additional cutting edges.
 """
 
@@ -21,7 +21,7 @@ _NEAR = 1e-6  # mm, the rounding of a file with six decimals
 
 
 class ImportStatus(StrEnum):
-    """Status of an imported tool compared with the stored tool of the same number."""
+    """Status of an imported tool compared with the stored tool that has the same number."""
 
     NEW = "new"
     CHANGED = "changed"
@@ -43,7 +43,7 @@ class FieldChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ToolPlan:
-    """Planned changes of one tool, with its place in the file and notes for the user."""
+    """Planned changes of one tool, with its position in the imported file and notes for the user."""
 
     tool_number: int
     file_position: str
@@ -52,7 +52,7 @@ class ToolPlan:
     notes: tuple[str, ...]
 
     def get_new_values(self, kind: OffsetKind) -> dict[str, FieldValue]:
-        """Return the new values of one offset table by field."""
+        """Return the new values for one offset table, by field."""
         return {each.field_name: each.new_value for each in self.field_changes if each.offset_kind is kind}
 
 
@@ -60,7 +60,7 @@ ChangesByTable = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
 def collect_changes(plans: tuple[ToolPlan, ...]) -> ChangesByTable:
-    """Return the new values of all plans by offset table and tool."""
+    """Return the new values of all plans, by offset table and tool."""
     kinds = {
         kind: {p.tool_number: v for p in plans if (v := p.get_new_values(kind))}
         for kind in (OffsetKind.TOOL, OffsetKind.SHAPE)
@@ -70,15 +70,15 @@ def collect_changes(plans: tuple[ToolPlan, ...]) -> ChangesByTable:
 
 @dataclass(frozen=True, slots=True)
 class StoredTools:
-    """Stored offsets and shapes of the tools by tool number."""
+    """Stored offsets and shapes of the tools, by tool number."""
 
     tools: Mapping[int, ToolRow]
     shapes: Mapping[int, ShapeRow]
 
     def make_plans(self, table: ToolTable, *, imports_positions: bool) -> tuple[ToolPlan, ...]:
-        """Return the plan for each tool of an imported table.
+        """Return one plan for each tool of an imported table.
 
-        If ``positions`` is not set, X and Z are not imported.
+        If ``positions`` is False, X and Z are not imported.
         """
         return tuple(self._plan(entry, positions=imports_positions) for entry in table.tools.values())
 
@@ -98,7 +98,7 @@ class StoredTools:
         return ToolPlan(entry.tool_number, entry.position_text, status, changes, (*entry.notes, *notes))
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
-        """Return the offset values that can be stored, and notes about the other values."""
+        """Return the offset values that can be stored, and notes about values that cannot be stored."""
         offset, notes = dict(entry.offset_values), []
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")
@@ -117,7 +117,7 @@ class StoredTools:
         return offset, notes
 
     def find_mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
-        """Yield an error for each contradiction in the tool shapes that would result from the plans."""
+        """Yield an error for each contradiction that the plans would cause in the tool shapes."""
         from app.desk.stored_shapes import find_mistakes
 
         for plan in plans:

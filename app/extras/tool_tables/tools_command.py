@@ -1,4 +1,4 @@
-"""Command ``turndesk tools``, which imports tool tables of other programs."""
+"""Command ``turndesk tools``, which imports tool tables from other programs."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _add_import(actions: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the action.
 
-    Raises CommandError.
+    Raises CommandError if the action fails.
     """
     from app.extras.tool_tables.import_command import import_table
 

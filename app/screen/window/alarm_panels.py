@@ -27,7 +27,7 @@ _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
 
 
 class AlarmNotice(Panel):
-    """A notice that shows the active alarms, the first of them large, or the message of M00 or M01."""
+    """A notice with the active alarms (the first one large), or with the message of M00 or M01."""
 
     message, _go_on = RedrawingAttribute(""), RedrawingAttribute("")
     _alarms: RedrawingAttribute[tuple[Alarm, ...]] = RedrawingAttribute(())
@@ -108,7 +108,7 @@ class AlarmNotice(Panel):
         self._draw_wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
 
     def _draw_wrapped(self, painter: ThemedPainter, area: QRectF, text: str, size: float) -> None:
-        """Draw a wrapped text that is at most ``size`` units high, and small enough to fit."""
+        """Draw a wrapped text, at most ``size`` theme units high, or smaller so that it fits."""
         painter.setPen(self.theme.get_color("text"))
         while True:
             painter.setFont(self.theme.make_font(size, is_bold=True))

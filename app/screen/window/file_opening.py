@@ -1,4 +1,4 @@
-"""Opening of files that are dropped on the window, or that a later start of TurnDesk hands over."""
+"""Opening of files that are dropped on the window or passed on by another start of TurnDesk."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class FileOpening(QObject):
         self._window.refresh()
 
     def open_file(self, path: Path) -> None:
-        """Open the program that a later start of TurnDesk hands over, and bring the window to the front."""
+        """Open the program that another start of TurnDesk passes on, and bring the window to the front."""
         window = self._window
         window.setWindowState(window.windowState() & ~Qt.WindowState.WindowMinimized)
         window.raise_()

@@ -1,4 +1,4 @@
-"""The times of key presses and frames, by which late presses are recognized."""
+"""Times of key presses and frames, which are used to detect late presses."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class InputTimes:
         return self._frames >= FRAMES_AFTER_STALL
 
     def frame(self) -> None:
-        """Record that a frame is shown."""
+        """Record the time at which a frame is shown."""
         self._lives(self.clock())
         self._frames += 1
 
     def record_input(self) -> None:
-        """Record an input event before its time is checked."""
+        """Record that an input event has arrived. Call this before its time is checked."""
         self.input_time_s = self.clock()
         self._lives(self.input_time_s)
         self.on_wake()
@@ -86,6 +86,6 @@ class InputTimes:
         return same_stall or at - self._dropped < PAUSE_TIME_S
 
     def find_delay(self, time_ms: int, event_source: str = "") -> float:
-        """Return how long a press waited in seconds, or the duration of the stall in which it waited."""
+        """Return in seconds how long a press waited, or how long the stall lasted in which it waited."""
         at = self.find_event_time(time_ms, event_source)
         return self.stall_duration_s if at <= self._behind else self.clock() - at

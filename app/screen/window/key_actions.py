@@ -1,4 +1,4 @@
-"""The functions of the keys that act on the machine and its questions from the main window."""
+"""Functions of the main window's keys that control the machine or answer a question."""
 
 from __future__ import annotations
 

@@ -122,9 +122,9 @@ class KeyboardTarget(Protocol):
 
 
 def find_letter(event: QKeyEvent) -> str:
-    """Return the letter of a key in its layout.
+    """Return the letter of a key in the current keyboard layout.
 
-    If the layout has no Latin letters, return the letter at this position of a PC keyboard.
+    If the layout has no Latin letters, return the letter at the same position of a PC keyboard.
     """
     key = event.key()
     if Key.Key_A <= key <= Key.Key_Z:
@@ -316,7 +316,7 @@ class KeyboardFilter(QObject):
         return self._is_shift_latched(event) and self._send(_copy_event(event, repeat=repeat, shift=False))
 
     def _is_repeat_overtaken(self, code: int) -> bool:
-        """Return whether a press is older than the report of the X server that its key is up.
+        """Return whether a press is older than the X server's report that its key is up.
 
         Such a press is a delayed repeat.
         """
@@ -365,7 +365,7 @@ class KeyboardFilter(QObject):
         return False
 
     def _is_paired(self, code: int) -> bool:
-        """Return whether a press and the release before it are a repeat.
+        """Return whether a press and the immediately preceding release form a repeat.
 
         Some X servers send repeats in this form.
         """

@@ -224,8 +224,8 @@ class MainWindow(QWidget):
     def show_on_screen(self, screen: QScreen) -> None:
         """Show the window in a size that suits the screen.
 
-        A small screen is filled completely. Otherwise the title bar of a window manager could push the
-        function keys off a screen with 600 lines.
+        The window fills a small screen completely. Otherwise the title bar of a window manager could push
+        the function keys off a screen with 600 lines.
         """
         show_in_suitable_size(self, screen, is_kiosk=self.is_kiosk)
 
@@ -242,7 +242,7 @@ class MainWindow(QWidget):
     def close_silently(self) -> None:
         """Stop polling, and delete the window without asking.
 
-        Use this only in scripts that just read the screen.
+        Use this only in scripts that do nothing but read the screen.
         """
         self._timer.stop()
         self.hide()
@@ -393,7 +393,7 @@ class MainWindow(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         """Release all buttons when the window loses the keyboard focus.
 
-        No release events will arrive after this.
+        Without the focus, the window receives no release events.
         """
         if event.type() == QEvent.Type.ActivationChange:
             self._tell_keyboard()

@@ -110,7 +110,7 @@ class PositionPanel(Panel):
 def draw_x_symbol(painter: ThemedPainter, box: QRectF, symbol: str, size: float, line_width: float) -> None:
     """Draw the symbol of X, which is a filled Ø for a diameter or a hollow R for a radius.
 
-    Sizes are in units.
+    Sizes are in theme units.
     """
     filled = symbol == "Ø"
     painter.draw_box(box, "mark", line_width, "mark" if filled else "")
@@ -135,7 +135,7 @@ class ReadoutPanel(Panel):
     def make_row(self, y: float, height: float) -> QRectF:
         """Return the rectangle of a row inside the frame.
 
-        ``y`` and ``height`` are in units.
+        ``y`` and ``height`` are in theme units.
         """
         u = self.theme.unit_px
         return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, height * u)
@@ -422,7 +422,7 @@ class ReadoutRow(Panel):
 
 
 def _before(axis: AxisReadout) -> float:
-    """Return the width of the name and the symbol of an axis in units."""
+    """Return the total width of an axis name and its symbol in theme units."""
     return 6.8 if axis.diameter_mark else 3.2
 
 

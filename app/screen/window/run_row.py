@@ -18,7 +18,7 @@ _COMMENT_WIDTH, _BLOCK_WIDTH = 0.38, 0.24  # Fractions of the width. Parts and t
 
 
 class RunRow(Panel):
-    """One row with comment, block, parts and times, in the position of the Automatic page's comment."""
+    """One row with comment, block, parts and times, where the Automatic page has its comment."""
 
     background_color = "panel"
     comment_text, block_text, message_text = (

@@ -1,4 +1,4 @@
-"""Handover of a program from a second start of TurnDesk to the screen that is already running.
+"""Passing of a program from a second start of TurnDesk to the screen that is already running.
 
 The running screen listens on a local socket that belongs to its data folder. Only processes of the same
 user can connect to the socket. A request is one line with the absolute path of a program. The reply is one
@@ -53,7 +53,7 @@ def hand_over_program(program_path: str) -> bool:
 
 
 class RunningScreen(QObject):
-    """Receiver of the programs that later starts of TurnDesk hand over.
+    """Receiver of the programs that another start of TurnDesk passes on.
 
     ``open_file`` is called with each path.
     """
@@ -66,7 +66,7 @@ class RunningScreen(QObject):
         self._server.newConnection.connect(self._connect)
 
     def start_listening(self) -> bool:
-        """Start to listen.
+        """Start to listen on the socket.
 
         Return False if another screen already listens for this data folder.
         """

@@ -1,4 +1,4 @@
-"""Typed keys of the main window, which answer a question, go to the page, or are rejected."""
+"""Keys typed in the main window: they answer a question, go to the page, or are rejected."""
 
 from __future__ import annotations
 

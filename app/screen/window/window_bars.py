@@ -54,7 +54,7 @@ class TitleLine(Panel):
 
     @property
     def program_text(self) -> str:
-        """Return the program name in the title line."""
+        """Return the text that the title line shows for the program."""
         return self._shown[0]
 
     @property
@@ -186,7 +186,7 @@ class PromptLine(Panel):
             painter.draw_text_line(row, line, size, "text", raw=True, role=TextRole.PROMPT)
 
     def _lines(self, text: str, room: QRectF) -> list[str]:
-        """Return the text as one line, or as two lines if the letters can then be larger."""
+        """Return the text as one line, or as two lines if they can be drawn larger."""
         look, words = self.theme, text.split(" ")
         one = look.find_em_height(2.3, TextRole.PROMPT, room.height())
         two = look.find_em_height(2.3, TextRole.PROMPT, room.height() / 2)
@@ -390,12 +390,12 @@ class NoticeRows(Panel):
         return self.needed_height_px != self._stand_for
 
     def apply_height(self) -> int:
-        """Record that the rows get the height that they need, and return this height in pixels."""
+        """Return the height in pixels that the rows need, and treat it as their current height."""
         self._stand_for = self.needed_height_px
         return self.needed_height_px
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the notices one below another, reduced in height if the area is too low."""
+        """Draw the notices one below another. If the area is too low, the rows are less high."""
         share, top = (
             self.height() / max(1, self.needed_height_px),
             0.0,

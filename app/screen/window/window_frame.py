@@ -143,7 +143,7 @@ class WindowFrame(QWidget):
             self.desk.page_registry.open_recording(recording_name)
 
     def toggle_scope(self) -> None:
-        """Open the scope from any page, or return from the scope to that page."""
+        """Open the scope from any page, or return from the scope to the previous page."""
         if self.current_page.NAME == page_table.SCOPE:
             self.open_page(self._before_scope)
         else:
@@ -231,7 +231,7 @@ class WindowFrame(QWidget):
     def screen_context(self) -> ScreenContext:
         """Return the state of the screen that determines the meaning of a touch.
 
-        This is the page, and the parts that cover the page.
+        This state is the current page and the parts that cover the page.
         """
         return (
             self.current_page.NAME,
@@ -250,7 +250,7 @@ class WindowFrame(QWidget):
     # --- layout --------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange all parts in the new unit of size."""
+        """Set the unit of size for the new size of the window, and arrange all parts."""
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -377,7 +377,7 @@ class WindowFrame(QWidget):
     def _is_dead(self, key: str) -> bool:
         """Return whether the key of a lamp has no function on this page.
 
-        A touch on the lamp works on every page.
+        Touching the lamp has the same function on every page.
         """
         elsewhere = key in AUTOMATIC_KEYS and self.current_page is not self.automatic_page
         return elsewhere or self.has_text_field() or self.accepts_text(key)
@@ -477,7 +477,7 @@ class WindowFrame(QWidget):
         return tuple(rows)
 
     def _make_prompt_keys(self, snapshot: Snapshot, loaded: LoadedProgram) -> tuple[tuple[str, str], ...]:
-        """Return the keys for an interrupted job, without a start that would be rejected."""
+        """Return the keys for an interrupted job. A start that would be rejected has no key."""
         if snapshot.state is not MachineState.IDLE or not snapshot.interrupted_line:
             return ()
         searchto = (_SEARCHTO,) if can_restart(loaded) else ()

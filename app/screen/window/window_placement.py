@@ -28,8 +28,8 @@ def show_full_screen(window: QWidget, *, is_frameless: bool = False) -> None:
 def show_in_suitable_size(window: QWidget, screen: QScreen, *, is_kiosk: bool) -> None:
     """Show the window in a size that suits the screen.
 
-    A small screen is filled completely. The title bar of a window manager could otherwise push the function
-    keys off a screen with 600 lines.
+    The window fills a small screen completely. The title bar of a window manager could otherwise push the
+    function keys off a screen with 600 lines.
     """
     room = screen.availableGeometry()
     window.setMinimumSize(min(MIN_WINDOW_PX[0], room.width()), min(MIN_WINDOW_PX[1], room.height()))

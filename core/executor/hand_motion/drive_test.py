@@ -1,7 +1,7 @@
-"""Drive test: one axis performs a step, a ramp or a sine while the test's lease is renewed, as in a jog.
+"""Drive test: one axis performs a step, a ramp or a sine while the lease of the test is renewed.
 
-The queued setpoints always end with the stop that follows an expired lease. The full excursion must be
-within the travel before the axis moves. The test does not change any drive parameter.
+The queued setpoints always end with the stop that follows an expired lease, as in a jog. The test starts
+only if the full excursion is within the travel limits. The test does not change any drive parameter.
 
 A setpoint cannot jump, so a step is a move with the full acceleration of the axis over the first half and
 full braking over the second half. A sine is s/2·(1 - cos ωt). It starts at rest and stays on one side of
@@ -59,7 +59,7 @@ class AxisTestLimits:
 
     @property
     def max_sine_frequency_hz(self) -> float:
-        """Return the highest sine frequency in Hz, at which there are ten samples per period."""
+        """Return the highest sine frequency in Hz that still has ten samples per period."""
         return self.sample_rate_hz / 10.0
 
 
@@ -67,8 +67,8 @@ class AxisTestLimits:
 class DriveTestMotion:
     """The motion of a drive test.
 
-    ``travel_mm`` is the signed travel in mm, peak to peak for a sine. ``speed`` is the speed of a ramp in
-    mm/s. ``frequencies_hz`` are the frequencies of the sines in Hz.
+    ``travel_mm`` is the signed travel in mm; for a sine it is the peak-to-peak travel. ``speed`` is the
+    speed of a ramp in mm/s. ``frequencies_hz`` are the frequencies of the sines in Hz.
     """
 
     axis: str
@@ -118,7 +118,7 @@ class DriveTestMotion:
     def compute_sine_travel_mm(self, frequency: float, limits: AxisTestLimits) -> float:
         """Return the signed peak-to-peak travel of the sine in mm.
 
-        The travel is limited to what the axis can follow.
+        The travel is limited to the distance that the axis can follow.
         """
         omega = 2.0 * math.pi * frequency
         able = min(2.0 * limits.max_speed_mm_s / omega, 2.0 * limits.max_acceleration_mm_s2 / omega**2)
@@ -290,7 +290,7 @@ class DriveTester:
     def start_test(self, path: DriveTestMotion, lease_s: float) -> bool:
         """Start a test from rest; return False if the lease expires before any axis moves.
 
-        Raises DriverError if the setpoints are rejected.
+        Raises DriverError if the driver rejects the setpoints.
         """
         self._ramps = path.make_ramps(self._limits(self._context.machine.find_axis(path.axis)))
         self._lasts, self._until = compute_duration_s(self._ramps), 0.0
@@ -311,7 +311,7 @@ class DriveTester:
     def check_guard(self) -> None:
         """Stop the test if the guard is open.
 
-        The function is called once per tick. Raises DriverError.
+        The function is called once per tick. Raises DriverError if a driver fails.
         """
         if self._jogger.is_testing and not self._jogger.is_stopping and self._context.spindle.is_guard_open:
             self._jogger.stop()

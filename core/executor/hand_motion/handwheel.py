@@ -1,4 +1,4 @@
-"""Handwheel that moves the selected axis by each click.
+"""Handwheel that moves the selected axis by one step per click.
 
 An axis moves only while the lease is renewed and no condition prevents motion. The axis follows the
 handwheel with a delay of 0.1 s. The queue never contains more than the distance of this delay and the
@@ -113,7 +113,7 @@ class Handwheel:
     def follow_clicks(self, state: MachineState) -> bool:
         """Move the axis according to the clicks since the last tick; return whether the axis moves.
 
-        Raises DriverError.
+        Raises DriverError if a driver fails.
         """
         context, jogger = self._context, self._jogger
         clicks = self._clicks.read_clicks(context.station_signals.handwheel_count, context.now)
@@ -134,7 +134,7 @@ class Handwheel:
         return self._follow(clicks)
 
     def find_jog_refusal(self, state: MachineState) -> str:
-        """Return why the handwheel prevents a jog by a key, or an empty string."""
+        """Return why a key cannot jog an axis while the handwheel is active, or an empty string."""
         if self._jogger.target_position is not None:
             self._together("a key or the screen was pressed while the handwheel was turning", state)
         if self._context.now >= self._apart:
@@ -169,7 +169,7 @@ class Handwheel:
         return ""
 
     def _find_end_reason(self, state: MachineState, axis: str) -> str:
-        """Return the reason to disable the handwheel in this tick, or an empty string."""
+        """Return why the handwheel must be disabled in this tick, or an empty string."""
         context, signals, inputs = self._context, self._context.station_signals, self._context.inputs
         reasons = (
             (
@@ -218,7 +218,7 @@ class Handwheel:
         )
 
     def _limit_target(self, index: int, wanted: float) -> float:
-        """Limit a target to the travel. Clicks beyond the limit are dropped."""
+        """Limit a target to the travel limits. Clicks beyond a limit are dropped."""
         axis = self._context.machine.axes[index]
         if axis.travel is None or not self._context.axis_sample.homed[index]:
             return wanted
@@ -236,7 +236,7 @@ class Handwheel:
 
 
 class _TargetMove:
-    """A move to ``wanted``, or as far toward it as the axis can move in time.
+    """A move to ``wanted``, or as far toward ``wanted`` as the axis can move in the available time.
 
     ``goal`` is the end of the move.
     """
@@ -246,7 +246,7 @@ class _TargetMove:
         self.goal = wanted
 
     def make_ramps(self, _start: float, p: float, v: float) -> list[Ramp]:
-        """Return the ramps for ``Jogger.follow_target``, at the speed that results in a delay of 0.1 s."""
+        """Return the ramps for ``Jogger.follow_target``, at the speed that results in a 0.1 s delay."""
         distance = self._wanted - p
         longest = max(self._top * _FOLLOW_DELAY_S + v * v / (2.0 * self._amax), self._step)
         if abs(distance) > longest:

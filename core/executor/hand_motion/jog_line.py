@@ -32,7 +32,7 @@ def get_distance_to_limit(axis: Axis, position: float, direction: float) -> floa
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JogLine:
-    """A line of motion with the share of each machine axis in the distance. A single axis has the share 1."""
+    """A line of motion, with the share of each axis in the distance; a single axis has the share 1."""
 
     axes: Sequence[Axis]
     axis_shares: FloatArray
@@ -77,9 +77,9 @@ class JogLine:
         return float(sum(values[place] * share for place, _, share in self.iter_moving_axes()))
 
     def get_distance_to_limit(self, position: FloatArray | Sequence[float], sign: float) -> float:
-        """Return the distance along the line to the nearest limit of travel of an axis.
+        """Return the distance along the line to the nearest travel limit of an axis.
 
-        The direction along the line is ``sign``.
+        ``sign`` is the direction along the line.
         """
         return min(
             get_distance_to_limit(axis, position[place], math.copysign(share, share * sign)) / abs(share)

@@ -1,4 +1,4 @@
-"""Ramps of a jog and of a step, which are phases of constant acceleration that end at rest."""
+"""Ramps of a jog or a step: phases of constant acceleration that end at rest."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def plan_jog_ramps(
     """Return ramps to ``end_speed``, a cruise for the rest of ``duration_s``, and braking to rest.
 
     The first ramp starts at ``start_speed``. If ``distance`` (mm) is too short, the jog is slower or ends
-    earlier. The distance is never shorter than the braking distance v0²/2a.
+    earlier. ``distance`` must not be shorter than the braking distance v0²/2a.
     """
     if start_speed * end_speed < 0.0:
         first = abs(start_speed) / acceleration

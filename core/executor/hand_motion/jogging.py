@@ -146,7 +146,7 @@ class Jogger:
         return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
 
     def _find_travel_refusal(self, name: str, distance: float, direction: Direction | None) -> str:
-        """Return why a step is refused because it would leave the travel, or an empty string.
+        """Return why a step would exceed the travel limits and is refused, or an empty string.
 
         A step is never shortened.
         """
@@ -209,7 +209,7 @@ class Jogger:
         return plays
 
     def set_test_queued(self, is_queued: bool) -> None:
-        """Store whether the whole drive test is queued.
+        """Store whether the setpoints of the whole drive test are queued.
 
         If the test is not completely queued, its end is logged as a premature stop.
         """
@@ -218,7 +218,7 @@ class Jogger:
     def jog_to_target(self, name: str, target: float, speed: float, lease_s: float) -> bool:
         """Start or renew a jog that stops at ``target``; return False if no travel remains.
 
-        Raises DriverError.
+        Raises DriverError if the setpoints are rejected.
         """
         context = self._context
         index = context.ports.axes.axes.index(name)
@@ -246,13 +246,13 @@ class Jogger:
     def follow_target(
         self, name: str, make_ramps: Callable[[float, float, float], list[Ramp]], target: float
     ) -> None:
-        """Move to the handwheel's target, starting from the present motion. Raises DriverError."""
+        """Move to the handwheel's target from the current motion. Raises DriverError if a driver fails."""
         index = self._context.ports.axes.axes.index(name)
         if self._splice_axis(index, make_ramps):
             self._axis, self.target_position, self.is_stopping = index, target, False
 
     def stop(self) -> None:
-        """Stop the jog. If a step ends early, this is logged when the axis is at rest."""
+        """Stop the jog. A step that ends early is logged when the axis is at rest."""
         line = self._line
         if self._axis < 0 or line is None:
             return
@@ -266,7 +266,7 @@ class Jogger:
         self.is_stepping, self.target_position, self.is_stopping = False, None, True
 
     def check_button(self) -> None:
-        """Stop the jog if its button is released or the button's state is unknown. Raises DriverError."""
+        """Stop the jog if its button is released or unreadable. Raises DriverError if a driver fails."""
         if self.button_input and not self._context.is_button_pressed(self.button_input):
             self.button_input = ""
             self.stop()
@@ -331,7 +331,7 @@ class Jogger:
         return False
 
     def get_max_jog_speed(self, axis: Axis, is_homed: bool) -> float:
-        """Return the highest jog speed of an axis, which is lower if the axis is not homed."""
+        """Return the highest jog speed of an axis; an axis that is not homed has a lower limit."""
         endless = axis.travel is None or axis.is_rotary
         rapid = axis.max_speed if endless else min(axis.max_speed, self._context.machine.limits.manual_rapid)
         return rapid if is_homed else _UNHOMED_SPEED_FRACTION * rapid
@@ -366,10 +366,10 @@ class _PendingJog(NamedTuple):
 
 
 class BlockJogger(Jogger):
-    """A jogger that uses the jog function of the controller and refuses the same requests as ``Jogger``.
+    """A jogger that uses the controller's jog function and refuses the same requests as ``Jogger``.
 
-    The controller accepts a jog only after the previous jog has ended. If a key is pressed in the meantime,
-    its jog waits for this end and starts only if the key is still pressed.
+    The controller accepts a jog only after the previous jog has ended. If a key is pressed before this end,
+    the new jog starts afterwards, and only if the key is still pressed.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -432,7 +432,7 @@ class BlockJogger(Jogger):
     def jog_to_target(self, name: str, target: float, speed: float, lease_s: float) -> bool:
         """Start or renew a jog that stops at ``target``; return False if no travel remains.
 
-        Raises DriverError.
+        Raises DriverError if the controller rejects the jog.
         """
         index, top = self._speed(name, speed)
         here = self._context.axis_sample.demand[index]
@@ -445,7 +445,7 @@ class BlockJogger(Jogger):
         return moves
 
     def stop(self) -> None:
-        """Stop the jog. If a step ends early, this is logged when the axis is at rest."""
+        """Stop the jog. A step that ends early is logged when the axis is at rest."""
         if self._axis < 0:
             return
         self._short = self._short or self.is_stepping
@@ -466,7 +466,7 @@ class BlockJogger(Jogger):
         )
 
     def clear_jog(self) -> None:
-        """Clear the active jog and the jog that waits for its end."""
+        """Clear the active jog and the jog that is waiting to start after it."""
         super().clear_jog()
         self._pressed = None
 

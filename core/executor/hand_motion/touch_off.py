@@ -24,7 +24,7 @@ _SETTLING_TIME_S = 1.0  # s that the axes may take to stop before the next axis 
 
 
 class TouchOff:
-    """Touch-off sequence. ``phase`` is the present phase or None; ``last_result`` is the last result."""
+    """Touch-off sequence. ``phase`` is the current phase or None; ``last_result`` is the last result."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context = context
@@ -45,7 +45,7 @@ class TouchOff:
         self._failed = ""  # the failure to report when the axis is back
 
     def handle_request(self, command: TouchOffTool, state: MachineState, handwheel_axis: str) -> bool:
-        """Start or renew a touch-off; return True if a new touch-off starts. Raises DriverError."""
+        """Start or renew a touch-off; return whether it is new. Raises DriverError if a driver fails."""
         if command.press == self._ended:
             return False  # the key is still pressed, but its touch-off has ended
         if self.phase is None:
@@ -81,7 +81,7 @@ class TouchOff:
         return runs_in and self.phase is None and state is MachineState.JOG
 
     def advance_one_tick(self) -> None:
-        """Advance the touch-off by one tick. Raises DriverError."""
+        """Advance the touch-off by one tick. Raises DriverError if a driver fails."""
         assert self.phase is not None
         if why := self._find_abort_reason():
             self.cancel_touch_off(why)
@@ -169,7 +169,7 @@ class TouchOff:
         return next((why for so, why in reasons if so), "")
 
     def _find_travel_refusal(self, command: TouchOffTool) -> str:
-        """Return why the search would leave the travel, or an empty string.
+        """Return why the search would exceed the travel limits, or an empty string.
 
         The full search distance must be available.
         """
@@ -215,7 +215,7 @@ class TouchOff:
         self._move_to_target(self._here)
 
     def _move_to_target(self, position: float) -> bool:
-        """Renew the motion to the target; return whether the axis has been at rest there for a short time."""
+        """Renew the motion to the target; return whether the axis has settled there at rest."""
         context, model, command = self._context, self._model, self._command
         assert model is not None
         axis = context.machine.find_axis(command.axis)
@@ -347,7 +347,7 @@ class Homing:
         self._context.ports.axes.stop(StopMode.RAMP_HOLD)
 
     def home_next_axis(self) -> bool:
-        """Start homing the next axis when one axis is homed; return whether all axes are homed.
+        """Start homing the next axis when the previous one is homed; return whether all axes are homed.
 
         The function is called every tick. Raises DriverError if a drive rejects homing.
         """

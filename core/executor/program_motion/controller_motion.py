@@ -1,4 +1,4 @@
-"""Motion by a controller with its own planner, with as few blocks sent ahead as possible.
+"""Motion by a controller with its own planner, to which as few blocks as possible are sent ahead.
 
 The controller executes all blocks that it has received even if the host fails. A long block is therefore
 sent in parts of a fraction of a second. The parts are on the same line or circle, so the controller does
@@ -87,7 +87,7 @@ def _limit_operation_speed(
 ) -> BlockOperation:
     """Return the operation with its speed limited to ``fastest``.
 
-    The controller's own limits may be higher.
+    The limits of the controller itself may be higher.
     """
     if isinstance(op, RapidOperation):
         return op._replace(rapid_rate=min(op.rapid_rate, fastest))
@@ -98,7 +98,7 @@ def _count_parts(block: Block, seconds: float) -> int:
     """Return the number of parts into which a block is split.
 
     Each part of an arc is shorter than half a circle. The controller receives only the end points and the
-    center, which do not distinguish a full circle from a zero move.
+    center, so it could not distinguish a full circle from a zero-length move.
     """
     least = math.ceil(abs(_sweep(block)[1]) / _MAX_ARC_SWEEP_RAD) if block.kind is BlockKind.ARC else 1
     return max(
@@ -194,7 +194,7 @@ class ControllerMotion:
     """Motion along a path section, executed by sending blocks to the controller.
 
     It is used on the executor's thread only. Single block takes effect at the end of the last block that
-    the controller has received, at most ``BlockController.max_lead_s`` seconds later.
+    has been sent to the controller, at most ``BlockController.max_lead_s`` seconds later.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -267,7 +267,7 @@ class ControllerMotion:
     # --- requests -----------------------------------------------------------------------------------------
 
     def start_section(self, blocks: list[Block]) -> None:
-        """Start a new path section from rest. Raises AlarmError or DriverError."""
+        """Start a new path section from rest. Raises AlarmError or DriverError if the start fails."""
         self.clear_section()
         self._active, self._shown, self._seen = True, blocks[0], self._context.now
         self._thread = blocks[0].kind is BlockKind.THREAD
@@ -305,7 +305,7 @@ class ControllerMotion:
             self._hand_over()
 
     def hold_on_path(self) -> None:
-        """Stop on the path; a thread pass is finished first."""
+        """Stop on the path, but finish a thread pass first."""
         if not self._thread:
             self._sink.hold_on_path()
 
@@ -315,14 +315,14 @@ class ControllerMotion:
         self._sink.abort_blocks()
 
     def discard_remaining_plan(self) -> None:
-        """Do nothing, because the controller stops automatically at the end of its blocks."""
+        """Do nothing, because the controller stops automatically after its last block."""
 
     def cancel_waiting_pass(self) -> bool:
         """Return False, because only the controller knows whether a thread pass is still waiting."""
         return False
 
     def start_retract(self, block: Block) -> None:
-        """Stop a thread pass that has lost spindle synchronization; X is retracted afterwards."""
+        """Stop a thread pass that has lost spindle synchronization, so that X can be retracted."""
         left = [*(each.block_part.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
         self.stop_at_once()
@@ -375,7 +375,7 @@ class ControllerMotion:
         return not state.is_in_feed_hold and (bool(self._sent) or not state.is_at_rest)
 
     def _detect_absence(self) -> None:
-        """Detect that the control was inactive for longer than the motion that it had sent.
+        """Detect that the control was inactive for longer than the motion sent ahead lasted.
 
         The motion then does not resume automatically.
         """
@@ -389,7 +389,7 @@ class ControllerMotion:
         return SectionProgress.BLOCK_END if stepped else SectionProgress.MOVING
 
     def _apply_overrides(self) -> None:
-        """Apply the overrides. If an override is 0, the controller is in feed hold, except in a thread."""
+        """Apply the overrides. At an override of 0 the controller is in feed hold, except in a thread."""
         feed = self._context.feed_override
         turn = round(self._context.spindle.override, 2)
         self._overrides = OverrideFactors(feed, min(feed, 1.0), turn)
@@ -470,8 +470,8 @@ class ControllerMotion:
     def _may_send(self, piece: BlockPart) -> bool:
         """Return whether this part may be sent now.
 
-        The number of parts is limited by single block and by the time that the controller could run without
-        the host.
+        Single block limits the number of parts, and so does the time for which the controller could
+        continue without the host.
         """
         if self._still or self._dry or not self._single(piece.block):
             return False

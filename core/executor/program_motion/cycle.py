@@ -64,7 +64,7 @@ class HoldController:
 
     @property
     def will_resume_in_section(self) -> bool:
-        """Return whether motion will resume within the present path section rather than in the next one."""
+        """Return whether motion will resume within the current path section rather than in the next one."""
         return self._motion.has_section and not self._motion.is_complete
 
     @property
@@ -74,12 +74,12 @@ class HoldController:
 
     @property
     def is_waiting_for_spindle(self) -> bool:
-        """Return whether the resume is waiting for the spindle."""
+        """Return whether the cycle is waiting for the spindle before it resumes."""
         return self._spin_up is not None
 
     @property
     def wait_label(self) -> str:
-        """Return the text of the condition for which the resume waits, or an empty string."""
+        """Return the text of the condition that the resume is waiting for, or an empty string."""
         return self._spin_up.make_label() if self._spin_up is not None else ""
 
     def stop_motion(self, reason: str = "", source: str = "", code: AlarmCode | None = None) -> MachineState:
@@ -102,7 +102,7 @@ class HoldController:
         self._context.show_stop(code, detail)
 
     def start_retract(self, block: Block) -> None:
-        """Stop along a thread that has lost spindle synchronization; X is retracted afterwards."""
+        """Stop in a thread that has lost spindle synchronization, so that X can be retracted."""
         self._context.log_text("thread", "spindle speed lost during threading")
         self._motion.start_retract(block)
         self._retracting = True
@@ -123,7 +123,7 @@ class HoldController:
     def resume(self, last_executed_block: Block | None, *, starts_spindle: bool) -> None:
         """Resume after Cycle Start as soon as a requested spindle is at speed.
 
-        ``last_executed_block`` is the last block that single block executed, or None.
+        ``last_executed_block`` is the last block executed in single block, or None.
         """
         self.hold_reason = ""
         within = self.will_resume_in_section
@@ -157,7 +157,7 @@ class HoldController:
         return MachineState.RUN
 
     def _make_spindle_wait(self) -> StandstillWait | None:
-        """Return a wait for a requested spindle that is not at speed, or None if no wait is necessary."""
+        """Return a ``StandstillWait`` for a requested spindle that is not at speed, otherwise None."""
         spindle = self._context.spindle
         if not spindle.is_requested or spindle.is_at_speed(self._context.now):
             return None
@@ -197,7 +197,7 @@ class Cycle:
 
     @property
     def wait_label(self) -> str:
-        """Return the text of the condition for which the cycle waits, or an empty string."""
+        """Return the text of the condition that the cycle is waiting for, or an empty string."""
         if self._state is MachineState.HOLD:
             return self._hold.hold_reason
         if self._later is not None:
@@ -232,8 +232,8 @@ class Cycle:
         """Hold the cycle.
 
         The parameters ``reason``, ``source`` and ``code`` are described in ``HoldController.stop_motion``.
-        A tap first leaves its hole while the spindle continues to turn. The axes stop at once if the
-        spindle is stopped or ``stops_at_once`` is True.
+        In a tapping cycle, the tap leaves its hole with the spindle turning before the hold. The axes stop
+        at once if the spindle is stopped or ``stops_at_once`` is True.
         """
         if self._state in {MachineState.HOLD, MachineState.STOPPING}:
             self._hold.hold_reason = self._hold.hold_reason or reason
@@ -249,7 +249,7 @@ class Cycle:
 
     @property
     def _is_tapping(self) -> bool:
-        """Return whether a tap is in its hole, which it must leave while the spindle turns."""
+        """Return whether a tap is in its hole; it can leave the hole only while the spindle turns."""
         block = self.current_block
         return block is not None and (block.in_hole or (block.follows_spindle and self._motion.is_moving))
 
@@ -302,11 +302,11 @@ class Cycle:
     # --- actions in every tick ----------------------------------------------------------------------------
 
     def update_current_block(self) -> None:
-        """Show the block at which the axes are, even if no tick occurred while the axes moved through it."""
+        """Show the block at the current position, even if the axes passed blocks between two ticks."""
         self._show_block_at_rest(self._motion.current_block)
 
     def advance_one_tick(self) -> None:
-        """Refill the queue, then perform the next action. Raises AlarmError, MotionError or DriverError."""
+        """Refill the queue and act once; raises AlarmError, MotionError or DriverError on failure."""
         playing = self._motion.current_block if self._motion.is_moving else None
         if playing is not None:
             self._show(playing)
@@ -335,7 +335,7 @@ class Cycle:
             self._progress()
 
     def _needs_spindle(self) -> bool:
-        """Return whether the present or the next block needs a turning spindle."""
+        """Return whether the current or the next block needs a turning spindle."""
         if (
             self._hold.will_resume_in_section
             or self._still.wait_label is not None
@@ -377,7 +377,7 @@ class Cycle:
                     return
 
     def _finish_tick(self, next_action: NextAction) -> None:
-        """Finish the tick with a wait, a stop, the start of motion or the end of the program."""
+        """Finish the tick: start a wait, a stop or a motion, or end the program."""
         match next_action:
             case NextAction.WAIT:
                 self._change(MachineState.WAIT if self._still.wait_label else MachineState.RUN)
@@ -412,7 +412,7 @@ class Cycle:
         return True
 
     def _check_spindle(self, block: Block) -> None:
-        """Hold a feed per revolution if the spindle speed is lost; retract from a thread at once."""
+        """Hold the cycle if a feed per revolution has lost the spindle; retract from a thread at once."""
         spindle = self._context.spindle
         if (
             not needs_spindle_at_speed(block)

@@ -27,7 +27,7 @@ _SPLICE_DELAY_S = 0.02  # s added to the splice time when a plan came too late
 
 
 class SectionProgress(Enum):
-    """The progress of the present path section."""
+    """The progress of the current path section."""
 
     DONE = "no move is active, or all moves of the path are finished"
     MOVING = "moving"
@@ -121,7 +121,7 @@ class PathSection:
         """Return the first block at whose end the axes can stop, or None if no block permits a stop.
 
         The search starts at block ``first_block_number``, and the block must end at or after ``distance``.
-        No block permits a stop while a tap is in its hole, for example.
+        While a tap is in its hole, for example, no block permits a stop.
         """
         path = self._builder.build_path()
         numbers: list[int] = path.block_numbers.tolist()
@@ -200,7 +200,7 @@ class QueuedPlans:
 
 
 class PlanQueue:
-    """Setpoint queue with the rest of the present plan. It is used on the executor's thread only."""
+    """Setpoint queue with the rest of the current plan. It is used on the executor's thread only."""
 
     def __init__(self, axes: AxisSink, lateness: TickLateness) -> None:
         self._axes = axes
@@ -213,7 +213,7 @@ class PlanQueue:
 
     @property
     def planned_end_s(self) -> float:
-        """Return the time at which the motion of the present plan comes to rest."""
+        """Return the time at which the motion of the current plan comes to rest."""
         return self._origin + (self._profile.duration_s if self._profile else 0.0)
 
     @property
@@ -234,7 +234,7 @@ class PlanQueue:
         return now + self._axes.commit + 1.5 * self._cost
 
     def get_latest_splice_time(self, now: float) -> float:
-        """Return the splice time of a plan that needs all its attempts."""
+        """Return the splice time of a plan that succeeds only on the last attempt."""
         return self.get_earliest_splice_time(now) + _MAX_ATTEMPTS * _SPLICE_DELAY_S
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
@@ -242,7 +242,7 @@ class PlanQueue:
         return self._tracks.find_plan(time_s)
 
     def clear_queue(self) -> None:
-        """Discard the present plan and the stored queue."""
+        """Discard the current plan and the stored queue."""
         self._tracks.clear_plans()
         self._profile, self._origin, self._queued_to = None, 0.0, 0.0
 
@@ -271,7 +271,7 @@ class PlanQueue:
             return
 
     def extend_queue(self, now: float) -> bool:
-        """Extend the queue from the present plan; return False if it is too late to extend the queue."""
+        """Extend the queue from the current plan; return False if it is too late to extend the queue."""
         if (
             self._profile is None
             or self._queued_to - now >= self._lateness.lookahead_s
@@ -292,7 +292,7 @@ class PlanQueue:
             self._queued_to = self.planned_end_s
 
     def _queue_plan(self, t: float, origin: float, profile: MotionProfile) -> None:
-        """Splice into the queue the plan from ``t`` to the end of the look-ahead.
+        """Splice the plan from ``t`` to the end of the look-ahead into the queue.
 
         A braking tail follows the plan.
         """

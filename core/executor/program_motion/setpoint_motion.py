@@ -1,7 +1,7 @@
 """Motion by setpoints: one path section or thread pass at a time, from rest to rest.
 
-Feed hold, override and single block use the same method: a new plan starts from the present state with the
-present overrides and switches, and is spliced into the queue.
+Feed hold, override and single block use the same method: a new plan starts from the current state with the
+current overrides and switches, and is spliced into the queue.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class SetpointMotion:
 
     @property
     def current_block(self) -> Block | None:
-        """Return the block being executed, which may precede the blocks that are already planned."""
+        """Return the block being executed, which may be an earlier block than those already planned."""
         return self._block_at(self._context.now)
 
     @property
@@ -89,7 +89,7 @@ class SetpointMotion:
 
     @property
     def last_block(self) -> Block | None:
-        """Return the last block of the path section, which may have no length."""
+        """Return the last block of the path section; this block may have zero length."""
         if self._pass is not None:
             return self._pass.blocks[-1]
         return self._section.last_block if self._section is not None else None
@@ -183,7 +183,7 @@ class SetpointMotion:
         return self._pass is not None and not self._pass.is_fully_queued
 
     def start_retract(self, block: Block) -> None:
-        """Stop along a thread that has lost spindle synchronization; X is retracted afterwards."""
+        """Stop in a thread that has lost spindle synchronization, so that X can be retracted."""
         self._retract = ThreadRetract.from_block(block, self._following_blocks(block), self._context.spindle)
         self.stop_at_once()
 
@@ -227,7 +227,7 @@ class SetpointMotion:
         self._queue.clear_queue()
 
     def _present_overrides(self) -> OverrideFactors:
-        """Return the present overrides.
+        """Return the current overrides.
 
         A rapid never exceeds its programmed rate. Feed per revolution (G95) follows the spindle override.
         """
@@ -235,7 +235,7 @@ class SetpointMotion:
         return OverrideFactors(feed, min(feed, 1.0), round(self._context.spindle.override, 2))
 
     def _plan_motion(self, *, as_soon_as_possible: bool = True) -> None:
-        """Plan with the present overrides and switches. Raises MotionError or DriverError."""
+        """Plan with the current overrides and switches. Raises MotionError or DriverError if this fails."""
         self._overrides = self._present_overrides()
         self._single = self._context.switches.single_block
         self._last = self._last_block() if self._single else None
@@ -244,7 +244,7 @@ class SetpointMotion:
         self._splice(self._overrides, self._last, soon=as_soon_as_possible)
 
     def _splice(self, overrides: OverrideFactors, last: int | None, *, soon: bool = True) -> None:
-        """Plan from the present state to the end of the path section, or of block ``last``.
+        """Plan from the current state to the end of the path section, or to the end of block ``last``.
 
         If ``soon`` is True, the plan takes effect as soon as possible, otherwise after the queued motion.
         """
@@ -266,7 +266,7 @@ class SetpointMotion:
     def _refill(self, feed: BlockReadAhead) -> None:
         """Append blocks that were read ahead.
 
-        The blocks are appended before the axes come near the braking end of the path section.
+        The blocks are appended before the axes begin to brake for the end of the path section.
         """
         now = self._context.now
         left = (self._pass.end_time_s if self._pass is not None else self._queue.planned_end_s) - now
@@ -288,13 +288,13 @@ class SetpointMotion:
         self._section.append_blocks(blocks, self._stop_distance())
 
     def _extend(self, now: float) -> None:
-        """Extend the queue from the present plan."""
+        """Extend the queue from the current plan."""
         if self._pass is not None:
             self._pass.correct_motion()
         self._queue.extend_queue(now)
 
     def _stop_distance(self) -> float:
-        """Return the shortest distance along the path at which the present motion can still stop."""
+        """Return the shortest distance along the path at which the current motion can still stop."""
         t = self._queue.get_latest_splice_time(self._axes.now())
         track = self._queue.find_plan(t)
         if track is None:
@@ -307,7 +307,7 @@ class SetpointMotion:
     def _last_block(self) -> int | None:
         """Return the number of the block at whose end single block stops the axes.
 
-        The block is never one at whose end the axes can no longer stop.
+        Blocks at whose end the axes can no longer stop are skipped.
         """
         now = self._context.now
         current = self._block_at(now)
@@ -331,7 +331,7 @@ class SetpointMotion:
         )
 
     def _finish_step(self, last: int) -> bool:
-        """Return whether block ``last`` is finished at rest, and record it as the present block."""
+        """Return whether block ``last`` has ended at rest; if so, record it as the current block."""
         if self._pass is not None:
             return self._pass.is_fully_queued
         assert self._section is not None
@@ -366,7 +366,7 @@ class SetpointMotion:
     def _is_at_rest(self) -> bool:
         """Return whether the queue has ended.
 
-        The clock is read last because it continues to run.
+        The clock is read last, because time passes while the other values are read.
         """
         horizon = self._axes.horizon()
         return is_queue_finished(horizon, self._axes.now())
@@ -393,9 +393,9 @@ class SetpointMotion:
 def _make_plan(
     path: MotionPath, present: QueuedPlan | None, t: float, *, stop: bool = False
 ) -> MotionProfile:
-    """Return a plan that starts from the state of the present plan at time ``t``.
+    """Return a plan that starts from the state of the current plan at time ``t``.
 
-    Without a present plan, the new plan starts from rest.
+    Without a current plan, the new plan starts from rest.
     """
     if present is None:
         return plan_motion(path, stop_early=stop)

@@ -19,8 +19,8 @@ class SpindleAnglePredictor:
     """Predictor of the spindle angle by a cubic fit to the latest encoder readings.
 
     Angles are in signed revolutions and times are in seconds. With one reading every 10 ms and 4096 counts
-    per revolution, the angle 45 ms ahead is accurate to within 0.25 degree. If the speed varies by 2 % in 2
-    s, the angle is accurate to within 0.2 degree.
+    per revolution, the angle predicted 45 ms ahead is accurate to 0.25 degree, or to 0.2 degree if the
+    speed varies by 2 % in 2 s.
     """
 
     def __init__(self) -> None:
@@ -85,10 +85,7 @@ class SpindleAnglePredictor:
         return state
 
     def _fit_readings(self) -> tuple[list[float], float]:
-        """Return the coefficients of the cubic, and the angle of the last reading.
-
-        The cubic is relative to the last reading.
-        """
+        """Return the coefficients of the cubic relative to the last reading, and that reading's angle."""
         last, base = self._reads[-1]
         times, turns = zip(*self._reads, strict=True)
         return _least_squares([t - last for t in times], [each - base for each in turns], _FIT_DEGREE), base

@@ -42,7 +42,7 @@ _ORIENTATION_TURNS = 3.0  # revolutions at orienting speed: to the index, to the
 
 @dataclass(slots=True)
 class StandstillWait:
-    """A wait for a condition.
+    """A wait for a condition, such as the spindle at speed.
 
     The label is empty for short waits. Time in feed hold does not count toward the time limit.
     """
@@ -62,19 +62,19 @@ class StandstillWait:
         return False
 
     def extend_for_hold(self, hold_duration_s: float) -> None:
-        """Exclude the duration of a feed hold, in seconds, from the wait."""
+        """Extend the wait by the duration of a feed hold, in seconds."""
         self.start_time_s += hold_duration_s
 
 
 def make_position_wait(context: MachineContext) -> StandstillWait:
-    """Return a wait until all axes are in position."""
+    """Return a ``StandstillWait`` that ends when all axes are in position."""
     return StandstillWait(
         lambda: "", lambda _: context.is_in_position(), context.now, _IN_POSITION_TIMEOUT_S, "in-position"
     )
 
 
 def make_spindle_speed_wait(context: MachineContext, *, is_for_thread: bool = False) -> StandstillWait:
-    """Return a wait until the spindle is at speed and, for a thread, until its encoder can be read.
+    """Return a ``StandstillWait`` for the spindle speed and, before a thread, for the encoder.
 
     The wait has no time limit while the operator prevents the spindle from turning.
     """
@@ -100,10 +100,10 @@ def make_spindle_speed_wait(context: MachineContext, *, is_for_thread: bool = Fa
 
 
 def execute_block_action(block: Block, context: MachineContext) -> StandstillWait | None:
-    """Execute the action of a block and return its wait, or None if there is nothing to wait for.
+    """Execute the action of a block; return its ``StandstillWait``, or None if no wait is needed.
 
     The cycle handles stops and the end of the program. Offsets, shifts and presets are already included in
-    the blocks. Raises AlarmError or DriverError.
+    the blocks. Raises AlarmError or DriverError if the action fails.
     """
     match block.action:
         case SpindleRun():
@@ -151,7 +151,7 @@ def _start_spindle(block: Block, context: MachineContext) -> None:
 
 
 def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
-    """Return a wait until the spindle is stopped, before the tool or the operator approaches."""
+    """Return a ``StandstillWait`` until the spindle stops, before a tool or the operator approaches."""
     spindle, limit = context.spindle, context.machine.spindle.timeout
     return StandstillWait(
         lambda: "SPINDLE STOP", lambda _: spindle.is_stopped, context.now, limit, "ignores-stop"
@@ -159,7 +159,7 @@ def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
 
 
 def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
-    """Return a wait until the spindle is stopped and engaged as the C axis.
+    """Return a ``StandstillWait`` that ends when the spindle is stopped and engaged as the C axis.
 
     If the spindle is already engaged, it is not stopped again.
     """
@@ -270,9 +270,9 @@ class StandstillSequencer:
 
     @property
     def wait_label(self) -> str | None:
-        """Return the text of the present wait, or None if there is no wait.
+        """Return the text of the current wait, or None if there is no wait.
 
-        The text of a short wait is empty.
+        The text of a short wait is an empty string.
         """
         return self._wait.make_label() if self._wait is not None else None
 
@@ -301,7 +301,7 @@ class StandstillSequencer:
     def execute_action(self, block: Block) -> None:
         """Execute the action of a block, or wait for the spindle speed that the block needs.
 
-        Raises AlarmError or DriverError.
+        Raises AlarmError or DriverError if the action fails.
         """
         if block.action is not None:
             self._wait = execute_block_action(block, self._context)
@@ -311,12 +311,12 @@ class StandstillSequencer:
             self._waited()
 
     def wait_for_next_cycle(self, label: str) -> None:
-        """Wait until another cycle replaces the present cycle."""
+        """Wait until another cycle replaces the current cycle."""
         if self._wait is None:
             self._wait = StandstillWait(lambda: label, lambda _: False, self._context.now)
 
     def extend_wait_for_hold(self, hold_duration_s: float) -> None:
-        """Exclude the duration of a feed hold, in seconds, from the present wait."""
+        """Extend the current wait by the duration of a feed hold, in seconds."""
         if self._wait is not None:
             self._wait.extend_for_hold(hold_duration_s)
 

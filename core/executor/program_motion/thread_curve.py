@@ -1,9 +1,9 @@
-"""Curve of X and Z along a chain of thread blocks, as functions of s, the spindle revolutions times a lead.
+"""Curve of X and Z along a chain of thread blocks as functions of s (spindle revolutions · lead).
 
 In a thread of one block, Z is proportional to s. In a chain, the lead changes between blocks, and with G34
 and G35 also within a block. An axis cannot change its speed at once. Around each joint, both axes therefore
-change to the next lead over a number of revolutions, which is the number that half of their acceleration
-requires at the commanded speed.
+change to the next lead over several revolutions, enough for half of their acceleration at the commanded
+speed.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def _chord_points(block: Block) -> list[tuple[float, float]]:
 def _round_joints(
     raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits
 ) -> ThreadCurve:
-    """Return the curve with rounded joints where the axes cannot follow the sharp joint.
+    """Return the curve with each joint rounded where the axes cannot follow the sharp joint.
 
     ``speed`` is the speed along s, in mm/s.
     """

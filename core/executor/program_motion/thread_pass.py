@@ -86,7 +86,7 @@ class SpindlePass:
 
 
 class ThreadPass(SpindlePass):
-    """A thread pass by setpoints.
+    """A thread pass that is executed by setpoints.
 
     The thread is followed by its pull-out or by a straight rapid in X. Raises AlarmError if the spindle
     does not turn or has no encoder.
@@ -153,7 +153,7 @@ class ThreadPass(SpindlePass):
         self._replan()
 
     def _replan(self) -> bool:
-        """Plan and queue the pass again; return False if this is too late, so that the old plan remains."""
+        """Replan and queue the pass; return False if it is too late, in which case the old plan remains."""
         now = self._axes.now()
         t = now + self._axes.commit + 1.5 * self._cost
         try:
@@ -209,7 +209,7 @@ class ThreadPass(SpindlePass):
         self._leaves, self._ends = leaves, _end(segments)
 
     def _plan_run_up(self, t: float) -> Phases | None:
-        """Return a wait and an acceleration from rest to the thread line, or None if it is too late."""
+        """Return a wait and an acceleration to the thread line as phases, or None if it is too late."""
         starts, v = self._begins = self._find_start()
         if starts < t:
             return None
@@ -236,7 +236,7 @@ class ThreadPass(SpindlePass):
         return None
 
     def _target(self, t: float) -> tuple[float, float, Phases]:
-        """Return the required s and speed at time ``t``, and the rest of the run-up."""
+        """Return the required s and speed at time ``t``, and the rest of the run-up at this time."""
         starts, v = self._begins
         into = t - starts
         if into * self._ramp < v:
@@ -249,8 +249,8 @@ class ThreadPass(SpindlePass):
     def _find_start(self) -> tuple[float, float]:
         """Return the start time of the run-up and its final speed.
 
-        The run-up starts half its duration before the index. An axis that accelerates from rest lags an
-        axis that already moves by v²/2a, so it must start v/2a earlier.
+        The run-up starts half its duration before the index pulse. An axis that accelerates from rest lags
+        an axis already in motion by v²/2a, so it must start v/2a earlier.
         """
         at = self._axes.now()
         for _ in range(3):
@@ -311,7 +311,7 @@ class GearedThreadPass(SpindlePass):
 
     @property
     def end_time_s(self) -> float:
-        """Return the time at which the pass will come to rest at the present spindle speed, in seconds."""
+        """Return the time in seconds at which the pass will come to rest at the current spindle speed."""
         return self._axes.horizon()
 
     def get_block(self, _now: float) -> Block:
@@ -378,7 +378,7 @@ class GearedThreadPass(SpindlePass):
         self._stopped = True
 
     def _engage_from_rest(self, early: float) -> bool:
-        """Plan the complete pass from rest; return False if this was too late."""
+        """Plan the complete pass from rest; return False if it was too late to start."""
         state = self._turns.predict_turning_angle(self._axes.now())
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._run_up_revolutions(self._speed)
@@ -393,9 +393,9 @@ class GearedThreadPass(SpindlePass):
         return True
 
     def _run_up_revolutions(self, speed: float) -> float:
-        """Return the number of revolutions from rest to the index.
+        """Return the number of revolutions from rest to the index pulse.
 
-        An axis that accelerates from rest lags an axis that already moves by v²/2a. It must therefore start
+        An axis that accelerates from rest lags an axis already in motion by v²/2a. It must therefore start
         v/2a earlier, which is half of its run-up.
         """
         return 0.5 * self._path.lead_mm * speed**2 / (_GEARED_SHARE * self._path.acceleration)
@@ -423,9 +423,9 @@ class GearedThreadPass(SpindlePass):
             return
 
     def _send_from_rest(self, speed: float, ramp: float) -> None:
-        """Send the complete path, which starts from rest ``ramp`` revolutions before the index.
+        """Send the complete path, which starts from rest ``ramp`` revolutions before the index pulse.
 
-        Raises DriverError if the driver rejects it.
+        Raises DriverError if the driver rejects the path.
         """
         self._send_path(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead_mm / ramp)])
         self._ramp = ramp
@@ -433,15 +433,14 @@ class GearedThreadPass(SpindlePass):
     def _send_path(self, revolutions: float, s: float, v: float, speed: float, run_up: Phases) -> None:
         """Send the path from ``revolutions`` on, where the axis is at ``s`` with ``v`` mm per revolution.
 
-        Raises DriverError if the driver rejects the path. The path that was sent before then remains
-        active.
+        Raises DriverError if the driver rejects the path; the previous path then remains active.
         """
         path, leaves = self._path_per_revolution(speed).plan_remaining_pass(revolutions, s, v, run_up)
         self._gear.mesh(Cam(self._zero, self._sign, path, self._path.make_retract()))
         self._leaves, self._speed = leaves, speed
 
     def _path_per_revolution(self, speed: float) -> ThreadPath:
-        """Return the path with limits per revolution.
+        """Return the path with its limits converted to limits per revolution.
 
         The path ends where it no longer follows the spindle.
         """

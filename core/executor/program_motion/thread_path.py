@@ -39,10 +39,10 @@ class ThreadPath(NamedTuple):
     The thread starts at ``x z`` and has the ``length`` along Z in the direction ``z_direction`` (±1). X
     changes by ``x_slope`` per unit of s. Then X moves to ``retract_x_mm`` while Z continues in step with
     the spindle by ``exit_length_mm``. If ``exit_length_mm`` is 0, X moves at ``rapid_speed`` with Z at
-    rest. ``acceleration`` is the acceleration along the thread; ``x_acceleration`` and ``z_acceleration``
-    are the accelerations of the axes. A chain of threads has a ``curve``, whose s is the number of
-    revolutions times ``lead_mm``. ``x_slope`` and ``end_lead`` are then the changes of X and Z per unit of s
-    at the end of the curve.
+    rest. ``acceleration`` applies along the thread; ``x_acceleration`` and ``z_acceleration`` are the
+    accelerations of the axes. A chain of threads has a ``curve``, whose s is the number of revolutions
+    times ``lead_mm``. ``x_slope`` and ``end_lead`` are then the changes of X and Z per unit of s at the end
+    of the curve.
     """
 
     x: float
@@ -63,7 +63,7 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def from_blocks(cls, blocks: Sequence[Block], limits: MotionLimits) -> ThreadPath:
-        """Return the path of a pass from its blocks, which are the thread and its pull-out, if any."""
+        """Return the path of a pass from its blocks: the thread and its pull-out, if any."""
         first, out = blocks[0], blocks[-1]
         cut = [first, *(block for block in blocks[1:] if block.continues)]
         length = abs(first.z - first.z0)
@@ -91,7 +91,7 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def _from_chain(cls, cut: Sequence[Block], last: Block, limits: MotionLimits) -> ThreadPath:
-        """Return the path of a chain of threads. ``last`` is its pull-out, or the last block of the chain."""
+        """Return the path of a chain of threads. ``last`` is the pull-out, or without one the last block."""
         first = cut[0]
         curve, (ax, az) = build_thread_curve(cut, limits), limits.amax[:2]
         _, _, slope, along = curve.evaluate_at(curve.length_mm)
@@ -120,7 +120,7 @@ class ThreadPath(NamedTuple):
         return self.x + self.x_slope * self.length_mm if self.curve is None else float(self.curve.x_mm[-1])
 
     def find_s_and_speed(self, z: float, z_velocity: float) -> tuple[float, float]:
-        """Return s and the speed along s for the position ``z`` and the velocity ``z_velocity`` of Z."""
+        """Return s and the speed along s when Z is at ``z`` with the velocity ``z_velocity``."""
         if self.curve is not None:
             s = self.curve.find_s(z)
             return s, z_velocity / self.curve.evaluate_at(s)[3]
@@ -165,7 +165,7 @@ class ThreadPath(NamedTuple):
     def make_retract(self) -> MotionSegments | None:
         """Return the straight retract of X after a thread without pull-out.
 
-        The result is None if the thread has a pull-out. The time of the retract starts at 0.
+        The result is None if the thread has a pull-out. Time is measured from the start of the retract.
         """
         x = self.end_x_mm
         phases = _plan_trapezoid(abs(self.retract_x_mm - x), 0.0, self.rapid_speed, self.x_acceleration)
@@ -230,7 +230,7 @@ class _AxisMotion(NamedTuple):
     accelerations: FloatArray
 
     def append_phases(self, p: float, v: float, phases: Phases) -> _AxisMotion:
-        """Return the motion followed by phases that start from this position and speed."""
+        """Return the motion with phases appended that start from its final position and speed."""
         more = _axis_motion(p, v, phases)
         return _AxisMotion(
             np.concatenate([self.times_s[:-1], self.times_s[-1] + more.times_s]),
@@ -271,7 +271,7 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
 
 
 def _knot_durations(curve: ThreadCurve, s: float, v: float, duration: float, acc: float) -> list[float]:
-    """Return the durations of the parts into which the knots of the curve divide a phase."""
+    """Return the durations of the parts of a phase, which is divided at the knots of the curve."""
     end = s + (v + 0.5 * acc * duration) * duration
     gone = curve.s_mm[(curve.s_mm > s + 1e-9) & (curve.s_mm < end - 1e-9)] - s
     root = np.sqrt(np.maximum(v * v + 2.0 * acc * gone, 0.0))
@@ -301,7 +301,7 @@ def _after(p: float, v: float, phases: Phases) -> tuple[float, float]:
 def _target_time(phases: Phases, p: float, v: float, goal: float) -> tuple[float, float]:
     """Return the time and speed at which ``goal`` is reached.
 
-    If it is not reached, those at the end of the phases are returned.
+    If the phases do not reach ``goal``, the time and speed at their end are returned.
     """
     t = 0.0
     for dt, a in phases:
@@ -386,7 +386,7 @@ class ThreadRetract(NamedTuple):
         )
 
     def _describe_thread_state(self, z: float) -> str:
-        """Return the cause and the state of the thread on the part, for the alarm."""
+        """Return the alarm text with the cause and the state of the thread on the part."""
         if not self.is_cutting:
             return Message(
                 "{why} during the pull-out: the thread is cut, but the thread runout is shorter than "

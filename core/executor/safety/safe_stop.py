@@ -39,7 +39,7 @@ class SafeStop:
 
     @property
     def failed_steps_text(self) -> str:
-        """Return the names of the steps that failed more than once, as a text; empty if there are none."""
+        """Return the names of the steps that failed more than once as text, or an empty string."""
         return ", ".join(name for name, _ in self._failed) if self._tries > 1 else ""
 
     def run_steps(self, reaction: Reaction) -> None:

@@ -1,9 +1,9 @@
-"""Supervision in every tick: following error, standstill, drives, collet, outputs and driver host.
+"""Supervision in every tick: following error, standstill, drives, collet, outputs, driver host.
 
-A driver host that receives no data stops the spindle and the outputs. A terminal, a module or a controller
-may do the same. If an output changes without a command of the program, the cycle enters feed hold, and the
-part in progress is not counted. No axis feeds while an output differs from its command. If a start turns an
-output on again, this is announced first.
+A driver host that receives no data stops the spindle and switches off the outputs. A terminal, a module or
+a controller may do the same. If an output changes without a command of the program, the cycle enters feed
+hold, and the part in progress is not counted. No axis feeds while an output differs from its command. If a
+start will turn an output on again, this is announced first.
 
 The drives supervise themselves too, with one window for all speeds. The window in this module is narrower
 and also applies at rest. ``spindle_control`` supervises the spindle.
@@ -119,7 +119,7 @@ class _AxisWatch:
             self._at_standstill(error, rest)
 
     def _at_standstill(self, error: float, rest: float) -> None:
-        """Raise AlarmError if the axis does not reach its target at rest.
+        """Raise AlarmError if the axis does not settle at its target.
 
         A small error is permitted for a longer time than a large error.
         """
@@ -195,7 +195,7 @@ class _AxisWatch:
             )
 
     def _lasts(self, what: str, holds: bool) -> float:
-        """Return for how many seconds the condition has been true without interruption."""
+        """Return how long the condition has been true without interruption, in seconds."""
         if not holds:
             self._since.pop(what, None)
             return 0.0
@@ -218,7 +218,7 @@ class Supervisor:
         self.max_following_error = 0.0
 
     def accept_positions(self) -> None:
-        """Accept the present positions of the axes because the operator has acknowledged an alarm."""
+        """Accept the current positions of the axes because the operator has acknowledged an alarm."""
         self._axes.reset_supervision()
 
     def check_machine(self, state: MachineState) -> None:
@@ -251,7 +251,7 @@ class Supervisor:
             raise AlarmError("drive-silent", "no data from the axes")
 
     def _check_numbers(self, sample: AxisSample) -> None:
-        """Raise AlarmError if a position is not a number, because no comparison would detect this."""
+        """Raise AlarmError if a position is NaN, because comparisons with NaN detect nothing."""
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
         )
@@ -288,7 +288,7 @@ class OutputWatch:
         self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
     def check_outputs(self) -> None:
-        """Hold the cycle if an output has changed without a command. Raises DriverError or AlarmError."""
+        """Hold the cycle if an output changed unasked. Raises DriverError or AlarmError on failure."""
         trips = self._context.ports.trip_monitor
         trip = trips.get_active_trip() if trips is not None else None
         if trips is not None and trip is not None:

@@ -41,7 +41,7 @@ HaltFunction = Callable[[], None]
 
 
 class ExecutorThread:
-    """The thread in which the executor ticks.
+    """The thread that runs the executor's ticks.
 
     If an error occurs that the executor cannot catch, the machine stops.
     """
@@ -67,8 +67,8 @@ class ExecutorThread:
     def close(self, timeout_s: float = _CLOSE_TIMEOUT_S) -> None:
         """Stop the machine as an E-stop would, and end the thread.
 
-        If the thread does not end within ``timeout_s`` seconds, it is left running, and the drivers are
-        halted instead.
+        If the thread does not end within ``timeout_s`` seconds, the drivers are halted instead and the
+        thread continues.
         """
         self._closing.set()
         self.executor.start_next_tick()
@@ -129,8 +129,8 @@ class MachineHalter:
 class ThreadWatch:
     """Supervision of threads by their names, including threads that start later.
 
-    ``report_failure`` receives the name of each thread that has ended, once. A thread is supervised from
-    the first check that finds it, or from the call of ``watch_thread``.
+    ``report_failure`` receives the name of each thread that has ended; each name is reported once. A thread
+    is supervised from the first check that finds it, or from the call of ``watch_thread``.
     """
 
     def __init__(self, names: Iterable[str], report_failure: ReportFailure) -> None:
@@ -179,8 +179,8 @@ class Watchdog:
     """Supervision of the executor's thread, and of other threads by their names.
 
     ``halt`` stops the machine through the drivers, or is None if they have no such function.
-    ``report_failure`` receives the name of each other thread that has ended, once. The end of the
-    executor's thread causes an alarm. A thread is supervised from the first check that finds it, or from
+    ``report_failure`` receives once the name of each thread that has ended, other than the executor's; the
+    end of that thread causes an alarm. A thread is supervised from the first check that finds it, or from
     the call of ``watch_thread``.
     """
 
@@ -212,7 +212,7 @@ class Watchdog:
         return self._closing.is_set()
 
     def start(self) -> None:
-        """Start the watchdog, and register it with the executor's thread for supervision."""
+        """Start the watchdog, and let the executor's thread supervise it."""
         self._executor.check_watchdog = WatchdogSupervisor(self, self._tell).check_watchdog
         self._thread.start()
 
@@ -232,7 +232,7 @@ class Watchdog:
             self._thread.join(timeout_s)
 
     def check_threads(self) -> None:
-        """Check the executor and the other threads once. This function raises no exceptions."""
+        """Check the executor and the other threads once. This function never raises an exception."""
         with CaughtAttempt() as trial:
             self._mind_executor()
             if self.check_count % EXECUTOR_CHECKS_PER_THREAD_CHECK == 0:
@@ -288,7 +288,7 @@ class WatchdogSupervisor:
     def check_watchdog(self, now: float) -> None:
         """Check the watchdog once after a tick.
 
-        A long gap between two ticks counts as a short gap, because both threads were late.
+        A long gap between ticks counts as a short one, because the watchdog was probably late too.
         """
         looks, last = self._watchdog.check_count, self._last
         self._last = now

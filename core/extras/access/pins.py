@@ -1,7 +1,7 @@
 """PINs, stored only as slow hashes, with delays after wrong attempts.
 
 TurnDesk stores the scrypt hash (RFC 7914) of each PIN with a separate salt. One attempt takes at least 0.5
-s and 64 MiB, so trying all four-digit PINs takes more than an hour even for an attacker who has the file.
+s and 64 MiB. Trying all four-digit PINs therefore takes more than an hour, even with a copy of the file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _MOST_MEMORY = 2**28  # bytes
 
 
 class ScryptCost(NamedTuple):
-    """Cost parameters of scrypt (log2 of N, r and p), each stored as one byte in front of the hash."""
+    """Cost parameters of scrypt (log2 of N, r and p), each stored as one byte before the hash."""
 
     log2_n: int
     block_size: int
@@ -54,9 +54,9 @@ def check_pin(pin: str) -> None:
 
 
 def hash_pin(pin: str, salt: bytes | None = None) -> PinHash:
-    """Hash a PIN with ``salt`` or, if it is None, with a new salt.
+    """Hash a PIN with ``salt``, or with a new salt if ``salt`` is None.
 
-    The calculation is slow, so call it in a worker thread.
+    The calculation is slow, so call this function in a worker thread.
     """
     salt = salt if salt is not None else secrets.token_bytes(_SALT)
     return PinHash(salt, bytes(DEFAULT_COST) + _scrypt(pin, salt, DEFAULT_COST))
@@ -73,7 +73,7 @@ def matches_hash(pin: str, stored_hash: PinHash) -> bool:
 
 
 def is_hash_outdated(stored_hash: PinHash) -> bool:
-    """Return whether the hash was made with other parameters than new hashes."""
+    """Return whether the hash was made with parameters that are no longer used for new hashes."""
     return _cost_of(stored_hash) != DEFAULT_COST
 
 

@@ -69,7 +69,7 @@ def fit_circle(points: FloatArray) -> tuple[float, float, float]:
 
 
 def analyze_ball_bar(setpoints: FloatArray, actual: FloatArray) -> BallBarResult:
-    """Analyze setpoints (m, 2) and measured positions (m, 2) of one arc. Raises AnalysisError."""
+    """Analyze setpoints and positions (m, 2) of one arc. Raises AnalysisError without a usable arc."""
     if len(setpoints) < MIN_ARC_SAMPLES or len(actual) != len(setpoints):
         raise AnalysisError(
             Message(
@@ -146,7 +146,7 @@ def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tup
 def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
     """Return the largest residual within a few degrees after a reversal of this axis.
 
-    The result is NaN without a reversal.
+    The result is NaN if the axis does not reverse.
     """
     step = np.sign(np.diff(position))
     moving = np.flatnonzero(step)
@@ -165,7 +165,7 @@ def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
 def find_arcs(setpoints: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], ...]:
     """Return the program lines whose setpoints (m, 2) form a sufficiently long arc.
 
-    Each line has the range of its samples.
+    Each line is returned with the range of its samples.
     """
     if not len(lines):
         return ()
@@ -217,7 +217,7 @@ class PathError:
         return float(np.abs(self.distances_mm).max())
 
     def magnify_deviation(self, factor: float) -> FloatArray:
-        """Return the measured path (m, 2 or 3), with its deviation from the path multiplied by ``factor``."""
+        """Return the measured path (m, 2 or 3) with its deviation multiplied by ``factor``."""
         return self.nearest_path_points + factor * (self.measured_points - self.nearest_path_points)
 
 
@@ -243,7 +243,7 @@ def calculate_path_error(
     ``lines`` (n,) are the source lines of the points of ``programmed``. ``due`` (m,) is the index of the
     point that each sample should have reached. The nearest point is searched within ``search_point_count``
     points of this index, so that a sample is not assigned to the wrong branch where the path crosses
-    itself. Raises AnalysisError.
+    itself. Raises AnalysisError if the samples are unusable.
     """
     _check(programmed, lines, measured, expected_point_indices)
     n = len(programmed)
@@ -295,7 +295,7 @@ def calculate_path_error_from_samples(
     """Return the deviations in a record, with ``setpoints`` (m, 2 or 3) as the programmed path.
 
     ``actual`` contains the measured positions. The nearest point is searched within ``delay_s`` seconds of
-    each sample. Raises AnalysisError.
+    each sample. Raises AnalysisError if samples or positions are missing or no axis moves.
     """
     if len(setpoints) < MIN_SAMPLES:
         raise AnalysisError(

@@ -1,6 +1,6 @@
-"""Response of an axis to a step, ramp or sine, and the effect of a different error limit or speed.
+"""Response of an axis to a step, ramp or sine, and the effect of another error limit or speed.
 
-All values are measured from the samples. Only ``scale_error_to_speed`` assumes that the lag of the drive is
+All values are measured from the samples. Only ``scale_error_to_speed`` assumes that the axis lag is
 proportional to its speed.
 """
 
@@ -24,10 +24,10 @@ MIN_SAMPLES = 20  # samples
 class StepResponse:
     """Response to a step, with times in seconds and lengths in mm.
 
-    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot_fraction`` is the overshoot as a fraction of the
-    step, or 0. ``settling_time_s`` is the time from the end of the commanded step until the axis remains
-    within ``settling_band_mm``, or NaN if it does not settle in the record. ``delay_s`` is the delay at half
-    of the step. ``final_error_mm`` is the error at the end of the record.
+    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot_fraction`` is the overshoot as a fraction of
+    the step, or 0 without overshoot. ``settling_time_s`` is the time from the end of the commanded step
+    until the axis remains within ``settling_band_mm``, or NaN if it does not settle in the record.
+    ``delay_s`` is the delay at half of the step. ``final_error_mm`` is the error at the end of the record.
     """
 
     step_size_mm: float
@@ -42,7 +42,7 @@ class StepResponse:
 def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
     """Analyze the samples (n,) from before a step until after it.
 
-    ``band`` is the in-position window in mm. Raises AnalysisError.
+    ``band`` is the in-position window in mm. Raises AnalysisError if the step is too small for ``band``.
     """
     _check(times, request, response)
     step_size = float(request[-1] - request[0])
@@ -96,7 +96,7 @@ def analyze_sine(
 ) -> SineResponse:
     """Analyze the response to a sine of ``frequency`` Hz over whole periods.
 
-    A sine is fitted to the request and to the response. Raises AnalysisError.
+    A sine is fitted to the command and to the response. Raises AnalysisError if no full sine is found.
     """
     _check(times, request, response)
     waves = math.floor((times[-1] - times[0]) * frequency + 1e-6)
@@ -145,9 +145,9 @@ class RampResponse:
 
 
 def analyze_ramp(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
-    """Analyze the response to a ramp in the second half of its constant speed, where the lag has settled.
+    """Analyze the response in the second half of a ramp's constant speed, where the lag has settled.
 
-    Raises AnalysisError.
+    Raises AnalysisError if the command has no constant speed.
     """
     _check(times, request, response)
     speeds = np.gradient(request, times)
@@ -235,7 +235,7 @@ def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, durati
 
 
 def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float) -> float:
-    """Return the smallest error limit in mm that this error does not exceed long enough for a trip.
+    """Return the smallest error limit in mm at which this error would not cause a trip.
 
     A trip occurs if the error exceeds the limit for ``duration_s`` seconds. The limit is found by bisection
     to a thousandth of the largest error.

@@ -1,4 +1,4 @@
-"""Comparison of thread passes by spindle angle: entry angle, lead error and speed under load.
+"""Comparison of thread passes by entry angle, lead error and spindle speed under load.
 
 A pass is a period of at least two revolutions in which the axis moves by the same distance per revolution.
 A pass is described by its best-fit line, distance = lead · revolutions + entry.
@@ -92,7 +92,7 @@ def analyze_thread(
 
     ``axis_positions`` and ``depth`` are the positions in mm of the axis along the thread and of the other
     axis. ``speed`` is in rpm. ``lead`` is in mm per revolution; if it is None, it is derived from the
-    similar passes. Raises AnalysisError.
+    similar passes. Raises AnalysisError if no pass is found or data is missing.
     """
     if len(spindle_revolutions) < 100:
         raise AnalysisError(
@@ -161,9 +161,9 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[SampleRange]:
 def _joined(
     runs: list[SampleRange], turns: FloatArray, along: FloatArray, direction: float
 ) -> list[SampleRange]:
-    """Return the periods, with pieces of the same pass joined.
+    """Return the periods, with adjacent periods of the same pass joined.
 
-    A piece belongs to the same pass if it starts on the line on which the previous piece ended.
+    A period belongs to the same pass if it starts on the line on which the previous period ended.
     """
     found: list[SampleRange] = []
     for run in runs:
@@ -181,7 +181,7 @@ def _joined(
 def _alike(runs: list[SampleRange]) -> list[SampleRange]:
     """Return the passes with the coarsest lead that occurs more than once.
 
-    If no lead occurs more than once, the passes with the coarsest lead are returned.
+    If every lead occurs only once, the passes with the coarsest lead are returned.
     """
     if not runs:
         return []
@@ -200,7 +200,7 @@ def _passes(
 ) -> tuple[ThreadPass, ...]:
     """Return each pass with its best-fit line and its entry angle.
 
-    Entry angles are within half a revolution of that of the first pass.
+    Entry angles are within half a revolution of the first pass's entry angle.
     """
     begin = float(np.median([along[first] for first, *_ in runs]))
     found: list[ThreadPass] = []

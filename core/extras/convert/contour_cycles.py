@@ -34,7 +34,7 @@ class RoughingValues:
 def store_roughing_words(
     state: SourceState, statement: SourceStatement, code: SourceWord, rough: RoughingValues
 ) -> bool:
-    """Store the words of the first line of a roughing cycle; return whether the line is such a line."""
+    """Store the words of a roughing cycle's first line; return whether the line is a first line."""
     if statement.find_word("P") is not None:
         return False
     u, w, r = (statement.find_word(letter) for letter in "UWR")
@@ -91,7 +91,7 @@ def append_roughing_passes(
 ) -> None:
     """Append the passes of G71 or G72, the pass along the contour, and the return move.
 
-    Raises ProgramError.
+    Raises ProgramError if the contour is empty or has an undercut.
     """
     start = state.get_position(code)
     across_x = code.value == 71
@@ -167,7 +167,7 @@ def _one_level(
 def append_contour_repetitions(
     state: SourceState, code: SourceWord, contour: Sequence[PathStep], rough: RoughingValues, allowance: Point
 ) -> None:
-    """Append the repetitions of the contour of G73, which progress from the relief to the allowance."""
+    """Append the repetitions of the G73 contour, which move closer from the relief to the allowance."""
     start = state.get_position(code)
     for k in range(rough.repetition_count):
         share = 1.0 - k / (rough.repetition_count - 1) if rough.repetition_count > 1 else 0.0
@@ -209,12 +209,12 @@ def _follow(state: SourceState, code: SourceWord, step: PathStep) -> None:
 
 
 def replace_line(code: SourceWord, line: int) -> SourceWord:
-    """Return the word of a cycle with another line number, so that its moves belong to this line."""
+    """Return the cycle's word with another line number, so that its moves belong to that line."""
     return code._replace(line_number=line)
 
 
 def _swap(point: Point, *, across_x: bool) -> Point:
-    """Convert (x, z) to (depth, travel), or back."""
+    """Convert (x, z) to (depth, travel), or (depth, travel) to (x, z)."""
     return point if across_x else (point[1], point[0])
 
 

@@ -1,4 +1,4 @@
-"""Conversion of a source program: the source is read, the result is written, and the result is proved."""
+"""Conversion of a source program: reading the source, writing the result and proving the result."""
 
 from __future__ import annotations
 

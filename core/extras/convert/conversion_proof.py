@@ -75,7 +75,7 @@ def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnost
 
 
 class _DifferenceError(Exception):
-    """An error raised at the first difference of a converted program."""
+    """An error raised at the first difference between a converted program and its source."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -83,7 +83,7 @@ class _DifferenceError(Exception):
 
 
 class _Comparison:
-    """Comparison of blocks and steps in order."""
+    """Comparison of the converted program's blocks with the source's steps, in order."""
 
     def __init__(
         self,
@@ -161,7 +161,7 @@ class _Comparison:
             self._action(step, block.action)
 
     def _home(self, step: PathStep) -> None:
-        """Compare a move to machine home. There is no block for it if the axes are already there."""
+        """Compare a move to machine home. The block may be missing if the axes are already at home."""
         at = self._at
         if (
             at < len(self._blocks)
@@ -226,7 +226,7 @@ class _Comparison:
     def _thread_zone(self, at: int) -> int:
         """Compare a thread pass and the rapids around it; return the number of steps.
 
-        The number is 0 if there is no thread.
+        The number is 0 if the next step does not belong to a thread.
         """
         steps, blocks = self._steps, self._blocks
         infeed = at
@@ -284,7 +284,7 @@ def _is_idle(block: Block) -> bool:
 
 
 def _known(steps: Sequence[PathStep]) -> Iterator[PathStep]:
-    """Yield the steps that blocks must match.
+    """Yield the steps that must have a matching block.
 
     Nose codes, presets and moves whose end point is unknown are omitted.
     """

@@ -56,7 +56,7 @@ Variables = MutableMapping[str, float]
 class ExpressionReader:
     """A reader of the expressions in one line.
 
-    ``at`` is the index of the next character.
+    ``at`` is the index of the next character to read.
     """
 
     def __init__(self, line: int, text: str, variables: Variables, at: int = 0) -> None:
@@ -68,21 +68,21 @@ class ExpressionReader:
             self.at += 1
 
     def peek_character(self) -> str:
-        """Return the next character that is not a blank, or an empty text at the end."""
+        """Return the next character that is not a blank, or an empty string at the end."""
         self.skip_blanks()
         return self.text[self.at : self.at + 1]
 
     def accept_text(self, sign: str) -> bool:
-        """Skip ``sign`` if it is next; return whether it was."""
+        """Skip ``sign`` if it is next in the line; return whether it was skipped."""
         self.skip_blanks()
         found = self.text[self.at : self.at + len(sign)].upper() == sign
         self.at += len(sign) * found
         return found
 
     def read_value(self) -> tuple[float, bool]:
-        """Return the value of a word and whether the decimal point rule does not apply to it.
+        """Return the value of a word and whether it is exempt from the decimal point rule.
 
-        The second result is False only for a plain number without a decimal point. Raises ProgramError.
+        Only a plain number without a decimal point is not exempt. Raises ProgramError if invalid.
         """
         begin = self.at
         negative = False
@@ -101,7 +101,7 @@ class ExpressionReader:
             raise make_error(self.line, begin + 1, "division") from error
 
     def read_bracket(self) -> float:
-        """Return the value of the expression in ``[ ]``. Raises ProgramError."""
+        """Return the value of the expression in ``[ ]``. Raises ProgramError if it is invalid."""
         begin = self.at
         if not self.accept_text("["):
             raise self._error(begin)
@@ -114,7 +114,7 @@ class ExpressionReader:
         return found
 
     def read_expression(self) -> float:
-        """Return the value of the expression to the right of ``=``. Raises ProgramError."""
+        """Return the value of the expression to the right of ``=``. Raises ProgramError if it is invalid."""
         begin = self.at
         try:
             return self._binary(0)
@@ -122,7 +122,7 @@ class ExpressionReader:
             raise make_error(self.line, begin + 1, "division") from error
 
     def read_variable_key(self) -> str:
-        """Return the key of the variable that starts with ``#``. Raises ProgramError."""
+        """Return the key of the variable that starts with ``#``. Raises ProgramError if it is invalid."""
         self.at += 1
         if self.accept_text("<"):
             end = self.text.find(">", self.at)

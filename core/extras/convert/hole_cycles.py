@@ -19,7 +19,7 @@ _SAME = 1e-6  # mm
 def append_hole_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the moves of a hole cycle.
 
-    Words of earlier lines of the cycle remain active. Raises ProgramError.
+    Words of earlier lines of the cycle remain active. Raises ProgramError if a required word is missing.
     """
     for word in statement.words:
         if word.letter in "ZWRQPK":
@@ -69,7 +69,7 @@ def _plane(state: SourceState, z0: float) -> float:
 def _pecks(state: SourceState, code: SourceWord, plane: float, bottom: float, *, full: bool) -> None:
     """Append the pecks of a hole.
 
-    If ``full`` is False, the drill retracts only far enough to break the chip.
+    If ``full`` is False, the drill retracts only a short distance to break the chip.
     """
     q = state.hole_words.get("Q")
     x = state.x

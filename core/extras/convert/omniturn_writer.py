@@ -20,7 +20,7 @@ _NOT_IN_COMMENTS = re.compile(r"[^ -'*-~]")
 
 
 class WrittenLine(NamedTuple):
-    """A line of the converted program, with the number of its source line (0 if it has none)."""
+    """A line of the converted program, with its source line number (0 without a source line)."""
 
     text: str
     source_line_number: int
@@ -71,7 +71,7 @@ class OmniTurnWriter:
         self.lines.append(WrittenLine(text + self.make_comment(step), step.line))
 
     def make_comment(self, step: PathStep) -> str:
-        """Return the comment for the line of a step, or an empty text if comments are disabled."""
+        """Return the comment for the line of a step, or an empty string if comments are disabled."""
         stop = step.kind is StepKind.M and step.number in {0, 1}
         if not self.options.has_comments and not (stop and step.comment):
             return ""
@@ -82,7 +82,7 @@ class OmniTurnWriter:
     # --- steps
 
     def write_steps(self, steps: Sequence[PathStep]) -> None:
-        """Append the lines of all steps. Raises ProgramError."""
+        """Append the lines of all steps. Raises ProgramError if a step cannot be written."""
         rate = self.options.rapid / (1.0 if self.is_metric else MM_PER_INCH)
         unit = "G71" if self.is_metric else "G70"
         first = PathStep(StepKind.M, steps[0].line if steps else 0)
@@ -92,7 +92,7 @@ class OmniTurnWriter:
             at += self._step(steps, at)
 
     def _step(self, steps: Sequence[PathStep], at: int) -> int:
-        """Write one step and return the number of steps that the written lines include."""
+        """Write the lines for one step; return how many steps these lines include."""
         step = steps[at]
         match step.kind:
             case StepKind.RAPID | StepKind.FEED | StepKind.ARC | StepKind.THREAD:
@@ -250,11 +250,11 @@ _NEAR = 1e-6  # mm
 
 
 def _write_thread(writer: OmniTurnWriter, step: PathStep, after: Sequence[PathStep]) -> int:
-    """Write one thread pass; return the number of steps that it includes: thread, pull-out and return.
+    """Write one thread pass; return its number of steps, which are thread, pull-out and return.
 
     The tool must already be at the start of the thread, and a rapid straight out in X must follow. The
     cycle needs a start point outside the thread; its retract is then the X of the pull-out. Raises
-    ProgramError.
+    ProgramError if the pass does not have this form.
     """
     assert step.x is not None
     assert step.z is not None
@@ -303,7 +303,7 @@ def _is_pull_out(step: PathStep, out: PathStep | None) -> bool:
 
 
 def _returns(out: PathStep, after: Sequence[PathStep], start_z: float) -> int:
-    """Return 1 if the next step returns to the start Z of the pass at the X of the pull-out, otherwise 0."""
+    """Return 1 if the next step returns to the start Z at the pull-out's X, otherwise 0."""
     back = after[0] if after else None
     if back is None or back.kind is not StepKind.RAPID or back.x is None or back.z is None:
         return 0
@@ -312,7 +312,7 @@ def _returns(out: PathStep, after: Sequence[PathStep], start_z: float) -> int:
 
 
 def _drop_infeed(writer: OmniTurnWriter, start_z: float) -> None:
-    """Remove the rapid to the depth of the pass if it was written last, because the cycle makes this move."""
+    """Remove the last rapid if it moves to the depth of the pass, because the cycle makes this move."""
     if writer.last_infeed is None:
         return
     count, x, z, was_rapid = writer.last_infeed

@@ -30,8 +30,8 @@ MOVE_KINDS = frozenset({StepKind.RAPID, StepKind.FEED, StepKind.ARC, StepKind.TH
 class SpindleState:
     """State of the spindle. ``direction`` is 1 for M03, -1 for M04 and 0 for a stopped spindle.
 
-    ``speed`` is in rpm or, with ``is_css``, in units of the program per minute (ft/min or m/min).
-    ``max_rpm`` is the maximum rpm with ``is_css``, or 0.
+    ``speed`` is in rpm or, if ``is_css`` is True, in units of the program per minute (ft/min or m/min).
+    ``max_rpm`` is the maximum rpm if ``is_css`` is True, otherwise 0.
     """
 
     direction: int = 0
@@ -47,12 +47,12 @@ def has_same_speed(one: SpindleState, other: SpindleState) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class PathStep:
-    """One step of a turning program. Lengths are in mm, X is a radius, and an unknown coordinate is None.
+    """One step of a turning program. Lengths are in mm, X is a radius, None is an unknown coordinate.
 
-    ``x z`` is the end point, and ``cx cz`` the center of an arc. ``clockwise`` is seen with X+ toward the
-    operator, as in OmniTurn. ``feed`` is in mm/min, or in mm/rev if ``per_rev`` is True; for a thread,
-    ``feed`` is the lead. ``number`` is a tool, an M code, a dwell in seconds, or 40, 41 or 42 of nose
-    compensation. In a HOME step, the coordinates of the axes that move are not None. ``comment`` is a
+    ``x z`` is the end point, and ``cx cz`` the center of an arc. ``clockwise`` is as seen with X+ toward
+    the operator, as in OmniTurn. ``feed`` is in mm/min, or in mm/rev if ``per_rev`` is True; for a thread,
+    ``feed`` is the lead. ``number`` is a tool, an M code, a dwell in seconds, or the G code 40, 41 or 42 of
+    nose compensation. In a HOME step, the coordinates of the axes that move are not None. ``comment`` is a
     comment of the source.
     """
 

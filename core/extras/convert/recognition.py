@@ -27,7 +27,7 @@ _HAAS = re.compile(
 
 
 def recognize_control(lines: Sequence[str]) -> SourceControl | None:
-    """Return the control for which a program was probably written, or None if its words do not show this."""
+    """Return the control for which a program was probably written, or None if this is unclear."""
     text = "\n".join(_COMMENT.sub(" ", each) for each in lines)
     if _LINUXCNC.search(text):
         return SourceControl.LINUXCNC

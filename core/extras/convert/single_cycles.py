@@ -1,4 +1,4 @@
-"""Single turning and facing cycles (G90 and G94 of system A), and peck cycles along Z or X (G74 and G75)."""
+"""Single turning and facing cycles (G90 and G94 of system A), and peck cycles (G74 and G75)."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _SAME = 1e-6  # mm
 def read_cycle_target(
     state: SourceState, statement: SourceStatement, code: SourceWord
 ) -> tuple[float, float]:
-    """Return X and Z of a single cycle; a missing word has its value from the previous line.
+    """Return X and Z of a single cycle; a missing word keeps its value from the previous line.
 
-    Raises ProgramError.
+    Raises ProgramError if a coordinate is unknown.
     """
     x0, z0 = state.get_position(code)
     x, z = state.find_target(statement)
@@ -45,7 +45,7 @@ def read_taper(state: SourceState, statement: SourceStatement, letters: str = "R
 
 
 def append_turning_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the four moves of a turning cycle. Raises ProgramError."""
+    """Append the four moves of a turning cycle. Raises ProgramError if a required value is missing."""
     x0, z0 = state.get_position(code)
     taper = read_taper(state, statement)
     x, z = read_cycle_target(state, statement, code)
@@ -56,7 +56,7 @@ def append_turning_cycle(state: SourceState, statement: SourceStatement, code: S
 
 
 def append_facing_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the four moves of a facing cycle. Raises ProgramError."""
+    """Append the four moves of a facing cycle. Raises ProgramError if a required value is missing."""
     x0, z0 = state.get_position(code)
     taper = read_taper(state, statement, "RK")
     x, z = read_cycle_target(state, statement, code)
@@ -76,7 +76,7 @@ class PeckValues:
 def append_peck_cycle(
     state: SourceState, statement: SourceStatement, code: SourceWord, peck: PeckValues
 ) -> None:
-    """Append the moves of G74 (pecks along Z) or G75 (pecks along X). Raises ProgramError."""
+    """Append the moves of G74 (along Z) or G75 (along X). Raises ProgramError if a word is invalid."""
     if not any(each.letter in "XZUW" for each in statement.words):
         r = statement.find_word("R")
         if r is not None:

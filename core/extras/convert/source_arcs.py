@@ -14,7 +14,7 @@ _SAME = 1e-6  # mm
 
 
 def append_arc(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the arc that a line programs. Raises ProgramError."""
+    """Append the arc that a line programs. Raises ProgramError if feed, center or radius is invalid."""
     if state.feed is None:
         raise make_error(code.line_number, code.column, "feed-missing")
     start = state.get_position(code)

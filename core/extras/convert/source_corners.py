@@ -25,7 +25,7 @@ class Corner(NamedTuple):
 def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
     """Shorten the last move and append the chamfer or arc toward the next end point.
 
-    Raises ProgramError.
+    Raises ProgramError if the corner is not possible.
     """
     last = state.steps[-1]
     assert last.x is not None

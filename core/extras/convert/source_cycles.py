@@ -75,7 +75,7 @@ class SourceCycles:
         return HOLE_CYCLE_CODES - {73} if self._state.source_control.is_fanuc else HOLE_CYCLE_CODES
 
     def execute_modal_cycle(self, statement: SourceStatement, code: SourceWord) -> None:
-        """Execute a line of the active modal cycle. Raises ProgramError."""
+        """Execute a line of the active modal cycle. Raises ProgramError if it cannot be converted."""
         number = round(self._state.motion_code)
         code = code._replace(value=number)
         extra = "RIKFE" if number in self._boxes() else "RQPFKL"

@@ -45,7 +45,7 @@ class _Return(NamedTuple):
 class ProgramFlow:
     """The statements of a source program in execution order.
 
-    ``at`` is the index of the next line.
+    ``at`` is the index of the next line to execute.
     """
 
     def __init__(self, texts: Sequence[str], control: SourceControl) -> None:
@@ -60,7 +60,7 @@ class ProgramFlow:
         self._loops: dict[int, int] = {}  # repeat loops: line index and passes left
 
     def iter_statements(self) -> Iterator[SourceStatement]:
-        """Yield the statements in execution order. Raises ProgramError."""
+        """Yield the statements in execution order. Raises ProgramError if the program is not executable."""
         while self.at < len(self.lines) and not self.ended:
             line = self.lines[self.at]
             self.at += 1
@@ -163,7 +163,7 @@ class ProgramFlow:
         """Return the statements of the blocks N``first`` to N``last``, and the index after them.
 
         The search for the blocks starts at line ``start_index`` and continues from the start of the file.
-        Raises ProgramError.
+        Raises ProgramError if the blocks are not found.
         """
         order = (*range(start_index, len(self.lines)), *range(start_index))
         begin = next((index for index in order if self.lines[index].n == first), None)
@@ -247,7 +247,7 @@ class ProgramFlow:
             self.at = self._find(line, ("endwhile",)) + 1
 
     def _if(self, line: SourceLine, reader: ExpressionReader) -> None:
-        """Continue after the first true IF or ELSEIF, or after ELSE or ENDIF if no condition is true."""
+        """Execute IF: continue after the first true IF or ELSEIF, or else after ELSE or ENDIF."""
         while not reader.read_bracket():
             index = self._find(line, ("elseif", "else", "endif"))
             self.at = index + 1

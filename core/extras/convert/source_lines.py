@@ -19,9 +19,9 @@ _O_WORD = re.compile(r"\s*O\s*(?P<o>\d+|<[^>]+>)\s*(?P<key>[A-Za-z]+)(?P<rest>.*
 class SourceLine(NamedTuple):
     """One line of the source program.
 
-    ``code`` is the text in which blanks replace the comments. ``n`` is the block number, or 0. ``o_word`` is
-    the number or name of an O word, ``o_keyword`` is its keyword, and ``start_index`` is the index after
-    them.
+    ``code`` is the text with comments replaced by blanks. ``n`` is the block number, or 0 without one.
+    ``o_word`` is the number or name of an O word, ``o_keyword`` is its keyword, and ``start_index`` is the
+    index after them.
     """
 
     line_number: int
@@ -73,7 +73,7 @@ class SourceStatement:
 def split_lines(texts: Sequence[str], control: SourceControl) -> list[SourceLine]:
     """Return the lines of a source program.
 
-    Raises ProgramError for a comment without an end.
+    Raises ProgramError if a comment has no end.
     """
     return [_line(number, text, control) for number, text in enumerate(texts, start=1)]
 
@@ -126,7 +126,7 @@ def _without_comments(number: int, text: str) -> tuple[str, str]:
 
 
 def read_words(line: SourceLine, variables: Variables) -> SourceStatement:
-    """Return the words of a line, and assign the variables that the line sets. Raises ProgramError."""
+    """Return a line's words and assign its variables. Raises ProgramError if a word is invalid."""
     reader = ExpressionReader(line.line_number, line.code, variables, line.start_index)
     assigned: dict[str, float] = {}
     words = tuple(_words(reader, assigned))

@@ -85,7 +85,7 @@ class SourceReader:
     # --- one statement
 
     def execute_statement(self, statement: SourceStatement) -> None:
-        """Execute the words of one line. Raises ProgramError."""
+        """Execute the words of one line. Raises ProgramError if the line cannot be converted."""
         state = self.state
         if statement.comment:
             state.comment = f"{state.comment} {statement.comment}".strip()
@@ -106,7 +106,7 @@ class SourceReader:
                 self._other_mode(word)
 
     def _without_y(self, statement: SourceStatement) -> SourceStatement:
-        """Return the statement without Y0 and V0, which a lathe without a Y axis does not need."""
+        """Return the statement without Y0 and V0, which have no effect on a lathe without a Y axis."""
         idle = [each for each in statement.words if each.letter in "YV" and not each.value]
         for each in idle:
             self.state.add_warning(each, "left-out", word=each.text)
@@ -205,7 +205,7 @@ class SourceReader:
             state.append_step(PathStep(StepKind.TOOL, statement.line_number, number=offset))
 
     def _spindle(self, statement: SourceStatement) -> None:
-        """Execute G96, G97, S, M03 and M04. Raises ProgramError."""
+        """Execute G96, G97, S, M03 and M04. Raises ProgramError if the speed is invalid or missing."""
         state = self.state
         spindle = state.spindle
         limit = statement.has_g(50) or (
@@ -361,7 +361,7 @@ class SourceReader:
         )
 
     def _check_letters(self, statement: SourceStatement) -> None:
-        """Reject words that this reader does not use. Raises ProgramError."""
+        """Raise ProgramError if the statement contains a word that this reader does not use."""
         allowed = "GMXZFSTNUW" if self.state.source_control.is_fanuc else "GMXZFSTN"
         if self.state.motion_code in {2, 3}:
             allowed += "RIK"
@@ -397,7 +397,7 @@ class SourceReader:
     # --- codes that act only on their line
 
     def _one_shot(self, statement: SourceStatement, word: SourceWord) -> bool:
-        """Execute a code that uses the axis words of its line; return whether the word is such a code."""
+        """Execute a code that uses its line's axis words; return whether the word is such a code."""
         code, control = word.value, self.state.source_control
         if code == 4:
             self._dwell(statement, word)
@@ -472,7 +472,7 @@ class SourceReader:
 
 
 def read_source(texts: Sequence[str], options: ConversionOptions) -> tuple[SourceState, list[Diagnostic]]:
-    """Return the state after a pass through the source, and the findings; an error is the last finding."""
+    """Return the state after a pass through the source, and the findings; an error is always last."""
     try:
         reader = SourceReader(texts, options)
     except ProgramError as error:

@@ -61,7 +61,7 @@ class SourceState:
     def convert_length(self, word: SourceWord) -> float:
         """Return the length or coordinate of a word in mm, without halving a diameter.
 
-        Raises ProgramError.
+        Raises ProgramError if the unit or the meaning without a decimal point is unknown.
         """
         if not word.value:
             return 0.0
@@ -73,7 +73,7 @@ class SourceState:
         return word.value * unit * _LEAST[bool(self.is_metric)]
 
     def convert_x(self, word: SourceWord) -> float:
-        """Return the value of an X or U word in mm as a radius. Raises ProgramError."""
+        """Return an X or U word in mm as a radius. Raises ProgramError as ``convert_length`` does."""
         return self.convert_length(word) / (2.0 if self.is_x_diameter else 1.0)
 
     def convert_increment(self, word: SourceWord) -> float:
@@ -115,7 +115,7 @@ class SourceState:
         return now + value
 
     def get_position(self, word: SourceWord) -> tuple[float, float]:
-        """Return the present position as X and Z. Raises ProgramError if the position is unknown."""
+        """Return the current position as X and Z. Raises ProgramError if the position is unknown."""
         if self.x is None or self.z is None:
             axis = "X" if self.x is None else "Z"
             raise make_error(word.line_number, word.column, "position", axis=axis)
@@ -130,7 +130,7 @@ class SourceState:
     # --- steps
 
     def append_step(self, step: PathStep) -> None:
-        """Append a step, and attach the preceding comment to it."""
+        """Append a step, and attach the comment that precedes it."""
         if self.comment:
             object.__setattr__(step, "comment", self.comment)
             self.comment = ""
@@ -139,7 +139,7 @@ class SourceState:
     def append_move(
         self, kind: StepKind, line: int, x: float | None, z: float | None, **values: float | bool
     ) -> None:
-        """Append a move to this point, unless it has no length."""
+        """Append a move to this point, unless its length is zero."""
         moves = not (
             self.x is not None
             and self.z is not None

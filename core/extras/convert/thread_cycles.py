@@ -15,7 +15,7 @@ _MOST_PASSES = 1000
 
 
 def append_thread_pass(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the thread pass of G32 or G33. Raises ProgramError."""
+    """Append the thread pass of G32 or G33. Raises ProgramError if lead or position is missing."""
     state.get_position(code)
     lead = read_lead(state, statement, code)
     x, z = state.find_target(statement)
@@ -23,9 +23,9 @@ def append_thread_pass(state: SourceState, statement: SourceStatement, code: Sou
 
 
 def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) -> float:
-    """Return the lead in mm/rev, which remains active for further passes.
+    """Return the lead in mm/rev, which remains active for later passes.
 
-    Raises ProgramError if there is no lead.
+    Raises ProgramError if no lead is programmed.
     """
     letters = "FE" if state.source_control.is_fanuc else "KP"
     word = next((each for letter in letters if (each := statement.find_word(letter))), None)
@@ -39,7 +39,7 @@ def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) 
 
 
 def append_single_thread_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the four moves of the single thread cycle G92 (G78 of system B). Raises ProgramError."""
+    """Append the four moves of G92 (G78 of system B). Raises ProgramError if a value is missing."""
     x0, z0 = state.get_position(code)
     lead = read_lead(state, statement, code)
     taper = read_taper(state, statement)
@@ -73,14 +73,14 @@ class FanucThreadValues:
 
 
 def is_first_of_two_lines(statement: SourceStatement) -> bool:
-    """Return whether a G76 line is the first of two lines, which has no end point."""
+    """Return whether a G76 line is the first of two lines; such a line has no end point."""
     return not any(each.letter in "XZUW" for each in statement.words)
 
 
 def append_thread_cycle(
     state: SourceState, statement: SourceStatement, code: SourceWord, first_line_values: FanucThreadValues
 ) -> None:
-    """Append the passes of G76. Raises ProgramError."""
+    """Append the passes of G76. Raises ProgramError if a required word is missing or invalid."""
     x0, z0 = state.get_position(code)
     lead = read_lead(state, statement, code)
     x, z = state.find_target(statement)
@@ -147,7 +147,7 @@ def _cut_depths(depth: float, first: float, least: float) -> list[float]:
 
 
 def append_linuxcnc_thread_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the passes of the LinuxCNC cycle G76. Raises ProgramError."""
+    """Append the passes of the LinuxCNC G76. Raises ProgramError if a word is missing or invalid."""
     x0, z0 = state.get_position(code)
     words = {letter: statement.find_word(letter) for letter in "PZIJKRQHEL"}
     for letter in "PZIJK":

@@ -1,4 +1,4 @@
-"""Extraction of a contour from a drawing: element ends are joined, and the outer or inner side is traced.
+"""Extraction of a contour from a drawing: its elements are joined, and one side is traced.
 
 All points are (r, z) in mm, measured from the spindle axis and from the Z zero of the lathe.
 """
@@ -69,7 +69,7 @@ def split_element(element: Element, points: Iterable[Point]) -> list[Element]:
 
 @dataclass(slots=True)
 class _Nodes:
-    """Points at which element ends meet. Points within the gap share one node."""
+    """Points at which element ends meet. Ends that are closer than the gap share one node."""
 
     gap_mm: float
     points: list[Point] = field(default_factory=list)
@@ -162,7 +162,7 @@ def _moved(element: Element, a: Point, b: Point) -> Element:
 
 
 def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
-    """Return the number of the connected group for each node, as the number of one of its nodes."""
+    """Return for each node the number of one node that represents its connected group."""
     owner = list(range(count))
 
     def root(n: int) -> int:
@@ -177,7 +177,7 @@ def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
 
 
 def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
-    """Split elements where the end of another element touches them, such as the edge of a shoulder."""
+    """Split elements where the end of another element touches them, for example at a shoulder."""
     if not elements:
         return []
     boxes = [each.bounding_box for each in elements]
@@ -204,7 +204,7 @@ def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element
 
 
 def _touch(element: Element, point: Point, gap: float) -> Point | None:
-    """Return the point at which a point touches an element between its ends, or None."""
+    """Return where a point touches an element between its ends, or None if it does not."""
     along = element.get_distance_from_start(point)
     if not gap < along < element.length - gap:
         return None
@@ -216,7 +216,7 @@ def _touch(element: Element, point: Point, gap: float) -> Point | None:
 
 
 def trace_outer_side(group: ElementGroup, gap: float = DEFAULT_GAP_MM) -> list[Element]:
-    """Return the elements from the foremost point along the outside to the end at the chuck.
+    """Return the elements along the outside, from the foremost point to the end at the chuck.
 
     Raises DrawingError if the contour crosses itself or the axis, or if no element ends at its front.
     """
@@ -248,7 +248,7 @@ def trace_inner_side(group: ElementGroup, gap: float = DEFAULT_GAP_MM) -> list[E
 def _foremost(group: ElementGroup, gap: float) -> int:
     """Return the node number of the frontmost element end that is nearest to the axis.
 
-    Raises DrawingError.
+    Raises DrawingError if the foremost point is in the middle of an arc.
     """
     front = _at_front(group, gap)
     if not front:
@@ -289,7 +289,7 @@ def _walk(
 ) -> list[Element]:
     """Return the elements along one side of the contour.
 
-    At each node the path follows the first element next to the empty side. It leaves dead ends again.
+    At each node the path follows the first element next to the empty side. The path returns from dead ends.
     """
     at_node: dict[int, list[int]] = {}
     for number, ends in enumerate(group.element_end_nodes):
@@ -331,7 +331,7 @@ def _next(
     back: float,
     hand: float,
 ) -> int | None:
-    """Return the number of the next element at a node, or None.
+    """Return the number of the next element at a node, or None if there is none.
 
     This is the first element found when turning in the direction ``hand`` from the incoming direction.
     """
@@ -392,7 +392,7 @@ def _no_crossing(walked: Sequence[Element]) -> None:
 
 
 def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of every two elements whose bounding boxes overlap, the smaller number first.
+    """Yield the numbers of each pair of elements with overlapping bounding boxes, smaller first.
 
     The elements are compared in a sweep along Z.
     """

@@ -33,7 +33,7 @@ class DrawingError(CodedError, ValueError):
 
 @dataclass(frozen=True, slots=True)
 class DrawnElement:
-    """An element of a drawing with its layer; points are (y, x), and x is along Z."""
+    """An element of a drawing with its layer. Points are (y, x), where x is along Z."""
 
     element: Element
     layer: str = ""
@@ -45,7 +45,7 @@ class Drawing:
     """A drawing as lines and arcs.
 
     ``unit_mm`` is the size of one drawing unit in mm, or 0 if the file does not specify it.
-    ``omitted_counts`` is the number of omitted objects by kind, such as texts and dimensions.
+    ``omitted_counts`` contains the number of omitted objects, such as texts and dimensions, by kind.
     """
 
     name: str
@@ -229,7 +229,7 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
     """Limit the processor time of this thread in the ``with`` block to ``limit_s`` seconds.
 
-    ``report_elapsed`` is called with the processor time used so far in seconds.
+    ``report_elapsed`` is called with the processor time in seconds that has been used.
     """
     token = _limit.set(_Limit(time.thread_time(), limit_s, report_time))
     try:
@@ -241,7 +241,7 @@ def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READIN
 def check_work_limit() -> None:
     """Check the work limit inside a loop over elements.
 
-    Raises DrawingError at the limit, or the exception that ``report_elapsed`` raises.
+    Raises DrawingError if the limit is exceeded, or the exception that ``report_elapsed`` raises.
     """
     limit = _limit.get()
     if limit is None:

@@ -36,7 +36,7 @@ def limit_process(memory: int, seconds: int) -> None:
 
 
 def read_and_encode(path: Path) -> bytes:
-    """Read a drawing; return it encoded, or return the encoded error."""
+    """Read a drawing and return it as bytes; if reading fails, return the error as bytes."""
     try:
         return encode_drawing(read_drawing(path))
     except DrawingError as error:

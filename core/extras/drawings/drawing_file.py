@@ -23,7 +23,7 @@ def has_drawing_suffix(name: str) -> bool:
 def read_drawing(path: Path) -> Drawing:
     """Return the lines and arcs of a drawing.
 
-    Raises only DrawingError. The text of the error is never the message of a library.
+    Raises only DrawingError, whose text is never the message of a library.
     """
     if not has_drawing_suffix(path.name):
         raise DrawingError(

@@ -26,7 +26,7 @@ _MEETS = 1e-3  # fraction of the drawing's width within which ends meet
 
 
 class FaceEnd(StrEnum):
-    """End of the drawn axis at which the face of the part is."""
+    """The end of the drawn axis at which the part's face is."""
 
     RIGHT = "RIGHT"
     LEFT = "LEFT"
@@ -48,7 +48,7 @@ class ContourSide(StrEnum):
 
 
 class DrawingAxis(NamedTuple):
-    """An axis in the drawing: its name, one point and its direction, the latter two as (y, x)."""
+    """An axis in the drawing: its name, and one point and the direction, both as (y, x)."""
 
     name: str
     point: Point
@@ -111,7 +111,7 @@ def _contour_lines(drawing: Drawing, layer: str) -> list[DrawnElement]:
 def _centre_lines(drawing: Drawing) -> list[DrawingAxis]:
     """Return the center lines, identified by line type or layer.
 
-    Horizontal lines are before vertical lines, and longer lines before shorter ones.
+    Horizontal lines come first, then vertical lines; in each group longer lines come first.
     """
     lines = [
         each.element for each in drawing.elements if each.is_center_line and isinstance(each.element, Line)
@@ -161,7 +161,7 @@ def _met(end: Point, others: Iterable[Element], wide: float) -> bool:
 
 
 def make_axis_from_line(drawing: Drawing, number: int) -> DrawingAxis:
-    """Return the line with this number as an axis. Numbers start at 1. Raises DrawingError."""
+    """Return line ``number`` (from 1) as an axis. Raises DrawingError if it is missing or an arc."""
     if not 1 <= number <= len(drawing.elements):
         raise DrawingError(
             Message(
@@ -268,8 +268,8 @@ def _touches(net: ElementGroup, gap: float) -> bool:
 class ContourProfile:
     """One side of the contour from the face to the chuck, as (r, z) in mm.
 
-    ``widest_closed_gap_mm`` is the widest gap that was closed. ``front_z_mm`` and ``back_z_mm`` are the
-    ends of the part along Z.
+    ``widest_closed_gap_mm`` is the width of the widest gap that was closed. ``front_z_mm`` and
+    ``back_z_mm`` are the ends of the part along Z.
     """
 
     elements: tuple[Element, ...]
@@ -285,7 +285,7 @@ def extract_profile(
     group: ElementGroup,
     side: ContourSide = ContourSide.OUTSIDE,
 ) -> ContourProfile:
-    """Return the chosen side of a contour, with Z zero as selected in the placement. Raises DrawingError."""
+    """Return one side of a contour, with the chosen Z zero. Raises DrawingError if tracing fails."""
     try:
         walked = (
             trace_inner_side(group, placement.gap)

@@ -47,8 +47,8 @@ def read_in_process(
 ) -> Drawing:
     """Return the lines and arcs of a drawing, read in a separate process.
 
-    ``check_canceled`` is called repeatedly with the elapsed seconds. Raises DrawingError, or the exception
-    that ``check_canceled`` raises.
+    ``check_canceled`` is called repeatedly with the elapsed seconds. Raises DrawingError if reading fails,
+    or the exception that ``check_canceled`` raises.
     """
     begun = time.monotonic()
     words = [str(path.absolute()), str(limits.memory_bytes), str(limits.processor_time_s)]

@@ -42,7 +42,7 @@ The second argument is the maximum deviation of the arcs from a curve.
 
 
 def read_dxf(path: Path, data: bytes) -> Drawing:
-    """Return the drawing of a DXF file with these contents. Raises DrawingError and errors of ezdxf."""
+    """Return the drawing of a DXF file. Raises DrawingError or an ezdxf error if it is invalid."""
     document = _document(path, data)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()
@@ -88,9 +88,9 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
 
 
 def _content(document: Document, block: str) -> BlockContent:
-    """Return the content of a block, or of the model space if ``block`` is empty.
+    """Return the content of a block, or of the model space if ``block`` is an empty string.
 
-    The entities of the model space itself are not counted.
+    For the model space, its own entities are not counted.
     """
     entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
     own = 1 + len(entities) if block else 0
@@ -141,7 +141,7 @@ def _centre(layer: str, linetype: str) -> bool:
 
 
 def _expand_blocks(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
-    """Yield the entities, with block references replaced by their entities.
+    """Yield the entities, with each block reference replaced by the block's entities.
 
     Dimensions and texts are not expanded. Raises DrawingError if blocks are nested too deeply.
     """

@@ -1,6 +1,6 @@
 """Comparison of the proved part with its drawing.
 
-The comparison finds remaining material and cuts that are too deep.
+The comparison finds material that remains and cuts that are too deep.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 class PartDeviation:
     """A deviation of the part from the drawing between two Z positions in mm.
 
-    ``max_deviation_mm`` is the largest difference of the radius in mm, positive if material remains.
+    ``max_deviation_mm`` is the largest difference of the radius in mm; it is positive if material remains.
     """
 
     back_z_mm: float
@@ -43,8 +43,8 @@ class PartDeviation:
 class DrawingComparison:
     """Result of a comparison of a part with its drawing.
 
-    ``worst_deviation_mm`` is the largest difference within the tolerance in mm. ``deviations`` contains the
-    deviations in order from the face.
+    ``worst_deviation_mm`` is the largest difference in mm that is still within the tolerance.
+    ``deviations`` contains the deviations in order from the face.
     """
 
     worst_deviation_mm: float
@@ -54,7 +54,7 @@ class DrawingComparison:
 def compare_part(
     profile: ContourProfile, part: Sequence[tuple[float, float]], tolerance: float = DEFAULT_TOLERANCE_MM
 ) -> DrawingComparison:
-    """Compare one side of the part with the profile of the drawing.
+    """Compare one side of the part with the drawing's profile.
 
     ``part`` contains points (z, r) in order from the face. ``tolerance`` is in mm.
     """

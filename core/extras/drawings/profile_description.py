@@ -1,4 +1,4 @@
-"""Functions for a program made from a drawing: proposed fields, remaining material and required offsets."""
+"""Functions for programs from drawings: proposed fields, remaining material, required offsets."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def propose_fields(
 ) -> dict[str, FieldValue]:
     """Return the fields for ``make_profile_program``.
 
-    The fields are the given values, and proposals for the other fields.
+    The result contains the given values, and proposals for all other fields.
     """
     inside = profile.side is ContourSide.INSIDE
     fields: dict[str, FieldValue] = {"UNIT": "METRIC" if is_metric else "INCH", **given_values}

@@ -126,7 +126,7 @@ def make_profile_program(
 
 
 class _Writer:
-    """Writer of consecutive shapes, each with the settings that are active after the previous lines."""
+    """Writer of consecutive shapes, each with the settings that the preceding lines leave active."""
 
     def __init__(self, lines: list[str], settings: ProgramSettings) -> None:
         self.lines, self.shapes = lines, list[tuple[FilledShape, ProgramSettings]]()
@@ -142,7 +142,7 @@ class _Writer:
         return SHAPES_BY_DIALECT[self._new.dialect][key]
 
     def add(self, key: str, typed: FieldValues, rows: tuple[ContourPoint, ...] = ()) -> None:
-        """Add a shape by the key of its form, unless the shape has errors."""
+        """Add the shape of a form, selected by its key, unless the shape has errors."""
         now = self.current_settings
         one = fill_shape(self._shape(key), typed, now, rows)
         refused = one.find_errors(now)
@@ -155,7 +155,7 @@ class _Writer:
         self.lines += one.make_lines(now)
 
     def add_groove(self, typed: FieldValues | str, groove: OmittedGroove) -> Iterator[UncutRange]:
-        """Add a groove, or yield its range with the reason if the groove cannot be cut."""
+        """Add a groove; if the groove cannot be cut, yield its range with the reason instead."""
         span = groove.back_edge[1], groove.front_edge[1]
         if isinstance(typed, str):
             yield UncutRange(*span, typed)
@@ -200,7 +200,7 @@ def _calculate_allowance(
     """Return the finishing allowance that the nose radius requires.
 
     The result is empty unless it is larger than the usual allowance. G75 has no nose compensation. On a
-    falling contour of angle a, the nose radius R cuts R (1 + sin a - cos a) too deep.
+    contour that falls at the angle a, the nose radius R cuts R (1 + sin a - cos a) too deep.
     """
     if settings.dialect is Dialect.SINUMERIK:
         return {}  # CYCLE95 compensates the nose radius
@@ -235,7 +235,7 @@ def _check_tip(tool: ToolShape | None, number: float, settings: ProgramSettings)
 def find_nose_radius(tool: ToolShape | None) -> float:
     """Return the nose radius in mm from the tool data.
 
-    If it is not specified there, the radius of the insert code is returned.
+    If the tool data does not specify it, the radius in the insert code is returned.
     """
     if tool is None or tool.nose_radius or not tool.insert:
         return tool.nose_radius if tool is not None else 0.0
@@ -243,7 +243,7 @@ def find_nose_radius(tool: ToolShape | None) -> float:
 
 
 def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
-    """Return the offset with which a touched-off tip cuts to size, or None if no compensation is used.
+    """Return the offset with which a touched-off tip cuts to size, or None without compensation.
 
     In SINUMERIK the cutting edge also contains the nose radius and the tip quadrant.
     """
@@ -280,8 +280,8 @@ def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterato
 def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> Iterator[Element]:
     """Yield the contour, extended along Z by ``distance`` unless it ends in a wall.
 
-    After a fall of angle a, the nose radius R leaves the contour later by R tan (a / 2), and the
-    compensation needs this travel.
+    After a fall of angle a, a tool with the nose radius R leaves the contour later by R tan (a / 2), and
+    the compensation needs this travel.
     """
     yield from elements
     (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
@@ -333,7 +333,7 @@ def _row(point: tuple[float, float], mm: float, arc: float) -> ContourPoint:
 
 
 def _find_blade_clearance(elements: Iterable[Element], groove: OmittedGroove, side: float) -> float:
-    """Return the radius in mm that the blade must clear on its path from the face, or 0."""
+    """Return the radius in mm that the blade must clear as it moves from the face, or 0."""
     before = [
         p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front_edge[1] - _SAME
     ]

@@ -109,7 +109,7 @@ def _joint(a: CurvePoint, b: CurvePoint) -> Point | None:
 
 
 def _bulge(at: Point, tangent: Point, to: Point) -> float:
-    """Return the bulge of an arc from its start point, the direction at its start, and its end point."""
+    """Return the bulge of an arc, given its start point, start direction and end point."""
     dx, dy = to[0] - at[0], to[1] - at[1]
     half = math.atan2(tangent[0] * dy - tangent[1] * dx, tangent[0] * dx + tangent[1] * dy)
     return 0.0 if abs(half) < STRAIGHT_TOLERANCE else math.tan(half / 2.0)
@@ -185,7 +185,7 @@ def check_expansion(
 
 
 def _count(name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent]) -> int:
-    """Count entities depth first without recursion, because a file may nest deeper than Python's stack."""
+    """Count entities depth first, without recursion because blocks may be nested too deep for Python."""
     known: dict[Hashable, int] = {}
     waiting: dict[Hashable, BlockContent] = {}
     stack: list[Hashable] = [root]

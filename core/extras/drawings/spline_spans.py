@@ -1,7 +1,7 @@
 """Spans of a spline between its knots, and a fit of two arcs to all spans at once.
 
-A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all are so short that two arcs fit
-them. The fit is the same as in ``reader_tools.fit_arcs``, which halves the other spans.
+A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all of them are so short that two arcs
+fit. The fit is the same as in ``reader_tools.fit_arcs``, which halves the spans that two arcs do not fit.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def make_span_curve(spans: SplineSpans, number: int) -> CurveFunction:
 
 
 def fit_biarcs(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
-    """Yield two arcs for each span, or None if no two arcs are within ``tolerance`` of the span."""
+    """Yield two arcs for each span, or None for a span that no two arcs fit within ``tolerance``."""
     for first in range(0, len(spans.parameter_lengths), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         with np.errstate(all="ignore"):
@@ -148,7 +148,7 @@ def _points(control: FloatArray, u: float) -> FloatArray:
 
 
 def _ends(spans: SplineSpans, u: float) -> tuple[FloatArray, FloatArray]:
-    """Return the points of the spans at ``u``, and the directions there, measured just inside the spans."""
+    """Return the span points at ``u``, and the directions measured just inside the spans."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
     pair = _levels(spans.control_points, held, 2)
     p, q = pair[:, 0], pair[:, 1]
@@ -160,7 +160,7 @@ def _ends(spans: SplineSpans, u: float) -> tuple[FloatArray, FloatArray]:
 def _joints(
     a: FloatArray, start_tangents: FloatArray, b: FloatArray, end_tangents: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the points at which both arcs meet, and whether each point exists (see ``reader_tools``)."""
+    """Return the points at which both arcs meet, and whether each of these points exists."""
     sizes = np.array([np.hypot(*start_tangents.T), np.hypot(*end_tangents.T)])
     one, other, v = start_tangents / sizes[0][:, None], end_tangents / sizes[1][:, None], b - a
     vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)

@@ -59,8 +59,8 @@ _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 def read_svg(name: str, data: bytes) -> Drawing:
     """Return the drawing of an SVG text.
 
-    The size of the drawing unit is known only if the width in the file has a unit. Raises DrawingError and
-    errors of svgelements.
+    The size of the drawing unit is known only if the width in the file has a unit. Raises DrawingError, or
+    an error of svgelements, if the text is invalid.
     """
     left_out: Counter[str] = Counter()
     shapes = _shapes(name, data)
@@ -107,7 +107,7 @@ def _shapes(name: str, data: bytes) -> Any:
 def _check_elements(name: str, text: bytes) -> None:
     """Reject dimensions that are not numbers, and reused groups (``<use>``) with too many elements.
 
-    Raises DrawingError or ParseError.
+    Raises DrawingError if the drawing is rejected, or ParseError if the XML is invalid.
     """
     root = ElementTree.fromstring(text)
     by_id: dict[str, list[Element_]] = {}
@@ -126,7 +126,7 @@ def _check_elements(name: str, text: bytes) -> None:
 
 
 def _check_numbers(name: str, element: Element_) -> None:
-    """Raise DrawingError for a dimension that is not a number, because svgelements would omit the element."""
+    """Raise DrawingError if a dimension is not a number; svgelements would silently omit the element."""
     for dimension in _DIMENSIONS.intersection(element.keys()):
         if _NO_NUMBER.search(element.get(dimension, "")):
             kind = str(element.tag).rpartition("}")[2]

@@ -1,7 +1,7 @@
 """Contour that a turning tool can follow with its nose, without grooves and faces.
 
-The calculation is for the outside. The wall of a bore is mirrored about the axis before and after the
-calculation.
+The calculation is for an outside contour. The wall of a bore is mirrored about the axis before and after
+the calculation.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReac
 
 
 def _straight(points: Sequence[Point]) -> float | None:
-    """Return the angle between the axis and the first straight piece of an edge after the nose, or None."""
+    """Return the angle between the axis and an edge's first straight piece after the nose, or None."""
     for (z0, r0), (z1, r1) in pairwise(points):
         if math.hypot(z1 - z0, r1 - r0) > _CHORD:
             return math.atan2(abs(r1 - r0), abs(z1 - z0))
@@ -128,7 +128,7 @@ def _turned_back(made: TurningContour) -> TurningContour:
 
 
 def _monotone(elements: Iterable[Element]) -> list[Element]:
-    """Return the elements with arcs split at their extreme points in Z and r."""
+    """Return the elements, with arcs split where Z or r has an extreme value."""
     found: list[Element] = []
     for each in elements:
         if isinstance(each, Arc):
@@ -184,7 +184,7 @@ def _replace_under_lip(contour: list[Element], lip: Point) -> None:
 def _add_wall_under_edge(contour: list[Element], elements: Sequence[Element], at: int, edge: Point) -> int:
     """Add a wall from an edge to the point where the contour reappears.
 
-    Return the number of the next element.
+    Return the number of the next element after the wall.
     """
     while at < len(elements) and elements[at].end[1] >= edge[1] - _SAME:
         at += 1
@@ -260,7 +260,7 @@ def _not_too_steep(kept: Iterable[Element], reach: ToolReach) -> None:
 def _bridged(
     elements: list[Element], fall: float, left: list[tuple[float, float, str]]
 ) -> tuple[list[Element], list[OmittedGroove]]:
-    """Return the contour without ranges that are too steep for the tool, and these ranges as grooves.
+    """Return the contour without the ranges that are too steep, and these ranges as grooves.
 
     A range is too steep if it falls more steeply than the edge of the tool.
     """
@@ -304,9 +304,9 @@ def _level(a: Point, b: Point) -> list[Element]:
 
 
 def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
-    """Return the element and the point at which a falling contour returns to the height of its edge.
+    """Return the element and the point at which a falling contour is again as high as its edge.
 
-    If the contour does not return, the result is the number of elements and None.
+    If the contour does not return to this height, the result is the number of elements and None.
     """
     edge = elements[at].start
     for number in range(at, len(elements)):
@@ -320,7 +320,7 @@ def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
 
 
 def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add the elements of a fall that the tool can follow; return the number of the next element."""
+    """Add the falling elements that the tool can follow; return the number of the next element."""
     while _fall(elements[at]) <= most:
         kept.append(elements[at])
         at += 1
@@ -335,7 +335,7 @@ def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) 
 
 
 def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add a line from an edge to the contour along the steepest slope of the tool.
+    """Add a line from an edge to the contour along the steepest slope that the tool permits.
 
     Return the number of the next element.
     """
@@ -398,7 +398,7 @@ def add_nose_fillets(
 ) -> tuple[Element, ...]:
     """Return the contour with fillets where a nose of this radius in mm would not fit.
 
-    If no continuous path remains, the contour is returned unchanged, and the proof of the program reports
+    If no continuous path remains, the contour is returned unchanged; the proof of the program then reports
     the location.
     """
     contour = tuple(mirror_elements(elements)) if is_inside else tuple(elements)
@@ -414,7 +414,7 @@ def add_nose_fillets(
 
 
 def _without_slivers(contour: Sequence[Element]) -> Iterator[Element]:
-    """Yield the contour without arcs that are too short to be programmed with rounded coordinates."""
+    """Yield the contour without arcs that are too short for rounded coordinates."""
     for number, each in enumerate(contour):
         short = isinstance(each, Arc) and each.length < _SLIVER and abs(each.sweep_rad) < _STRAIGHT
         if not short or number in {0, len(contour) - 1}:
@@ -426,7 +426,7 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
 
 
 def _follows(contour: Sequence[Element], nose_radius: float) -> bool:
-    """Return whether nose compensation can follow the contour, using the control's own offset calculation."""
+    """Return whether nose compensation can follow the contour; the control's own calculation decides."""
     try:
         offset_known_contour(contour, nose_radius)
     except GougeError:

@@ -1,4 +1,4 @@
-"""Tables [status_page] and [announce] of the machine file, for the office page, MQTT broker and web hook."""
+"""Tables [status_page] and [announce] of the machine file: office page, MQTT broker and web hook."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class AnnounceTable:
     """Settings of the MQTT broker (``host:port``) and of the web hook.
 
     An empty address disables the broker or the web hook. ``again`` is the time in seconds after which
-    TurnDesk tries again to reach a broker or host that did not respond.
+    TurnDesk retries a broker or host that did not respond.
     """
 
     mqtt: str = declare_key(

@@ -85,7 +85,7 @@ def calculate_capability(
 def _indices(
     mean: float, sigma: float, lower: float | None, upper: float | None
 ) -> tuple[float | None, float | None]:
-    """Return two capability indices, one without and one with the position of the mean.
+    """Return two capability indices: one ignores the position of the mean, the other includes it.
 
     The first index is the tolerance divided by six standard deviations. The second index is the distance
     from the mean to the nearer limit, divided by three standard deviations.
@@ -173,7 +173,7 @@ def make_charts(values: Sequence[float], sample_size: int) -> ControlChartPair:
     """Return the control charts of values in the order of the parts.
 
     If ``sample_size`` is 1, the charts are for individuals, otherwise X-bar/R. An incomplete last sample is
-    omitted. Raises QualityError.
+    omitted. Raises QualityError if the sample size is not supported or there are too few values.
     """
     if sample_size == 1:
         return make_individuals_charts(values)
@@ -192,7 +192,7 @@ def make_charts(values: Sequence[float], sample_size: int) -> ControlChartPair:
 
 
 def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
-    """Return the X-bar/R charts of a table with one sample in each row. Raises QualityError."""
+    """Return X-bar/R charts, one sample per row. Raises QualityError if the samples are unsuitable."""
     table = np.asarray(samples, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
         raise QualityError(
@@ -221,7 +221,7 @@ def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
 def make_individuals_charts(values: Sequence[float]) -> ControlChartPair:
     """Return the charts of individuals and of moving ranges of two values.
 
-    The limits of the individuals are at 3/d2 = 2.660 mean ranges. Raises QualityError.
+    The individuals' limits are at 2.660 (3/d2) mean ranges. Raises QualityError for fewer than 2 values.
     """
     points = np.asarray(values, dtype=np.float64)
     _demand_finite(points)
@@ -250,7 +250,7 @@ ZoneArray = npt.NDArray[np.float64]
 
 
 class RuleViolation(NamedTuple):
-    """A violated rule: the index of the last point of the run (from 0), the rule's number, and its text."""
+    """A violated rule: the index (from 0) of the run's last point, the rule's number, and its text."""
 
     point_index: int
     rule_number: int

@@ -1,9 +1,9 @@
 """Measured feature of a part: nominal size, limits, correcting offset and proposed correction.
 
 Lengths are in mm, and diameters are not halved. ``grows`` is +1 if the feature becomes larger with a larger
-correction, or -1 if it becomes smaller. Any diameter, outside or inside, becomes larger with X of a tool at
-positive X, and smaller with X of a tool at negative X. For a length, the sign depends on the end that the
-tool cuts.
+correction, or -1 if it becomes smaller. A larger X increases any diameter, outside or inside, if the tool
+is at positive X, and decreases it if the tool is at negative X. For a length, the sign depends on the end
+that the tool cuts.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ class CorrectionRule:
 class CorrectionProposal:
     """A proposed correction of a feature.
 
-    ``change_mm`` is the change of the size in mm (of the diameter for a diameter), or 0 for no correction.
+    ``change_mm`` is the change of the size in mm (for a diameter: of the diameter), or 0 for none.
     """
 
     feature: MeasuredFeature

@@ -1,4 +1,4 @@
-"""Analysis of production stops: Pareto analysis of the reasons, times between stops, and availability.
+"""Analysis of production stops: Pareto analysis, times between stops, and availability.
 
 The availability of a shift is the fraction of its time in which parts were made (ISO 22400-2).
 """
@@ -13,7 +13,7 @@ from core.message import Message
 
 
 class ProductionStop(NamedTuple):
-    """A production stop with its reason, and with its start and duration in seconds of one clock."""
+    """A production stop: its reason, and its start and duration in seconds of one clock."""
 
     reason: str
     start_s: float

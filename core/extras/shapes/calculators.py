@@ -126,7 +126,7 @@ TAPER_CALCULATOR = Shape(
 
 
 def _around(values: FieldValues, settings: ProgramSettings) -> float:
-    """Return the rpm for one unit of surface speed, or 0 if the diameter is unknown."""
+    """Return the rpm that corresponds to a surface speed of 1, or 0 if the diameter is unknown."""
     across = number(values, "DIA")
     return (_MILLIMETRES if settings.metric else _INCHES) / (math.pi * across) if across else 0.0
 
@@ -285,7 +285,7 @@ def _thread_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fi
 
 
 def _passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the number of passes for the specified first depth.
+    """Return the number of passes that results from the specified first depth.
 
     If no first depth is specified, the number that insert makers recommend is returned.
     """

@@ -26,7 +26,7 @@ MAX_RPM = 100_000.0
 def make_tool_field(*kinds: ToolKind) -> ShapeField:
     """Return a tool field with a proposal.
 
-    The proposal is the first unused tool of these kinds, or the next free number if there is no such tool.
+    The proposal is the first unused tool of these kinds, otherwise the next free number.
     """
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
@@ -43,14 +43,14 @@ def make_tool_field(*kinds: ToolKind) -> ShapeField:
 
 
 def find_next_tool(settings: ProgramSettings) -> int:
-    """Return the next number after the largest used tool that is not in the tool data."""
+    """Return the first number above all used tool numbers that is not in the tool data."""
     first = max(settings.used, default=0) + 1
     free = (n for n in range(first, _MOST_TOOL + 1) if n not in settings.shop.tools)
     return next(free, min(first, _MOST_TOOL))
 
 
 def propose_bar_diameter(_values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the bar diameter that the program head specifies as the proposal."""
+    """Return the bar diameter specified in the program head as a proposal."""
     return settings.bar or None
 
 

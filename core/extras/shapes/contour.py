@@ -1,4 +1,4 @@
-"""Contour as a table of points with X, Z, chamfer or radius, and arc, and its conversion to lines."""
+"""Contour as a table of points (X, Z, chamfer or radius, arc), and its conversion to lines."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class ContourPoint:
     """A point of a contour.
 
     ``x`` is a diameter, or None if X is unchanged. ``arc`` is the radius of the arc that leads to the
-    point, positive for G02 and negative for G03. ``chamfer`` or ``radius`` is the corner between the lines
-    that meet at the point.
+    point, positive for G02 and negative for G03. ``chamfer`` or ``radius`` is the size of the corner
+    between the lines that meet at the point.
     """
 
     x: float | None = None
@@ -59,7 +59,7 @@ def resolve_points(rows: Iterable[ContourPoint]) -> list[Point]:
 
 
 def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
-    """Return the rows from which these lines were made, or None if a line has other contents."""
+    """Return the rows that produce these lines, or None if a line has other contents."""
     if settings.dialect is Dialect.SINUMERIK:
         return _read_sinumerik(lines, settings)
     rows = []
@@ -76,7 +76,7 @@ def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[Conto
 
 
 def _read_sinumerik(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
-    """Return the rows of SINUMERIK lines, or None. G3 is a convex arc when X is drawn upward."""
+    """Return the rows of SINUMERIK lines, or None. With X drawn upward, G3 is a convex arc."""
     rows = []
     scale = 1.0 if settings.diameter else 2.0
     for line in lines:
@@ -94,7 +94,7 @@ def _read_sinumerik(lines: Iterable[str], settings: ProgramSettings) -> tuple[Co
 
 
 def find_contour_errors(rows: Sequence[ContourPoint]) -> Iterator[FieldError]:
-    """Yield the errors in a table of points in the order of the rows."""
+    """Yield the errors in a table of points, in row order."""
     if len(rows) < 2:
         yield FieldError(
             make_point_label(len(rows) + 1), "A contour needs at least two points: enter the next point."

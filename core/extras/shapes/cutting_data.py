@@ -102,7 +102,7 @@ _SURE_RPM = 50.0  # rpm are rounded down to multiples of this value
 
 
 def find_cutting_data(settings: ProgramSettings) -> CuttingData:
-    """Return the cutting data of the material that the program head specifies, or conservative values."""
+    """Return the cutting data of the material in the program head, otherwise conservative values."""
     return CUTTING_DATA.get(settings.material, CONSERVATIVE_DATA)
 
 

@@ -88,7 +88,7 @@ class FilledShape:
         return 0.0 if isinstance(value, str) else float(value)
 
     def get_text(self, word: str) -> str:
-        """Return the value of a text field, or an empty text if it is missing."""
+        """Return the value of a text field, or an empty string if it is missing."""
         value = self.values.get(word, "")
         return value if isinstance(value, str) else ""
 
@@ -106,7 +106,7 @@ class FilledShape:
         return found or [*self._tool(settings), *self.shape.find_field_conflicts(self, settings)]
 
     def _tool(self, settings: ProgramSettings) -> Iterator[FieldError]:
-        """Yield an error if the tool data specifies a kind of tool that the shape cannot use."""
+        """Yield an error if the shape cannot use the kind of tool that the tool data specifies."""
         known, sheet = self.shape.find_field(TOOL_FIELD_WORD), settings.tool(self.get_number(TOOL_FIELD_WORD))
         if known is not None and sheet is not None and sheet.kind not in {*known.tool_kinds, ToolKind.FORM}:
             wanted = " or ".join(known.tool_kinds)
@@ -170,7 +170,7 @@ def fill_shape(
 
 
 def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None:
-    """Return the values from the words of a comment after the shape's name, or None if they are invalid."""
+    """Return the field values from a comment after the shape's name, or None if they are invalid."""
     if len(words) % 2:
         return None
     found: dict[str, FieldValue] = {}

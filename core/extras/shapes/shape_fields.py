@@ -144,7 +144,7 @@ def number(values: FieldValues, word: str) -> float:
 
 
 def text(values: FieldValues, word: str) -> str:
-    """Return the value of a text field, or an empty text if it is missing."""
+    """Return the value of a text field, or an empty string if it is missing."""
     value = values.get(word, "")
     return value if isinstance(value, str) else ""
 
@@ -155,7 +155,7 @@ DEFAULT_TOOL_CHANGE_Z = {False: 1.0, True: 25.0}  # by metric; default Z of the 
 
 @dataclass(frozen=True, slots=True)
 class ShopData:
-    """Data of the machine and its tools.
+    """Data of the machine and its tools for proposals.
 
     The data include the maximum rpm, the live tool, and the tools by T number in mm.
     """
@@ -196,7 +196,7 @@ class ProgramSettings:
 
     @property
     def near(self) -> float:
-        """Return the distance from the part at which a rapid ends."""
+        """Return the distance from the part at which a rapid toward the part ends."""
         return _NEAR[self.metric]
 
     @property

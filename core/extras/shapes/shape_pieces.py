@@ -1,4 +1,4 @@
-"""Shapes in the text of a program, which are found by their comments, compared, written and replaced.
+"""Shapes in the text of a program, which are found by their comments, compared and rewritten.
 
 A shape is intact if its fields produce the lines in the text. If a value was changed by hand and one field
 explains the change, the field adopts the new value. Otherwise the shape is reported as changed.
@@ -74,7 +74,7 @@ class ShapePiece:
 def strip_line(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
     """Return a line in capitals, without comment and spaces.
 
-    A line that switches planes remains complete. In SINUMERIK, the block number is also removed.
+    A line that switches planes is not removed as a comment. In SINUMERIK, the block number is removed.
     """
     bare = line.strip()
     if dialect is Dialect.SINUMERIK:
@@ -90,7 +90,7 @@ def ends_program(line: str, dialect: Dialect) -> bool:
 
 
 def starts_subroutine(line: str) -> bool:
-    """Return whether a line starts a subroutine that a form has written or into which it can write."""
+    """Return whether a line starts a subroutine that a form has written or that a form can extend."""
     return line.lstrip().upper().startswith(_BEGINS)
 
 
@@ -179,8 +179,8 @@ def find_damaged_comment(
 ) -> tuple[int, Shape] | None:
     """Return the line and the shape of a damaged comment at or above line ``line_number``, or None.
 
-    Lines are counted from 0. A damaged comment begins with the name of a shape and still has two of its
-    fields. The fields are required because programmers also use names such as DRILL in comments.
+    Lines are counted from 0. A damaged comment begins with the name of a shape and still has two of the
+    shape's fields, because programmers also use names such as DRILL in comments.
     """
     for line in range(min(line_number, len(lines) - 1), -1, -1):
         found = _COMMENT[dialect].search(lines[line])
@@ -374,7 +374,7 @@ def _agreeing(wanted: list[str], there: list[str]) -> int:
 def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | None:
     """Return the first number that differs, as (before, after).
 
-    The result is None if other parts of the lines differ too.
+    The result is None if anything other than numbers differs too.
     """
     if len(wanted) != len(there):
         return None
@@ -389,9 +389,9 @@ def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | 
 
 
 def _explaining(filled_shape: FilledShape, before: float, after: float) -> Iterator[tuple[str, float]]:
-    """Yield the fields whose value is in the changed word, with the new value of the field.
+    """Yield the fields that explain the changed word, each with the field's new value.
 
-    The value in the word may be unchanged, negated, doubled or halved.
+    The word may contain the value unchanged, negated, doubled or halved.
     """
     for word, value in filled_shape.values.items():
         if isinstance(value, str):
@@ -463,9 +463,9 @@ def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
 def rewrite_pieces(
     lines: Sequence[str], shop: ShopData, pieces: Sequence[ShapePiece]
 ) -> tuple[list[str], int]:
-    """Rewrite the pieces after a changed head; return the text and the number of unchanged pieces.
+    """Rewrite the pieces after the program head was changed; return the text and the unchanged count.
 
-    Pieces that were changed by hand remain unchanged.
+    Pieces that were changed by hand are not rewritten.
     """
     text, stay = list(lines), 0
     shift = 0

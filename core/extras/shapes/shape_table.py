@@ -85,7 +85,7 @@ CALCULATORS_BY_DIALECT = {Dialect.OMNITURN: CALCULATORS_BY_KEY, Dialect.SINUMERI
 
 
 def _labelled(shape: Shape) -> Shape:
-    """Return the shape with an additional label field, for a contour that CYCLE95 finds by its labels."""
+    """Return the shape with an additional label field, because CYCLE95 finds the contour by labels."""
     return replace(shape, fields=(*shape.fields, LABEL_FIELD))
 
 

@@ -1,4 +1,4 @@
-"""Program heads and templates (start, roughing, threading and bar feed), and calculators for SINUMERIK."""
+"""Program heads and templates (start, roughing, threading, bar feed), and SINUMERIK calculators."""
 
 from __future__ import annotations
 
@@ -297,7 +297,7 @@ def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) ->
 
 
 def _run_up(filled_shape: FilledShape, settings: ProgramSettings) -> FilledShape:
-    """Return the shape with a run-up of three pitches, within which the axis reaches the lead."""
+    """Return the shape with a run-up of three pitches, in which the axis can reach the lead."""
     return replace(
         filled_shape,
         values={**filled_shape.values, "RUNUP": 3.0 * filled_shape.get_number("PITCH") + settings.near},

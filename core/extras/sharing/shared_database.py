@@ -1,7 +1,7 @@
-"""Sharing of programs in a PostgreSQL database, whose rows are added in one transaction and never changed.
+"""Sharing of programs in a PostgreSQL database.
 
-Connection strings are interpreted as by libpq and shown without secrets. Connections to other computers use
-TLS.
+Rows are added in one transaction and never changed. Connection strings are interpreted as by libpq and
+shown without secrets. Connections to other computers use TLS.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _VERIFIED = {"verify-ca", "verify-full"}
 def parse_conninfo(connection_string: str) -> dict[str, str]:
     """Return the parameters of a connection string.
 
-    Raises SharingError, whose message does not contain the parameters.
+    Raises SharingError if the string is invalid; the message does not contain the parameters.
     """
     if importlib.util.find_spec("psycopg") is None:
         raise SharingErrorCause.NO_PSYCOPG.make_error("")
@@ -95,7 +95,7 @@ def require_tls(values: Mapping[str, str]) -> dict[str, str]:
 
 
 def is_server_local(values: Mapping[str, str]) -> bool:
-    """Return whether, according to the parameters, the server is on this computer."""
+    """Return whether the parameters refer to a server on this computer."""
     if "service" in values:
         return False
     hosts = values.get("hostaddr") or values.get("host") or os.environ.get("PGHOST", "")
@@ -179,7 +179,7 @@ class SharedDatabase:
             self._demand(connection)
 
     def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
-        """Return the ids of all versions, and the records of unknown versions."""
+        """Return the ids of all versions, and the records of the versions that the caller does not know."""
         with self._open_transaction() as connection:
             there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
             wanted, fresh, strays = sorted(there - known_versions.keys()), list[SharedVersion](), list[str]()
@@ -260,5 +260,5 @@ class SharedDatabase:
 
 
 def _bare(line: str) -> str:
-    """Return the cause from the message of a failed connection, without the rest of the message."""
+    """Return only the cause from the message of a failed connection."""
     return line.rpartition(" failed: ")[2].removeprefix("FATAL:")

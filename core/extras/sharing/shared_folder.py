@@ -59,7 +59,7 @@ class SharedFolder:
 
     @property
     def marker_path(self) -> Path:
-        """Return the path of the file that identifies a folder with shared programs."""
+        """Return the path of the file that marks a folder as a folder with shared programs."""
         return self._folder / MARKER_FILE_NAME
 
     def set_up(self) -> None:
@@ -76,7 +76,7 @@ class SharedFolder:
             self._demand()
 
     def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
-        """Return the versions in the folder. Only files of unknown versions are opened."""
+        """Return the versions in the folder. Files of versions known to the caller are not opened."""
         with self._system():
             self._demand()
             there, fresh, strays = set[str](), list[SharedVersion](), list[str]()
@@ -151,7 +151,7 @@ class SharedFolder:
         draft.replace(path)
 
     def _clear(self, machine_id: str) -> None:
-        """Remove unfinished files of this machine that remained after a power failure."""
+        """Remove unfinished files of this machine that a power failure has left."""
         for folder in (VERSIONS, DESKS):
             for path in (self._folder / folder).glob(f"{_WRITING}{machine_id}-*"):
                 path.unlink(missing_ok=True)

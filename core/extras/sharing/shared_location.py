@@ -41,7 +41,7 @@ class Found:
 class SharedLocation(Protocol):
     """A location where machines share programs.
 
-    Calls may take a long time, so they are made only in a worker thread. They raise SharingError.
+    Calls may take long, so they are made only in a worker thread. They raise SharingError on failure.
     """
 
     name: str  # the name in messages
@@ -53,16 +53,16 @@ class SharedLocation(Protocol):
     def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
         """Return the contents of the location.
 
-        The result contains the records of the versions that are not in ``known_versions``. The keys of
-        ``known_versions`` are ids.
+        The result contains the records of the versions that are not in ``known_versions``, whose keys are
+        ids.
         """
         ...
 
     def publish_versions(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add versions and the state of this machine, and return when they are stored permanently.
 
-        Versions that already exist remain unchanged. After a failure some versions may have been added
-        completely. The same call then adds the other versions.
+        Versions that already exist remain unchanged. After a failure, some versions may have been added
+        completely. Repeating the call then adds the other versions.
         """
         ...
 
@@ -87,7 +87,7 @@ _NOT_THERE = frozenset({errno.ENOENT, errno.ENOTDIR})
 
 
 class SharingErrorCause(Enum):
-    """Cause of a sharing error. The value of each member is the template of its message."""
+    """Cause of a sharing error. The value of each member is its message template."""
 
     AWAY = (
         "{place} does not respond ({why}); this control continues to work, and will "
@@ -137,7 +137,7 @@ class SharingErrorCause(Enum):
         return "disk-full" if self is SharingErrorCause.FULL else self.name.lower().replace("_", "-")
 
     def make_error(self, location: str, reason: object = "") -> SharingError:
-        """Return the SharingError with this cause. The reason is shown on one line."""
+        """Return a SharingError with this cause and with the reason on one line."""
         made = SharingError(
             Message(self.value, place=location, why=" ".join(str(reason).split())), self.error_code
         )

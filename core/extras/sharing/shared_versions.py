@@ -28,7 +28,7 @@ class SharedVersion(NamedTuple):
 
     @property
     def program_key(self) -> str:
-        """Return the key of the program. Names that differ only in case belong to the same program."""
+        """Return the key of the program. Names that differ only in case have the same key."""
         return make_program_key(self.program)
 
 
@@ -52,7 +52,7 @@ class ProgramVersions:
 
     @property
     def newest_versions(self) -> tuple[SharedVersion, ...]:
-        """Return the versions that no other version follows.
+        """Return the versions from which no other version was made.
 
         There is one such version, unless two machines have changed the same version.
         """
@@ -79,7 +79,7 @@ class ProgramVersions:
         return "newer" if all(map(self.is_newer, self.newest_remote_versions)) else "both"
 
     def is_derived_from(self, version: str, older: str) -> bool:
-        """Return whether ``version`` is the same as ``older``, or was made from it directly or indirectly."""
+        """Return whether ``version`` equals ``older`` or was made from it, directly or indirectly."""
         waiting, seen = [version], set[str]()
         while waiting:
             at = waiting.pop()
@@ -93,15 +93,15 @@ class ProgramVersions:
     def is_newer(self, version: SharedVersion) -> bool:
         """Return whether a version was made from the version on this machine.
 
-        If the result is False, both machines have changed the program, or two programs only have the same
-        name. If this machine has no version, the result is True.
+        If not, either both machines have changed the program, or two different programs have the same name.
+        If this machine has no version, the result is True.
         """
         return not self.local_version_id or self.is_derived_from(version.id, self.local_version_id)
 
     def find_newer_by_text(self, text: str) -> SharedVersion | None:
         """Return a version with this text (SHA-256) that is newer than the local version, or None.
 
-        A version that no other version follows is preferred.
+        A version from which no other version was made is preferred.
         """
         found = [each for each in self.versions.values() if each.text == text and self.is_newer(each)]
         newest = {each.id for each in self.newest_versions}

@@ -1,4 +1,4 @@
-"""Table [sharing] of the machine file, which specifies where this machine shares programs with others."""
+"""Table [sharing] of the machine file: where this machine shares programs with others."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _LONGEST = 40  # characters of a machine's name
 class SharingTable:
     """Settings for sharing programs.
 
-    Either ``folder`` or ``postgresql`` (a connection string of libpq) is set. ``desk`` is the name of this
-    machine that other machines show; if it is empty, the machine's own name is used. ``look`` is the time
-    between two checks for new versions, in seconds.
+    Either ``folder`` or ``postgresql`` (a connection string of libpq) is set. ``desk`` is the name under
+    which other machines show this machine; if it is empty, the machine's own name is used. ``look`` is the
+    time between two checks for new versions, in seconds.
     """
 
     folder: str = declare_key(default="", meaning="Shared folder, mounted on every computer.")

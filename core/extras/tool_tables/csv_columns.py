@@ -45,8 +45,8 @@ _SURE_RADIUS = frozenset({"xradius", "radiusx"})
 class TableColumn(NamedTuple):
     """A column of a CSV file, with its index (from 0), heading and field.
 
-    ``unit`` is the unit in the heading, or empty. ``is_radius`` is True if the heading of X states that X
-    is a radius.
+    ``unit`` is the unit in the heading, or an empty string. ``is_radius`` is True if the heading of X
+    states that X is a radius.
     """
 
     column_index: int

@@ -1,4 +1,4 @@
-"""Tool tables as CSV files, such as those of Mach or a spreadsheet.
+"""Tool tables as CSV files, for example from Mach or a spreadsheet.
 
 A file has a line of headings, followed by one tool per line. Fields are separated by commas, semicolons or
 tabs. A number may have a decimal comma.
@@ -57,7 +57,7 @@ def read_tools(table: TableReader, text: str) -> None:
 
 
 def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[TableColumn, ...]:
-    """Return the columns whose fields are known, and add a mistake for each wrong heading."""
+    """Return the columns with a known field, and add a mistake for each unknown heading."""
     place = Message("line {line}", line=line)
     assigned = _assigned(table, place, headings)
     found = [
@@ -89,7 +89,7 @@ def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Ta
 
 
 def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[int, str]:
-    """Return the fields that the option --map assigns, by column index."""
+    """Return the fields that the option --map assigns to columns, by column index."""
     names = [heading.strip().lower() for heading in headings]
     found: dict[int, str] = {}
     for field, column in table.options.columns.items():
@@ -120,7 +120,7 @@ def _check_x(table: TableReader, place: str, columns: Iterable[TableColumn]) -> 
 
 
 def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Iterable[TableColumn]) -> None:
-    """Add the tool of one row."""
+    """Add the tool in one row to the table."""
     mistakes = len(table.mistakes)
     cells = {
         each.field_name: (each, row[each.column_index].strip())
@@ -188,7 +188,7 @@ def _field(name: str) -> RowField:
 
 
 def _text(table: TableReader, where: str, field: RowField, cell: str) -> str | None:
-    """Return the text of a cell or, if the field has choices, the matching choice."""
+    """Return the text of a cell; if the field has choices, return the matching choice."""
     if not field.choices:
         return cell
     word = cell.lower().replace(" ", "-")
@@ -204,7 +204,7 @@ def _text(table: TableReader, where: str, field: RowField, cell: str) -> str | N
 
 
 def format_table(tools: Iterable[ToolEntry], unit: str) -> str:
-    """Return a CSV table with these tools. Lengths are in ``unit``, which the headings contain."""
+    """Return the tools as a CSV table. Lengths are in ``unit``, which the headings contain."""
     rows = list(tools)
     names = [
         name for name in TABLE_FIELDS if any({**t.offset_values, **t.shape_values}.get(name) for t in rows)

@@ -32,7 +32,7 @@ _KINDS = tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), kind) for words,
 
 
 def recognize_shape_fields(text: str) -> dict[str, str]:
-    """Return the fields of a tool shape, by name, that the codes and words of a text specify."""
+    """Return the tool shape fields, by name, that the codes and words of a text specify."""
     words = text.upper().replace(",", " ").replace(";", " ").split()
     candidates = [*(f"{one}{two}" for one, two in pairwise(words)), *words]
     insert = next(_inserts(candidates), "")
@@ -45,7 +45,7 @@ def recognize_shape_fields(text: str) -> dict[str, str]:
 
 
 def recognize_tool_kind(text: str) -> str:
-    """Return the kind of tool that the words of a text specify, or an empty text."""
+    """Return the kind of tool that the words of a text specify, or an empty string."""
     return next((kind for words, kind in _KINDS if words.search(text)), "")
 
 
@@ -70,13 +70,13 @@ def _holders(words: list[str]) -> Iterator[tuple[str, str]]:
 
 
 def _kind_of(insert: str, holder: str) -> str:
-    """Return the kind of tool that the codes imply, which is boring for a round bar."""
+    """Return the kind of tool that the codes imply: boring for a round bar, otherwise turning."""
     if holder and _BAR.match(holder):
         return "boring"
     return "turning" if insert or holder else ""
 
 
 def get_hand(letter: str) -> str:
-    """Return the hand of the tool for the letter R, L or N, or an empty text."""
+    """Return the hand of the tool for the letter R, L or N, or an empty string for any other letter."""
     hands: Mapping[str, str] = _HANDS
     return hands.get(letter.strip().upper(), "")

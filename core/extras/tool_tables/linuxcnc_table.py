@@ -1,7 +1,7 @@
-"""Tool table of LinuxCNC, with one tool per line: ``T3 P3 X1.5 Z-2 D.0315 I85 J25 Q2 ;CNMG431 rough``.
+"""Tool table of LinuxCNC: one tool per line, ``T3 P3 X1.5 Z-2 D.0315 I85 J25 Q2 ;CNMG431 rough``.
 
 X is a radius. D is the nose diameter of a turning tool. The orientation Q is the position of the nose
-center relative to the control point, with X reversed compared with the tip quadrant: Q2 is quadrant 3.
+center relative to the control point. X is reversed compared with the tip quadrant: Q2 is quadrant 3.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def read_tools(table: TableReader, text: str) -> None:
 
 
 def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
-    """Add the tool of one line."""
+    """Add the tool in one line to the table."""
     mistakes = len(table.mistakes)
     place = Message("line {line}", line=count)
     found = _words(table, count, line)
@@ -84,7 +84,7 @@ def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
 
 
 def format_table(tools: Iterable[ToolEntry], unit: str) -> str:
-    """Return the table with these tools, with lengths in ``unit``."""
+    """Return the tools as a LinuxCNC table, with lengths in ``unit``."""
     return "".join(f"{line}\n" for line in _lines(tools, MM_PER_UNIT[unit]))
 
 

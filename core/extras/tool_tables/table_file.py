@@ -1,4 +1,4 @@
-"""Reader of tool tables, with the formats by name and file suffix, and limits for malicious files."""
+"""Reader of tool tables by format name or file suffix, with limits against malicious files."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ def find_format(name: str) -> str:
 
 
 def read_table(path: Path, format_name: str, options: ReadingOptions) -> ToolTable:
-    """Return the tools of a file in the format that ``word`` names. Raises ToolTableError."""
+    """Return the tools of a file in format ``format_name``. Raises ToolTableError if it has mistakes."""
     table = TableReader(path.name, options)
     FORMATS[format_name].read_text(table, _text(path.name, _bytes(path), format_name))
     return table.make_table()
 
 
 def _bytes(path: Path) -> bytes:
-    """Return the contents of a file. Raises ToolTableError."""
+    """Return the contents of a file. Raises ToolTableError if it is too large or unreadable."""
     try:
         return read_input_bytes(path, MAX_TABLE_BYTES)
     except TooLargeError as error:

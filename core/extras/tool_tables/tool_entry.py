@@ -48,7 +48,7 @@ _SAME_RADIUS = 0.05  # mm, more than the rounding of an inch radius to tenths of
 class ToolTableError(CodedError):
     """An error raised if a table cannot be read.
 
-    The message lists all mistakes with their positions, and how to correct them.
+    The message lists all mistakes with their positions and remedies.
     """
 
 
@@ -88,7 +88,7 @@ class ToolTable(NamedTuple):
 
 @dataclass(slots=True)
 class TableReader:
-    """Collector of the tools and the mistakes of the file ``name``."""
+    """Collector of the tools in a file, and of the mistakes that it reports under ``name``."""
 
     file_name: str
     options: ReadingOptions
@@ -200,7 +200,7 @@ class TableReader:
     def make_table(self) -> ToolTable:
         """Return the collected tools.
 
-        Raises ToolTableError with all mistakes, or if the file has no tools.
+        Raises ToolTableError with all mistakes if there are any, or if the file has no tools.
         """
         if self.mistakes:
             raise self._error()
@@ -218,12 +218,12 @@ class TableReader:
 
 
 def _stated(values: Mapping[str, FieldValue]) -> dict[str, FieldValue]:
-    """Return the values that are specified; X or Z may be 0."""
+    """Return the values that are specified, which are the nonzero values and X and Z."""
     return {name: value for name, value in values.items() if value or name in {"x", "z"}}
 
 
 def _cleaned(found: dict[str, FieldValue]) -> list[str]:
-    """Make the remark printable, and shorten it if it is too long; return a note if it is shortened."""
+    """Make the remark printable and limit its length; return a note if it is shortened."""
     text = found.get("remark")
     if not isinstance(text, str):
         return []
@@ -237,7 +237,7 @@ def _cleaned(found: dict[str, FieldValue]) -> list[str]:
 def _unmeasured(values: Mapping[str, FieldValue], found: dict[str, FieldValue]) -> list[str]:
     """Remove X and Z if both are 0; return a note if they were specified.
 
-    Other programs enter 0 for tools that are not measured.
+    Other programs enter 0 for a tool that is not measured.
     """
     if found.get("x", 0.0) or found.get("z", 0.0):
         return []

@@ -78,14 +78,14 @@ class Interpreter(LinePass[nodes.KlartextLine]):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """Return the state that the next line inherits, as a checkpoint."""
+        """Return a checkpoint with the state at the start of the next line."""
         return mid_program_startup.make_checkpoint(self._parts, self._shared)
 
     @property
     def blocking_reason(self) -> str:
-        """Return the reason why another pass cannot continue from the present line.
+        """Return the reason why another pass cannot continue from the current line.
 
-        The text is empty if another pass can continue.
+        The result is an empty string if another pass can continue.
         """
         return self._path.blocking_reason
 
@@ -99,7 +99,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return self._setup, self._log, program, self._setup.kinematics, *program.called_programs.values()
 
     def _restore_from(self, start: PassStart) -> None:
-        """Restore the state that the start line inherits, for MDI or for a restart."""
+        """Restore the state at the start of the start line, for MDI or for a restart."""
         kept = start.checkpoint.kept
         if kept is not None:
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
@@ -144,7 +144,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield m_functions.execute_program_end(state)
 
     def _execute_line_safely(self, line: nodes.KlartextLine) -> Iterator[Block]:
-        """Yield the blocks of a line until an error occurs; the error is logged."""
+        """Yield the blocks of a line until an error occurs, and log the error."""
         if line.is_skippable and self._state.setup.block_delete:
             return
         if line.error is not None:
@@ -398,14 +398,14 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return SlContour(name, runner.elements, runner.side, part.is_pocket)
 
     def _corner_is_next(self) -> bool:
-        """Return whether the next block is RND or CHF, so that the present element must be buffered."""
+        """Return whether the next block is RND or CHF, so that the current element must be buffered."""
         return isinstance(self._flow.peek_next_node(), nodes.CornerBlock)
 
 
 def _collect_contour_line(
     state: State, runner: ContourCollector, flow: Flow, line: nodes.KlartextLine
 ) -> None:
-    """Execute one line of a contour subprogram, without the effect of feeds, M functions and tools."""
+    """Execute one line of a contour subprogram, ignoring feeds, M functions and tools."""
     match line.node:
         case nodes.PathFunction():
             runner.add_path_function(line.node)

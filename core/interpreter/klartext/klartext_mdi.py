@@ -37,7 +37,7 @@ def read_mdi_block(source: ProgramSource, *, is_inch: bool) -> Program:
 
 
 def _check_context(line: nodes.KlartextLine) -> Diagnostic | None:
-    """Return the error for a block that depends on other blocks, or None."""
+    """Return the error for a block that depends on other blocks, or None if it can be executed alone."""
     node = line.node
     column = getattr(node, "column", 1) or 1
     if line.is_skippable:

@@ -82,9 +82,9 @@ class Program:
         return text
 
     def find_subprogram_end(self, label_index: int) -> int | None:
-        """Return the index of the LBL 0 that ends a subprogram, or None if it has no end.
+        """Return the index of the LBL 0 that ends a subprogram, or None if no LBL 0 follows.
 
-        ``label`` is the index of the line with the label of the subprogram.
+        ``label_index`` is the index of the line with the label of the subprogram.
         """
         for index in range(label_index + 1, self.end_index):
             node = self.lines[index].node
@@ -171,7 +171,7 @@ def _join_lines(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
 def _corners(program: Program) -> BlankCorners | None:
     """Return the minimum and maximum corners of the blank, or None if they are invalid.
 
-    Both corners must be numbers and enclose a volume.
+    The coordinates of both corners must be numbers, and the corners must enclose a volume.
     """
     scale = MM_PER_INCH if program.is_inch else 1.0
     found: dict[int, Vector] = {}
@@ -193,7 +193,7 @@ def _corners(program: Program) -> BlankCorners | None:
 
 
 def _cylinder_corners(blank: CylinderBlank, scale: float) -> BlankCorners | None:
-    """Return the corners of the block around a cylinder, or None if its dimensions are not numbers."""
+    """Return the corners of the box around a cylindrical blank, or None if a dimension is not a number."""
     dimensions = (blank.radius, blank.length, blank.height_above_datum)
     if (
         any(each.parameter_number is not None for each in dimensions)
@@ -358,7 +358,7 @@ class Flow(ControlFlow[_Level]):
         self.is_ended_by_code = True
 
     def call_label(self, line: int, node: LabelCall, repeat_count: int) -> None:
-        """Execute CALL LBL, or repeat the section of the label ``times`` times.
+        """Execute CALL LBL: call the subprogram, or repeat its section ``repeat_count`` times.
 
         Raises ProgramError if calls are nested too deeply.
         """

@@ -43,7 +43,7 @@ class ActivePlane:
     """The active working plane.
 
     ``frame`` is the orientation of the plane with all table axes at 0. ``target_angles`` are machine angles
-    by axis name, in degrees from 0 to 360 on a modulo axis. ``line`` is the line of the PLANE block.
+    by axis name, in degrees from 0 to 360 on a modulo axis. ``line_number`` is the line of the PLANE block.
     """
 
     frame: Matrix
@@ -141,7 +141,7 @@ class State:
         )
 
     def set_axis_positions(self, goal: dict[str, float]) -> None:
-        """Set the positions of all axes, which ``goal`` contains by axis name."""
+        """Set the positions of all axes from ``goal``, which maps axis names to positions."""
         if any(goal[name] != self.position_by_axis[name] for name in self.rotary_axis_names):
             self._shown = None
         turned = self._shown is None
@@ -151,7 +151,7 @@ class State:
         self.tip_in_plane = self.plane_transform.convert_to_frame_point(self.linear_position)
 
     def set_machine_positions(self, positions: Sequence[float]) -> None:
-        """Set the axis positions to these machine positions, which are in the machine's axis order."""
+        """Set the positions of all axes from machine positions in the machine's axis order."""
         self.position_by_axis, self.axis_positions = (
             dict(zip(self.axis_names, positions, strict=True)),
             tuple(positions),
@@ -188,7 +188,7 @@ class State:
     def target_angles(self) -> dict[str, float]:
         """Return the effective angle of each rotary axis, in degrees.
 
-        The angles come from the active plane. Without an active plane, they are the present angles.
+        The angles come from the active plane. Without an active plane, they are the current angles.
         """
         if self.active_plane is not None:
             return dict(self.active_plane.target_angles)
@@ -281,7 +281,7 @@ class State:
     def log_once(
         self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
-        """Log a finding only at the first location where it occurs."""
+        """Log a finding only the first time that it occurs."""
         text = fill_template(text, values)
         if text not in self.reported_findings:
             self.reported_findings.add(text)
@@ -290,7 +290,7 @@ class State:
             )
 
     def log_ignored_function(self, function: str, column: int) -> None:
-        """Log a note, once, that a function has no effect on this control."""
+        """Log a single note that a function has no effect on this control."""
         self.log_once(
             column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=function)
         )

@@ -1,4 +1,4 @@
-"""Execution of one line, which generates its elementary blocks in the order in which the control acts."""
+"""Execution of one program line as elementary blocks, in the order in which the control acts."""
 
 from __future__ import annotations
 

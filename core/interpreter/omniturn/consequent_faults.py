@@ -72,7 +72,7 @@ def remove_consequent_findings(findings: Sequence[Diagnostic], lines: Sequence[s
 
 
 def _divided_arc(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
-    """Return the finding for an arc whose center words are on the next line, or None."""
+    """Return the finding for an arc whose center words are on the next line, or None for other lines."""
     if finding.code != "word-unused" or finding.line < 2:
         return None
     arc, center = re.match(_BARE_ARC, lines[finding.line - 2]), re.match(_CENTER, lines[finding.line - 1])

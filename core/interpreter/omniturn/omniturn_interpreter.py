@@ -1,4 +1,4 @@
-"""Interpreter of OmniTurn, which generates the elementary blocks of a program for a setup."""
+"""Interpreter of OmniTurn programs, which generates the elementary blocks of a program."""
 
 from __future__ import annotations
 
@@ -148,9 +148,9 @@ class Interpreter(InterpreterPass):
                 yield each
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series.
+        """Generate the same blocks as ``generate_blocks``, but combine straight moves into series.
 
-        The moves are combined where possible.
+        Moves are combined only where possible.
         """
         if (
             self._program.structure.loop_ends
@@ -163,7 +163,7 @@ class Interpreter(InterpreterPass):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """Return the state that the next line inherits, as a checkpoint."""
+        """Return a checkpoint with the state at the start of the next line."""
         return make_checkpoint(self._state)._replace(flow=self._flow.position)
 
     def _approach(self) -> Iterator[Block]:
@@ -272,7 +272,7 @@ class Interpreter(InterpreterPass):
             yield from self._released(self._modifier.switch_compensation(found))
 
     def _apply_stages(self, block: Block) -> Iterator[Block]:
-        """Yield the block, or the buffered blocks that later lines cannot change.
+        """Yield the block itself, or the buffered blocks that no later line can change.
 
         Blocks are buffered while a corner or nose compensation is active.
         """
@@ -305,11 +305,11 @@ class Interpreter(InterpreterPass):
         self._flow.call_subroutine(statement)
 
     def _is_call_made(self, statement: Statement) -> bool:
-        """Return whether a conditional call is made in the present state of its input."""
+        """Return whether a conditional call is made in the current state of its input."""
         return is_call_made(statement, self._state.setup.inputs)
 
     def _recover(self, problem: ProgramError, line: ExecutableLine) -> None:
-        """Log the error, and set the position to the end point of its line.
+        """Log the error, and set the position to the end point of the rejected line.
 
         Later lines are then checked from the correct position.
         """
@@ -366,7 +366,7 @@ class StoppablePass(Interpreter):
 
     @property
     def is_at_line(self) -> bool:
-        """Return whether the requested line is the next line."""
+        """Return whether the next line is the line at which the pass was requested to stop."""
         return self._flow.is_at_stop_line and not self._stopped
 
     @property

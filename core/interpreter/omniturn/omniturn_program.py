@@ -144,15 +144,15 @@ class Program:
     subroutine_calls: tuple[tuple[int, int], ...] = ()
 
     def copy_for_pass(self) -> Program:
-        """Return a copy for one pass, which can change its lines independently."""
+        """Return a copy for one pass. The pass can change the lines of the copy independently."""
         return replace(self, executable_lines=self.executable_lines.copy_lines())
 
     def get_line(self, number: int) -> LexedLine:
-        """Return the words of a line, which is numbered from 1."""
+        """Return the words of a line; line numbers count from 1."""
         return lex_line(number, self.source.lines[number - 1])
 
     def get_statement(self, number: int) -> Statement | None:
-        """Return the statement of a line, which is numbered from 1, or None for an empty line."""
+        """Return the statement of a line, or None for an empty line; line numbers count from 1."""
         ready = self.executable_lines[number - 1]
         return make_statement(self.get_line(number)) if isinstance(ready, tuple) else ready
 
@@ -243,8 +243,8 @@ class _Reader:
 def read_program(source: ProgramSource, is_strict: bool = False) -> Program:
     """Parse all lines of a program, find loops, subroutines and the end, and collect the errors.
 
-    The function does not raise exceptions. With ``strict``, style deviations that the manual of the
-    original control forbids are errors.
+    The function does not raise exceptions. If ``is_strict`` is True, style deviations that the manual of
+    the original control forbids are errors.
     """
     reader = _Reader(source, strict=is_strict)
     ready = reader.read_lines()
@@ -368,7 +368,7 @@ def read_mdi_line(source: ProgramSource) -> Program:
 
 
 def _check_context(statement: Statement) -> Diagnostic | None:
-    """Return the error for a line that depends on other lines, or None."""
+    """Return the error for a line that depends on other lines, or None if it can be executed alone."""
     if statement.flow_code and statement.flow_code != UNREADABLE_FLOW:
         return _refuse(statement, 1, _steers(statement))
     if statement.has_block_delete:

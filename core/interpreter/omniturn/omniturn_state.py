@@ -34,7 +34,7 @@ class Corner(NamedTuple):
 class CompensationSwitch(NamedTuple):
     """Marker for G41, G42 or G40 among the blocks.
 
-    ``secondary_x`` and ``secondary_z`` are the secondary offset that is included in the present position,
+    ``secondary_x`` and ``secondary_z`` are the secondary offset that is included in the current position,
     in mm.
     """
 
@@ -54,7 +54,7 @@ StageItem = Block | CompensationSwitch
 
 @dataclass(slots=True)
 class ContourState:
-    """State of the open corner and of the active nose compensation in the generation of blocks."""
+    """State of the pending corner and of the active nose compensation while blocks are generated."""
 
     is_buffering: bool = False  # blocks are buffered, so each block must pass through the contour modifier
     open_corner: Corner | None = None  # corner after the present move
@@ -69,7 +69,7 @@ HIGH_FEED_MM_PER_REV = 0.05 * MM_PER_INCH * (1 + 1e-9)
 class State:
     """The position and the modal state of a pass, in mm with X as a radius.
 
-    ``x`` and ``z`` are the present position. ``px`` and ``pz`` are the programmed position without the
+    ``x`` and ``z`` are the current position. ``px`` and ``pz`` are the programmed position without the
     secondary offset. The other values are derived from ``modal``.
     """
 
@@ -126,9 +126,9 @@ class State:
         self.update_derived_values()
 
     def set_modal(self, modal: ModalState) -> None:
-        """Set the modal state unless it equals the present state.
+        """Set the modal state unless it equals the current state.
 
-        Blocks therefore continue to share one object.
+        Consecutive blocks with equal states therefore share one object.
         """
         if modal != self.modal:
             self.modal = modal
@@ -159,7 +159,7 @@ class State:
         self.fast = False
 
     def is_first_feed(self, feed: float) -> bool:
-        """Return whether a feed is the F of the first line, which programs without G00 use for rapids."""
+        """Return whether a feed is the F of the first line; programs without G00 use this F for rapids."""
         if self.modal.per_rev or self.first_feed is None:
             return False
         return abs(feed - self.first_feed) <= 1e-9 * self.first_feed
@@ -169,7 +169,7 @@ class State:
         return value * self.mm_per_z_unit / (1 if self.modal.per_rev else 60)
 
     def stay(self, modal: ModalState) -> None:
-        """Set a modal state with another program frame without a change of the machine position."""
+        """Set a modal state with another program frame; the machine position does not change."""
         x, z = self.x + self.offset_x, self.z + self.offset_z
         self.set_modal(modal)
         self.x, self.z = x - self.offset_x, z - self.offset_z
@@ -200,7 +200,7 @@ class State:
         *, is_feed_per_rev: bool = False, rpm: float = 0.0, surface_speed: float | None = None,
         center: tuple[float, float] = (0.0, 0.0), is_clockwise: bool = False, plane: PlaneMove | None = None,
     ) -> Block:  # fmt: skip
-        """Return the block of a move from ``start`` (x, z, c) to the present position of the state."""
+        """Return the block of a move from ``start`` (x, z, c) to the current position of the state."""
         self.blocks += 1
         return Block(
             self.blocks, line, kind, text, *start, self.x, self.z, self.c, self.offset_x, self.offset_z,
@@ -221,7 +221,7 @@ def make_checkpoint(state: State) -> Checkpoint:
 def restore_state(state: State, pass_start: PassStart) -> None:
     """Restore the state that the start line of ``pass_start`` inherits.
 
-    An MDI line starts at the present position. A restart starts at its checkpoint, which the approach
+    An MDI line starts at the current position. A restart starts at its checkpoint, which the approach
     reaches. C remains at its position unless it is locked.
     """
     point = pass_start.checkpoint

@@ -87,8 +87,8 @@ class Statement:
     ) -> ProgramError:
         """Return an error of this line, located at a word, at the word of a letter, or at a column.
 
-        The letter M selects the M code. If the line lacks the word, the error is at its one-shot code.
-        ``values`` are the values for the placeholders of ``text`` and ``hint``.
+        The letter M selects the M code. If the line lacks the word, the error is at the line's one-shot
+        code. ``values`` are the values for the placeholders of ``text`` and ``hint``.
         """
         if isinstance(at, str):
             at = (self.m_word if at == "M" else self.words.get(at)) or self.code_word or 0

@@ -1,1 +1,1 @@
-"""Restart in the middle of a program, with possible lines, inherited state, retract and approach."""
+"""Restart in the middle of a program: suitable lines, inherited state, retract and approach."""

@@ -44,10 +44,10 @@ class CutRecord:
 
     ``block_number`` is the number of the elementary block. ``bar_section`` counts how often the collet was
     opened, because earlier cuts are then on another section of the bar. ``max_feed_radius`` is the largest
-    radius of a feed move, or 0. ``retract_radius`` is a radius at which tools retract at rapid. It is inf
-    if it is unknown, because the largest cut may be a bore. ``face_z`` is a Z beyond all cuts at which
-    tools move inside that radius at rapid, or inf if it is unknown. ``machine_x_range_by_tool`` contains
-    the minimum and maximum machine X of each tool. ``max_machine_z`` is the maximum machine Z of all moves.
+    radius of a feed move, or 0. ``retract_radius`` is a radius at which tools retract at rapid, or inf if
+    it is unknown, because the largest cut may be a bore. ``face_z`` is a Z beyond all cuts at which rapids
+    move inside that radius, or inf if it is unknown. ``machine_x_range_by_tool`` contains the minimum and
+    maximum machine X of each tool. ``max_machine_z`` is the maximum machine Z of all moves.
     """
 
     block_number: IntArray
@@ -261,7 +261,7 @@ def _retract_radius(
 
 
 def _forget_start(x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray) -> None:
-    """Set the start positions of each axis to NaN until the axis has moved, because they are unknown."""
+    """Set the unknown start positions of each axis to NaN, until the axis has moved."""
     for start, end in ((x0, x), (z0, z)):
         if len(start):
             moved = np.flatnonzero(np.abs(end - start) > SAME_POINT_MM)

@@ -1,4 +1,4 @@
-"""Visits of a line during a run, which are its executions in loop passes and subroutine calls."""
+"""Visits of a line, which are the executions of this line in loop passes and subroutine calls."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class LineVisits:
     def find_visit_number(self, block: int) -> int:
         """Return the number (from 1) of the visit in which this block was executed.
 
-        Returns 1 for an earlier block.
+        Returns 1 for a block before the first visit.
         """
         return max(1, bisect_left(self.earlier_block_counts, block))
 
@@ -73,7 +73,7 @@ class LineVisits:
         return anchor, number - nth + 1
 
     def make_line_visit(self, number: int) -> LineVisit:
-        """Return the visit with its loop passes and calls for display.
+        """Return a visit for display, with its loop passes and calls.
 
         The passes and calls are in order from the outermost to the innermost.
         """

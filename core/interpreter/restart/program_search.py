@@ -62,7 +62,7 @@ class BlockSearch:
 
     @cached_property
     def cut_record(self) -> CutRecord:
-        """Return the record of all cuts of the program on a lathe, which is calculated on first use."""
+        """Return the record of all cuts of a lathe program; the record is calculated on first use."""
         return record_all_cuts(self._pass().generate_series(), self.report_progress)
 
     def find_restart(
@@ -236,8 +236,8 @@ class BlockSearch:
     def _nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
         """Return the nearest suitable line in one direction.
 
-        Each candidate line is checked like a requested line. Returns 0 if none of the first few lines is
-        suitable.
+        Each candidate line must pass the same checks as a line that the operator selects. Returns 0 if none
+        of the first few lines is suitable.
         """
         near = [
             each

@@ -1,10 +1,10 @@
-"""Path from the present machine position to a line in the middle of a program, on a lathe or a mill.
+"""Path from the current machine position to a restart line, on a lathe or a mill.
 
 On a lathe, the tool leaves the part as the interrupted block requires. Z moves clear of the part, and X
 moves to the X of the start point. The spindle and the coolant start, and the tool enters as the line
-requires. Rapids are only outside the material. On a mill, the tool retracts along its axis, and Z moves to
-its upper limit. The rotary axes move there, the tool is changed, and the tool moves above the start
-position. The spindle and the coolant start. The tool then enters along its axis, at a feed near the end.
+requires. Rapids occur only outside the material. On a mill, the tool retracts along its axis, and Z moves
+to its upper limit. At this height, the rotary axes move, the tool is changed, and the tool moves above the
+start position. The spindle and coolant start. The tool then enters along its axis, at a feed near the end.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ _MAX_LATER_ROWS = 400  # number of rows after the saved block in which the tool 
 
 @dataclass(frozen=True, slots=True)
 class PresentState:
-    """The present state of the machine.
+    """The current state of the machine.
 
     The state consists of the axis positions in mm and degrees, the modal state and the interruption.
     """
@@ -141,7 +141,7 @@ def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
 def _find_stale_position(
     cut_record: CutRecord, interruption: Interruption, x: float, z: float
 ) -> ToolPosition | None:
-    """Return the present tool position, found from the saved row on, or None if no row matches."""
+    """Return the current tool position, searched from the saved row onward, or None if no row fits."""
     row = max(0, cut_record.find_last_row(interruption.block_number))
     for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
         if int(cut_record.tool_number[each]) != interruption.tool_number:
@@ -166,7 +166,7 @@ def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: flo
 
 
 def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
-    """Return the retract, which becomes unknown if a mill is in its hole and C has turned."""
+    """Return the retract, or an unknown retract if a mill is in its hole and C has turned."""
     broken = present.interruption
     if (
         retract.situation is not ToolSituation.MILLING
@@ -196,7 +196,7 @@ def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: 
 def make_lathe_start(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> PassStart:
-    """Return the start of a pass at the line, with the actual number of revolutions of C."""
+    """Return the start of a pass at the line, with C at its actual number of revolutions."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
     if modal.c_locked:
         modal = modal._replace(
@@ -210,7 +210,7 @@ def make_lathe_start(
 def plan_lathe_approach(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
-    """Return all steps between the present standstill and the first block of the line."""
+    """Return all steps from the current standstill to the first block of the line."""
     out = (
         plan_exit_moves(restart_point.cut_record, present, choices)
         if restart_point.cut_record is not None
@@ -363,7 +363,7 @@ def _leg(
 
 
 def _nearest_angle(angle: float, present: float) -> float:
-    """Return the machine angle equivalent to ``angle`` that is nearest to the present angle."""
+    """Return the machine angle equivalent to ``angle`` that is nearest to the current angle."""
     return angle + round((present - angle) / _TURN) * _TURN
 
 
@@ -378,7 +378,7 @@ _LINEAR_AXES = "XYZ"
 
 @dataclass(slots=True)
 class _MovePlan:
-    """The moves planned so far, and the machine position at their end by axis."""
+    """The moves planned so far, and the machine position by axis at the end of these moves."""
 
     kinematics: Kinematics
     axis_positions: dict[str, float]
@@ -434,7 +434,7 @@ def make_mill_start(
 def explain_missing_path(kinematics: Kinematics) -> str:
     """Return the reason why no path can be planned on this machine.
 
-    The text is empty if planning is possible.
+    The result is an empty string if a path can be planned.
     """
     return (
         ""

@@ -1,4 +1,4 @@
-"""Lines from which a program can be restarted, as far as the program text determines them."""
+"""Lines from which a program can be restarted, according to the program text alone."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RestartSuitability:
     def explain_unsuitable(self, line: int) -> str:
         """Return the reason why a restart from this line is not possible.
 
-        The reason is empty if the text of the program allows a restart.
+        The result is an empty string if the text of the program allows a restart.
         """
         if not 1 <= line <= self.line_count:
             return Message(
@@ -72,7 +72,7 @@ class RestartSuitability:
         return any(each.first <= line <= each.last_line for each in self.repeated_ranges)
 
     def find_nearest(self, line: int, direction: int) -> int:
-        """Return the nearest suitable line in one direction, or 0 without one.
+        """Return the nearest suitable line in one direction, or 0 if no line is suitable.
 
         ``direction`` is 1 to search forward and -1 to search backward. Loops and subroutines are skipped.
         From inside a subroutine, the backward search continues at its first call.

@@ -11,7 +11,7 @@ from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):
-    """One pass of a loop, whose LS and LF are on ``first_line`` and ``last_line``."""
+    """One pass of a loop; LS is on ``first_line``, and LF is on ``last_line``."""
 
     first_line: int
     last_line: int

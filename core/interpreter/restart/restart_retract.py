@@ -1,7 +1,7 @@
 """Retract of a tool from the part along moves that do not cross material.
 
-The reversed retract is the approach of the tool. Space is known to be free where this tool has been since
-the collet was last opened, outside the largest cut radius, and in front of the face. Other moves are safe
+The reversed retract is the approach of the tool. Space is known to be free outside the largest cut radius,
+in front of the face, and where this tool has been since the collet was last opened. Other moves are safe
 only if the program itself makes the same retract. The rules are in docs/decisions/0021-restart.md.
 """
 
@@ -199,7 +199,7 @@ class _Search:
         return None if here or z > level else sideways
 
     def _same_tool_rows(self, first: int) -> slice:
-        """Return the rows from ``first`` on that use this tool and this bar section, up to a limit."""
+        """Return the rows from ``first`` onward with this tool and this bar section, up to a limit."""
         cut = self.cut_record
         far = slice(first, first + _MAX_SEARCH_ROWS)
         other = (cut.tool_number[far] != cut.tool_number[self.row]) | (
@@ -393,7 +393,7 @@ class _Search:
         return first and cut.is_clear_after_rapid(float(cut.x[row]), float(cut.z[row]))
 
     def _direction_only(self) -> Retract:
-        """Return a retract without legs, whose direction comes from the next rapid or from the entry path."""
+        """Return a retract without legs; its direction comes from the next rapid or the entry path."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
         ways = [(segment.x - segment.start_x, segment.z - segment.start_z) for segment in rapids]
@@ -429,14 +429,14 @@ class _Search:
         )
 
     def _thread_exit_direction(self) -> tuple[int, int]:
-        """Return the direction away from the thread, which is the direction of the next rapid along X."""
+        """Return the direction away from the thread: the direction of the next rapid along X."""
         for segment in self._following_segments():
             if abs(segment.x - self.x) > _PARALLEL_TOLERANCE_MM and not segment.move_kind & FEED:
                 return _sign(segment.x - self.x), 0
         return 0, 0
 
     def _mill_retract(self, axis: int) -> Retract:
-        """Return the retract of a mill along its axis, which is Z on the face and X on the side."""
+        """Return the retract of a mill along the tool axis: Z on the face, or X on the side."""
         low, high = self.cut_record.machine_x_range_by_tool[self.position.tool_number]
         offset = self.cut_record.tool_offsets[self.position.tool_number][0]
         far = low - offset if self.x < 0.0 else high - offset

@@ -60,7 +60,7 @@ class OmniturnSearch:
 
     @property
     def cut_record(self) -> CutRecord:
-        """Return the record of all cuts of the program, which is calculated on first use."""
+        """Return the record of all cuts of the program; the record is calculated on first use."""
         if self._cut is None:
             self._cut = record_all_cuts(
                 Interpreter(self._program, replace(self._setup, start=_SECOND_START_SHIFT)).generate_series(),
@@ -113,7 +113,7 @@ class OmniturnSearch:
     def _search_in_loop(
         self, line: int, anchor: int, nth: int, visit: LineVisit, interruption: Interruption | None
     ) -> RestartPoint | str:
-        """Return the restart point of a line in a loop or subroutine, or the reason why it is not possible.
+        """Return the restart point of a line in a loop or subroutine, or the reason for a refusal.
 
         The search starts at the main program line that contains the visit.
         """
@@ -167,7 +167,7 @@ class OmniturnSearch:
         return make_lathe_restart(line, walk.checkpoint, self.cut_record, visit, broken)
 
     def _find_nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
-        """Return the nearest line that a pass confirms as suitable, or 0.
+        """Return the nearest line that a pass confirms as suitable, or 0 if no such line is found.
 
         Only a few lines are tried upward, because each of these lines needs another pass.
         """
@@ -191,7 +191,7 @@ class OmniturnSearch:
     def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
         """Run to the line, and return why it is unsuitable, or an empty string if it is suitable.
 
-        Without ``position_known``, the position may still depend on the start position, because later
+        If ``position_known`` is False, the position may still depend on the start position, because later
         blocks may determine the position.
         """
         if line < self._at:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 class ToolSituation(Enum):
     """Situation of a tool, which is either clear of the part or in the part.
 
-    For a tool in the part, the situation determines how the tool can leave the part.
+    If the tool is in the part, the situation determines how the tool can leave the part.
     """
 
     CLEAR = "clear"
@@ -34,8 +34,8 @@ class Retract:
     """The retract of a tool.
 
     ``legs`` lead from the tool position out of the material. They are empty if the tool is clear or the
-    path is unknown. ``direction`` is the direction in which the tool leaves in any case, as the signs of
-    (x, z) of the first move, or (0, 0) if it is unknown.
+    path is unknown. ``direction`` contains the signs of (x, z) of the first move. It may be known even if
+    ``legs`` is empty, and is (0, 0) if it is unknown.
     """
 
     situation: ToolSituation

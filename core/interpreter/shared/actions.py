@@ -1,4 +1,4 @@
-"""Actions of elementary blocks of the kinds ``action`` and ``dwell``, which do not move an axis."""
+"""Actions of elementary blocks that do not move an axis, of the kinds ``action`` and ``dwell``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from core.plain_value import PlainValue
 
 
 class SpindleRun(PlainValue):
-    """Action that runs the spindle at ``rpm`` (M03, M04, S), which is negative for M04.
+    """Action of M03, M04 or S that runs the spindle at ``rpm``, which is negative for M04.
 
     With ``surface_speed`` in mm/s, the spindle speed follows the radius of the cut.
     """
@@ -96,7 +96,7 @@ class ToolChange(PlainValue):
 
 
 class WorkShift(PlainValue):
-    """Action that adds to the work shift (G10), which the next T activates, in mm with X as a radius."""
+    """Action of G10 that adds to the work shift for the next T, in mm with X as a radius."""
 
     __slots__ = __match_args__ = ("x", "z")
 
@@ -106,7 +106,7 @@ class WorkShift(PlainValue):
 
 
 class Preset(PlainValue):
-    """Action that assigns program coordinates to the present position (G92), in mm with X as a radius."""
+    """Action of G92 that gives the current position new program coordinates, in mm (X as a radius)."""
 
     __slots__ = __match_args__ = ("x", "z")
 

@@ -21,7 +21,7 @@ _numbers = count(1)
 
 
 class StateLine(NamedTuple):
-    """One line of the modal state in the terms of the control, whose group is identified by ``key``."""
+    """One line of the modal state in the terms of the control; ``key`` identifies its group."""
 
     key: str
     value: str
@@ -55,7 +55,7 @@ class SavedPass(Generic[PartsType]):
     def copy_parts(self, *instead: object) -> PartsType:
         """Return a copy of the saved parts with other shared objects.
 
-        The objects ``instead`` replace the first shared objects in the copy.
+        In the copy, the objects in ``instead`` replace the first of the shared objects.
         """
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
@@ -85,7 +85,7 @@ class Checkpoint(NamedTuple):
     """The complete state that a line inherits from earlier lines.
 
     Lengths are in mm in the program frame, with X as a radius. Angles are in degrees. ``x``, ``z`` and
-    ``c`` are the present position. ``px`` and ``pz`` are the programmed position without the secondary
+    ``c`` are the current position. ``px`` and ``pz`` are the programmed position without the secondary
     offset.
     """
 
@@ -107,7 +107,7 @@ class Checkpoint(NamedTuple):
 
     @property
     def machine(self) -> tuple[float, float]:
-        """Return machine X (as a radius) and Z of the present position, in mm."""
+        """Return machine X (as a radius) and Z of the current position, in mm."""
         return self.x + self.modal.offset_x, self.z + self.modal.offset_z
 
 
@@ -167,7 +167,7 @@ class PassStart(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Return a text that is the same for two starts only if the starts are equal."""
+        """Return a string that is the same for two starts only if the starts are equal."""
         modal = self.checkpoint.modal
         whole = self._replace(checkpoint=self.checkpoint._replace(modal=modal._replace(outputs=frozenset())))
         return repr((whole, sorted(modal.outputs)))

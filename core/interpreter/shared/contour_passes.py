@@ -1,4 +1,4 @@
-"""Passes of canned cycles, which are passes of equal depth or roughing passes along a contour."""
+"""Passes of canned cycles: passes of equal depth, or roughing passes along a contour."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def make_element(block: Block) -> Element:
 
 
 class AdjustedMoveFactory(ABC):
-    """Factory of the blocks for adjusted moves, which each dialect implements."""
+    """Factory of the blocks for adjusted moves; each dialect implements its own factory."""
 
     @property
     @abstractmethod
@@ -123,7 +123,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
     def accept_item(
         self, item: Block | MarkerType, corner: CornerType | None
     ) -> Iterator[Block | MarkerType]:
-        """Accept a block or marker, and yield all items that later items cannot change.
+        """Accept a block or marker, and yield all items that no later item can change.
 
         Raises ProgramError if the corner is not possible.
         """
@@ -197,7 +197,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
 
     @abstractmethod
     def _elements(self, corner: CornerType, first: Element, last: Element) -> Sequence[Element]:
-        """Return the first element trimmed, the corner, and the last element trimmed.
+        """Return the trimmed first element, the corner, and the trimmed last element.
 
         Raises CornerError if the corner is not possible.
         """
@@ -344,7 +344,7 @@ class ContourStage(ABC):
         return block
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
-        """Return the path around an outside corner, which is the given arc by default."""
+        """Return the path around an outside corner; by default, the path is the given arc."""
         del block
         return [element]
 

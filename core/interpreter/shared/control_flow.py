@@ -122,7 +122,7 @@ class EndlessLoopDetector:
     def is_repeated_state(self, flow: ControlFlow[FrameType], *held: object) -> bool:
         """Return whether a backward jump occurs in the same state as an earlier jump.
 
-        ``held`` contains all values other than the position on which later jumps can depend.
+        ``held`` contains all values, other than the position, on which later jumps can depend.
         """
         flow.active_frame.next_index = flow.next_index
         now = [each.comparison_key for each in flow.frames], held

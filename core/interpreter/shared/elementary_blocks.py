@@ -1,8 +1,8 @@
 """Elementary blocks, which the executor runs, the proof checks and the screen draws.
 
 Most blocks of a long program are straight moves with the same state. A ``StraightMoveSeries`` stores such
-blocks as arrays, because individual objects would take longer to create than to process.
-``SectionEndDetector`` finds the blocks that start from a standstill, both in a run and in its forecast.
+blocks as arrays, because creating an object per block would take too long. ``SectionEndDetector`` finds the
+blocks that start from a standstill, both in a run and in its forecast.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class BlockKind(StrEnum):
-    """Kind of an elementary block, whose values are part of the public JSON format."""
+    """Kind of an elementary block; the enum values are part of the public JSON format."""
 
     RAPID = "rapid"
     FEED = "feed"
@@ -240,7 +240,7 @@ class StraightMoveSeries(Sequence[Block]):
         return [self.texts[line - 1] for line in self.line.tolist()]
 
     def feeds(self) -> Iterator[tuple[ModalState, float]]:
-        """Return an iterator over the state and feed of each block, which is endless if F does not vary."""
+        """Return an iterator over the state and feed of each block; it is endless if F does not vary."""
         modal, feed = self.pattern.modal, self.pattern.feed
         if self.feed is None:
             return repeat((modal, feed))
@@ -261,7 +261,7 @@ def replace_feed(modal: ModalState, feed: float) -> ModalState:
 
 
 class TimedSeries(NamedTuple):
-    """A series of moves, with the start and end time (m,) of each move in program time, in seconds."""
+    """A series of moves, with arrays (m,) of their start and end times in program time, in seconds."""
 
     series: StraightMoveSeries
     start_times_s: FloatArray

@@ -78,9 +78,9 @@ class InterpreterPass(ABC):
         """
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series.
+        """Generate the same blocks as ``generate_blocks``, but combine straight moves into series.
 
-        The moves are combined where possible.
+        Moves are combined only where possible.
         """
         return self.generate_blocks()
 
@@ -96,12 +96,12 @@ class InterpreterPass(ABC):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """Return the state that the next line inherits, which is only the modal state in this base class."""
+        """Return a checkpoint for the next line, which in this base class contains only the modal state."""
         return Checkpoint(self.modal)
 
     @property
     def blocking_reason(self) -> str:
-        """Return the reason why another pass cannot continue from the present line, or an empty string.
+        """Return the reason why another pass cannot continue from the current line, or an empty string.
 
         For example, buffered moves may depend on later lines.
         """

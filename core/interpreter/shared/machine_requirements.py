@@ -101,7 +101,7 @@ def list_requirements(
 def remove_repeated_requirements(
     requirements: Iterable[MachineRequirement],
 ) -> tuple[MachineRequirement, ...]:
-    """Return each requirement once, with the first line that has it."""
+    """Return each requirement once, with the first line that needs it."""
     first: dict[str, MachineRequirement] = {}
     for need in requirements:
         first.setdefault(need.function, need)

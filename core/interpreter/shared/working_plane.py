@@ -37,11 +37,11 @@ class PlaneSystem:
 
     @property
     def is_workpiece_system(self) -> bool:
-        """Return whether this is the workpiece system, which has no tilted plane and no datum shift."""
+        """Return whether this is the workpiece system, without a tilted plane or a datum shift."""
         return not self.is_tilted and self.datum == (0.0, 0.0, 0.0)
 
     def make_workpiece_system(self) -> PlaneSystem:
-        """Return the workpiece system with the same tool, which is active after a program was canceled."""
+        """Return the workpiece system with the same tool, for use after a program was canceled."""
         place = self.kinematics.make_transform(
             self.kinematics.zero_angles, self.kinematics.workpiece_rotation, tool_length=self.tool_length_mm
         )

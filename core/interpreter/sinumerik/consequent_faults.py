@@ -20,7 +20,7 @@ _STATE_DEPENDENT_CODES = frozenset(
 
 
 def depends_on_state(finding: Diagnostic) -> bool:
-    """Return whether a finding depends on position and modal state, and may follow from an earlier error."""
+    """Return whether a finding depends on position and modal state, so an earlier error may cause it."""
     return finding.code in _STATE_DEPENDENT_CODES or finding.code.startswith("comp-")
 
 
@@ -33,7 +33,7 @@ class MissingAxes:
     def is_axis_reported(self, finding: Diagnostic) -> bool:
         """Return whether a finding reports a missing axis that was already reported.
 
-        A program for a mill uses the missing axis in many lines. J belongs to arcs in Y.
+        A program for a mill uses the missing axis in many lines. A J word counts as Y, as in arcs in Y.
         """
         match = _NO_AXIS.search(finding.message)
         axis = "Y" if _ARC_IN_Y.search(finding.message) else match[1] if match else ""

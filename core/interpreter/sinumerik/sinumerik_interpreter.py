@@ -135,21 +135,21 @@ class Interpreter(LinePass[LexedBlock]):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """Return the state that the next block inherits, as a checkpoint."""
+        """Return a checkpoint with the state at the start of the next block."""
         parts = InterpreterParts(self._state, self._corners, self._flow, self._taken)
         return make_checkpoint(parts, (self._setup, self._log, *self._flow.routines), self._made)
 
     @property
     def _active_transformation(self) -> ActiveTransformation | None:
-        """Return the active TRANSMIT or TRACYL transformation, or None."""
+        """Return the active TRANSMIT or TRACYL transformation, or None if no transformation is active."""
         plane = self._state.transformation
         return plane if isinstance(plane, ActiveTransformation) else None
 
     @property
     def blocking_reason(self) -> str:
-        """Return the reason why another pass cannot continue from the present block.
+        """Return the reason why another pass cannot continue from the current block.
 
-        The text is empty if another pass can continue.
+        The result is an empty string if another pass can continue.
         """
         if self._active_transformation is not None:
             where = Message(
@@ -162,7 +162,7 @@ class Interpreter(LinePass[LexedBlock]):
         return "the previous block is part of an unfinished corner" if self._corners.has_buffered_move else ""
 
     def _restore_from(self, pass_start: PassStart) -> None:
-        """Restore the state that the start block inherits."""
+        """Restore the state that the first block of this pass inherits."""
         kept = pass_start.checkpoint.kept
         if kept is not None:
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
@@ -298,7 +298,7 @@ class Interpreter(LinePass[LexedBlock]):
             self._flow.end_subprogram()
 
     def _blocks_with_corners(self, statement: Statement) -> Iterator[Block]:
-        """Yield the blocks of a statement, with all corners that are complete."""
+        """Yield the blocks of a statement after all complete corners are inserted."""
         number = statement.line.number
         place = self._flow.get_displayed_line(number)
         if TRANSFORMATION_GROUP in statement.g_words:

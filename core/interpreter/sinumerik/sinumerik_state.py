@@ -161,9 +161,9 @@ class State:
         )
 
     def set_modal(self, modal: ModalState) -> None:
-        """Set the modal state unless it equals the present state.
+        """Set the modal state unless it equals the current state.
 
-        Blocks therefore continue to share one object.
+        Consecutive blocks with equal states therefore share one object.
         """
         if modal != self.modal:
             self.modal = modal
@@ -233,7 +233,7 @@ class State:
         return compute_formula(formula, parameter, no_value)
 
     def _warn_unset(self, finding: Diagnostic) -> None:
-        """Log a warning, once, for each R parameter without a value, which is treated as 0."""
+        """Log one warning for each R parameter that has no value and is therefore treated as 0."""
         if (
             finding.hint not in self.logged_functions
         ):  # the hint identifies the parameter, independent of the line
@@ -271,7 +271,7 @@ class State:
 
     @property
     def rpm(self) -> float:
-        """Return the commanded signed spindle speed at the present position, in rpm."""
+        """Return the commanded signed spindle speed at the current position, in rpm."""
         return self.compute_rpm_at(self.x - self.modal.offset_x)
 
     @property

@@ -40,12 +40,12 @@ class Statement:
     live_tool_words: list[Word] = field(default_factory=list)  # words of spindle 2, the live tool
 
     def get_g_code(self, group: str) -> int | None:
-        """Return the G code of this group, or None if the group has no word or a named function."""
+        """Return the G code of this group, or None if the group is empty or contains a named function."""
         word = self.g_words.get(group)
         return None if word is None or word.value is None else int(word.value)
 
     def get_named_function(self, group: str) -> str:
-        """Return the named function of this group, or an empty string without a named function."""
+        """Return the named function of this group, or an empty string if it does not contain one."""
         word = self.g_words.get(group)
         return "" if word is None or word.value is not None else word.name
 
@@ -56,7 +56,7 @@ class Statement:
 
     @property
     def frame_word(self) -> Word | None:
-        """Return the word TRANS, ROT, SCALE or MIRROR of the block, or its A form, or None."""
+        """Return the frame word of the block, such as TRANS or ATRANS, or None if it lacks a frame word."""
         return next((word for name, word in self.named_functions.items() if name in known.FRAME_WORDS), None)
 
     @property
@@ -66,7 +66,7 @@ class Statement:
 
     @property
     def corner_word(self) -> Word | None:
-        """Return the word CHF, CHR or RND of the block, or None."""
+        """Return the word CHF, CHR or RND of the block, or None if the block lacks these words."""
         return next((self.words[name] for name in sorted(known.CORNER_WORDS) if name in self.words), None)
 
     @property
@@ -206,7 +206,7 @@ def _check_m(statement: Statement) -> None:
 
 
 def _check_separate_block(statement: Statement) -> None:
-    """Raise ProgramError unless G4, TRANS or another frame word is in a separate block."""
+    """Raise ProgramError if G4, TRANS or another frame word shares its block with other words."""
     dwell, key = statement.g_words.get(table.DWELL_GROUP), statement.frame_word
     if dwell is not None:
         others = (

@@ -45,8 +45,8 @@ _DATUM, _MIRROR, _ROTATION, _SCALE = 7, 8, 10, 11
 def read_cycle_definition(cursor: LineCursor, column: int) -> Node:
     """Read the block after ``CYCL DEF``.
 
-    The support of the cycle is checked only when the cycle is called. Raises ProgramError for a syntax
-    error.
+    Whether TurnDesk supports the cycle is checked only when the cycle is called. Raises ProgramError for a
+    syntax error.
     """
     match = cursor.match_pattern(_NUMBER)
     if match is None:
@@ -106,7 +106,7 @@ def read_preset_selection(cursor: LineCursor, column: int) -> CycleDefinition:
 
 
 def _values(cursor: LineCursor, owner: str) -> tuple[CycleParameter, ...]:
-    """Read the Q parameters that follow the cycle name, which has no effect."""
+    """Skip the cycle name, which has no effect, and read the Q parameters that follow the name."""
     if text := _TEXT_VALUE.search(cursor.uppercase_text, cursor.index):
         raise make_unsupported_error(
             cursor.line_number, text.start() + 1, Message("{total} with a string parameter (QS)", total=owner)

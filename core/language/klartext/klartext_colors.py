@@ -1,4 +1,4 @@
-"""Syntax coloring of Klartext lines, in which the parser of the interpreter marks the errors."""
+"""Syntax coloring of Klartext lines, with the errors that the parser of the interpreter finds."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ BLOCK_GOES_ON, COMMENT_GOES_ON = 1, 2
 
 
 def color_line(text: str, state_before: int = PLAIN_STATE) -> tuple[list[ColoredSpan], int]:
-    """Return the colored spans of a line, ending with an error if any, and the state for the next line.
+    """Return the colored spans of a line, with any error last, and the state for the next line.
 
     Lines that end with ~ belong to one block, so a single line of this block is not marked as an error.
     Errors in such a block are reported when the program is checked.

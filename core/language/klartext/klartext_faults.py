@@ -1,4 +1,4 @@
-"""Klartext errors, and the codes that are rejected by name with an alternative.
+"""Klartext errors, and the codes that are rejected with a message that suggests an alternative.
 
 The code of an error is the message of the original control if this message is known.
 """

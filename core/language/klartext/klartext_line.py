@@ -199,7 +199,7 @@ def _by_letter(cursor: LineCursor) -> Node:
 
 
 def _make_start_error(cursor: LineCursor) -> ProgramError:
-    """Return the error for a text that cannot start a block, with the name of the function if it is known."""
+    """Return the error for a text that cannot start a block; it names the function if it is known."""
     column = cursor.column
     if match := _UNSUPPORTED_STARTS.match(cursor.uppercase_text, cursor.index):
         name = " ".join(match.group().split())

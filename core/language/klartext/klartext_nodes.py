@@ -54,7 +54,7 @@ class CylinderBlank:
 
 @dataclass(frozen=True, slots=True)
 class ToolCall:
-    """The block ``TOOL CALL 1 Z S3000 F500 DL+0.1``, which changes only speed or feed if it has no tool."""
+    """The block ``TOOL CALL 1 Z S3000 F500 DL+0.1``; without a tool, it changes only speed or feed."""
 
     tool: int | str | Value | None = None  # a Value if the number is in a Q parameter
     tool_axis: str = ""
@@ -84,7 +84,7 @@ class PathFunction:
     column: int = 1
 
     def find_word(self, name: str) -> AxisWord | None:
-        """Return the axis word or other word with this name, or None."""
+        """Return the axis word or other word with this name, or None if the block lacks the word."""
         return next((word for word in (*self.axes, *self.words) if word.axis == name), None)
 
 
@@ -161,7 +161,7 @@ class Assignment:
 
 @dataclass(frozen=True, slots=True)
 class ConditionalJump:
-    """A jump such as ``FN 9: IF +Q1 EQU +5 GOTO LBL 3``, whose ``condition`` is the complete comparison."""
+    """A jump such as ``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the complete comparison."""
 
     condition: Formula
     name: int | str
@@ -196,7 +196,7 @@ class SystemWrite:
 
 @dataclass(frozen=True, slots=True)
 class ErrorMessage:
-    """The block ``FN 14: ERROR = 1000``, with which the program raises an error and stops."""
+    """The block ``FN 14: ERROR = 1000``, which reports an error and stops the program."""
 
     error_number: int
     column: int = 0
@@ -276,7 +276,7 @@ class PatternPart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PatternDefinition:
-    """The block ``PATTERN DEF``, whose parts define the points for CYCL CALL PAT."""
+    """The block ``PATTERN DEF``, which defines the points for CYCL CALL PAT in one or more parts."""
 
     parts: tuple[PatternPart, ...]
     column: int = 0

@@ -74,9 +74,9 @@ class LineCursor(LineReader):
         return match.group() if match else ""
 
     def match_pattern(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
-        """Return the match of the pattern at the cursor, or None without a match.
+        """Return the match of the pattern at the cursor, or None if the pattern does not match.
 
-        The cursor then moves past the match and the following blanks.
+        After a match, the cursor is after the matched text and the following blanks.
         """
         match = pattern.match(self.uppercase_text, self.index)
         if match is not None:
@@ -84,7 +84,7 @@ class LineCursor(LineReader):
         return match
 
     def read_keyword(self, *choices: str) -> str | None:
-        """Read the first of these keywords that is at the cursor, or return None without a match."""
+        """Read the first of these keywords that is at the cursor, or return None if none of them is."""
         for words in choices:
             if self.match_pattern(_keyword(words)):
                 return words
@@ -164,7 +164,7 @@ class LineCursor(LineReader):
     def read_file_name(self) -> str:
         """Read the rest of the line as a file name, and return it without quotation marks.
 
-        The result is empty if no text remains.
+        The result is an empty string if no text remains.
         """
         self._check_no_text_parameter()
         return self.read_remaining_text().strip('"')
@@ -200,7 +200,7 @@ class LineCursor(LineReader):
             raise self.make_expected_error(message, hint)
 
     def choose_hint(self, hint: str) -> str:
-        """Return a specific hint for the text at the cursor, or ``hint`` without one.
+        """Return a specific hint for the text at the cursor, or ``hint`` if no specific hint exists.
 
         Specific hints exist for plain text and for typographic characters.
         """
@@ -245,7 +245,7 @@ _RETRACT = re.compile(r"MB(?![A-Z])|MB(?=MAX)")
 def read_feed(cursor: LineCursor) -> FeedWord | None:
     """Read a feed such as ``F200``, ``FQ5``, ``FU0.1``, ``FMAX`` or ``F AUTO``.
 
-    Returns None without F. Raises ProgramError for an invalid or unsupported feed.
+    Returns None if no F is at the cursor. Raises ProgramError for an invalid or unsupported feed.
     """
     column = cursor.column
     fixed = cursor.match_pattern(_FEED)
@@ -263,7 +263,7 @@ def read_feed(cursor: LineCursor) -> FeedWord | None:
 
 
 def read_retract(cursor: LineCursor) -> RetractWord | None:
-    """Read ``MB50``, ``MB 50`` or ``MB MAX``, or return None without MB."""
+    """Read ``MB50``, ``MB 50`` or ``MB MAX``, or return None if no MB is at the cursor."""
     column = cursor.column
     if cursor.match_pattern(_RETRACT) is None:
         return None
@@ -296,7 +296,7 @@ def read_axis_words(
 def read_words_by_name(cursor: LineCursor, pattern: re.Pattern[str]) -> dict[str, AxisWord]:
     """Read all words at the cursor, and return them by name.
 
-    The name is the group of the pattern. Raises ProgramError if a word is repeated.
+    The name of a word is its group in the pattern. Raises ProgramError if a word is repeated.
     """
     found: dict[str, AxisWord] = {}
     while True:

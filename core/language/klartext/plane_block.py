@@ -108,7 +108,7 @@ def _positioning(cursor: LineCursor, form: str) -> RotaryPositioning:
 
 
 def _with_word(cursor: LineCursor, form: str, positioning: RotaryPositioning) -> RotaryPositioning:
-    """Return the positioning with the next word at the cursor added."""
+    """Read the next word at the cursor, and return the positioning with this word added."""
     column = cursor.column
     if form != "RESET" and (side := cursor.match_pattern(_SIDE)):
         check_not_repeated(cursor, column, positioning.solution, "SYM or SEQ")

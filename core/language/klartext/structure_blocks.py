@@ -101,7 +101,7 @@ def _round_blank(cursor: LineCursor) -> CylinderBlank:
 
 
 def read_blank_form(cursor: LineCursor) -> BlankCorner | CylinderBlank | IgnoredBlock:
-    """Read the block after ``BLK FORM``, which defines a corner of a block or a cylinder.
+    """Read the block after ``BLK FORM``, which defines a cylinder or one corner of a cuboid.
 
     A blank that is defined by a contour or a file is accepted but not drawn.
     """
@@ -353,7 +353,7 @@ def read_function_block(cursor: LineCursor, column: int) -> TcpmSwitch | Ignored
     """Read the block after ``FUNCTION``.
 
     The block is TCPM, DWELL, or a function without effect on this control. Raises ProgramError for AXIS
-    SPAT and PATHCTRL VECTOR, which change the motion that the same words program.
+    SPAT and PATHCTRL VECTOR, because the same words would then program a different motion.
     """
     if cursor.read_keyword("TCPM"):
         while not cursor.is_at_end:

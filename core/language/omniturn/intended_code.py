@@ -26,7 +26,7 @@ class IntendedCode(NamedTuple):
 
 
 class _Pattern(NamedTuple):
-    """The pattern of a code for another control, whose message and remedy may depend on the match."""
+    """Pattern of a code for another control; the message and the remedy may depend on the match."""
 
     regex: str
     message: str
@@ -46,7 +46,7 @@ def _dwell(match: re.Match[str]) -> str:
 def _plain(value: float) -> str:
     """Return a number in program notation.
 
-    The notation has no zero at the start before the decimal point and no trailing zeros.
+    The notation has no leading zero before the decimal point and no trailing zeros.
     """
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return text[1:] if text.startswith("0.") else text

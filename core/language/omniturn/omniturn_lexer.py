@@ -85,9 +85,9 @@ def lex_line(number: int, text: str) -> LexedLine:
 
 
 def _nested_comment(text: str) -> int | None:
-    """Return the index of an opening parenthesis inside a comment, or None.
+    """Return the index of an opening parenthesis inside a comment, or None if it does not exist.
 
-    Returns None also if a parenthesis is not closed.
+    Also returns None if a parenthesis is not closed.
     """
     depth, inner = 0, None
     for at, sign in enumerate(text):
@@ -98,9 +98,9 @@ def _nested_comment(text: str) -> int | None:
 
 
 def _letter_l(number: int, text: str) -> Diagnostic | None:
-    """Return the error for a letter l instead of the digit 1, or None.
+    """Return the error for a letter l instead of the digit 1, or None if no such letter is found.
 
-    Returns None also if the line has other errors.
+    Also returns None if the line has other errors.
     """
     code = _with_blank_comments(text)
     fixed = replace_letter_l(code)
@@ -151,7 +151,7 @@ def _prose_in(bare: str) -> Iterator[re.Match[str]]:
 
 
 def _usual_words(text: str) -> tuple[Word, ...] | None:
-    """Return the words of a line that contains only usual words, or None if a word needs a complete check."""
+    """Return the words of a line with only common words, or None if a word needs a complete check."""
     words: list[Word] = []
     column = 1
     for written, letter, number in _USUAL_WORD.findall(text):

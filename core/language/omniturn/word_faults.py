@@ -137,7 +137,7 @@ def make_character_error(line: int, column: int, character: str, *, is_after_num
 
 
 def find_word_error(line: int, word: Word, digits: str | None) -> Diagnostic | None:
-    """Return the error for the letter or the value of a word, or None."""
+    """Return the error for the letter or the value of a word, or None if the word is valid."""
     letter, value, column, _ = word
     if letter not in VALUE_RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)

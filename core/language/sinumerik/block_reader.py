@@ -88,7 +88,7 @@ class BlockReader(FormulaReader):
     ) -> re.Match[str] | None:
         """Return the match of the pattern at this position, and move past it.
 
-        Returns None without a match.
+        Returns None if the pattern does not match.
         """
         match = pattern.match(self.original_text if uses_original_text else self.uppercase_text, self.index)
         if match is not None:
@@ -98,7 +98,7 @@ class BlockReader(FormulaReader):
     def match_required(self, pattern: re.Pattern[str], message: str, hint: str) -> re.Match[str]:
         """Return the match of the pattern at this position and move past it.
 
-        Raises FormulaError with ``message`` and ``hint`` without a match.
+        Raises FormulaError with ``message`` and ``hint`` if the pattern does not match.
         """
         match = self.match_pattern(pattern)
         if match is None:

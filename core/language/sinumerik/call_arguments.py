@@ -18,7 +18,7 @@ _DIMENSION = re.compile(r"\s*([0-9]*)\s*")
 
 
 class CallArgument(NamedTuple):
-    """One argument of a call, which is a formula or a text, or is omitted.
+    """One argument of a call, which can be a formula, a text, or omitted.
 
     A text is in quotation marks or is an axis letter. ``column`` counts from 1.
     """

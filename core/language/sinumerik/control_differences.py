@@ -38,7 +38,7 @@ MISSING_FUNCTIONS: Mapping[str, frozenset[str]] = {
 
 
 def find_missing_function(control: str, line: LexedBlock) -> tuple[str, int] | None:
-    """Return the first function of a line that a control lacks, with its column, or None."""
+    """Return the first function of a line that a control lacks, with its column, or None otherwise."""
     lacks = MISSING_FUNCTIONS[control]
     if not lacks:
         return None

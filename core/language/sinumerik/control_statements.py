@@ -13,7 +13,7 @@ from core.message import Message
 
 
 class ControlKeyword(StrEnum):
-    """Keyword of a program control line."""
+    """Keyword that starts a program control line."""
 
     GOTO_FORWARD = "GOTOF"
     GOTO_BACK = "GOTOB"
@@ -48,7 +48,7 @@ class ControlKeyword(StrEnum):
 
 
 class VariableDefinition(NamedTuple):
-    """A variable of DEF with the formula of its initial value, or None for 0.
+    """A variable of DEF, with the formula of its initial value, which is None for the value 0.
 
     ``dimensions`` contains the dimensions of an array, and ``values`` contains the values of its elements.
     """
@@ -62,7 +62,7 @@ class VariableDefinition(NamedTuple):
 
 
 class CaseBranch(NamedTuple):
-    """One branch of CASE, whose ``formula`` is None for the DEFAULT branch."""
+    """One branch of CASE; ``formula`` is None for the DEFAULT branch."""
 
     formula: Formula | None
     jump_keyword: ControlKeyword
@@ -122,7 +122,7 @@ _TOLERATED_BRACKET = frozenset({ControlKeyword.GROUP_BEGIN, ControlKeyword.GROUP
 
 
 def find_control_keyword(text: str, index: int) -> ControlKeyword | None:
-    """Return the keyword at ``index`` in ``text``, which is a line in capitals, or None."""
+    """Return the keyword at ``index`` in ``text`` (a line in capitals), or None if there is no match."""
     match = _WORDS.match(text, index)
     return None if match is None else ControlKeyword(match.group(1))
 
@@ -169,7 +169,7 @@ class _Reader(BlockReader):
     def _match_required(self, pattern: re.Pattern[str], problem: str, hint: str) -> re.Match[str]:
         """Return the match of the pattern at this position and move past it.
 
-        Raises FormulaError without a match.
+        Raises FormulaError if the pattern does not match.
         """
         match = self.match_pattern(pattern)
         if match is None:

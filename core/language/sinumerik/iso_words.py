@@ -186,7 +186,7 @@ The first rule that matches is reported.
 
 
 def find_iso_word(code: str) -> IsoWord | None:
-    """Return the first ISO word of a block, or None.
+    """Return the first ISO word of a block, or None if the block has no ISO word.
 
     ``code`` is the block in capitals, without its comment.
     """

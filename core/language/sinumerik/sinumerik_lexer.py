@@ -190,7 +190,7 @@ class _Scanner:
         )
 
     def report_iso_word(self) -> None:
-        """Replace the first error by the advice for an ISO word if the block contains an ISO word."""
+        """If the block contains an ISO word, replace the first error with the advice for this word."""
         if habit := find_iso_word(self._text):
             number, block = self._number, self._block
             self.errors[:] = [
@@ -292,7 +292,7 @@ class _Scanner:
         return self._skip(at, Message("{name} is not a valid word", name=name), hint)
 
     def _key(self, name: str, index: int, end: int) -> int:
-        """Read a word without a value, or with arguments in parentheses."""
+        """Read a word that has no value or has arguments in parentheses."""
         if name in _TRANSFORMATIONS:
             return self._transformation(name, index, end)
         self.words.append(Word(name, None, index + 1, name))
@@ -330,7 +330,7 @@ class _Scanner:
         return match.end() if match is not None else end
 
     def _read_called_name(self, word: str, index: int, end: int) -> int:
-        """Read the program name after MCALL or CALL, which MCALL can omit."""
+        """Read the program name after MCALL or CALL. The name is optional after MCALL."""
         match = _PROGRAM.match(self._text, end)
         self.modal_call, self.call_column = word == "MCALL", index + 1
         if match is not None:

@@ -27,7 +27,7 @@ _MAY_CALL = re.compile(
 class ProgramSection(NamedTuple):
     """One program of a file, with its name and its line indices.
 
-    The name of the file's main text is empty.
+    The name of the file's main text is an empty string.
     """
 
     name: str

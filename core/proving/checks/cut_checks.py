@@ -73,7 +73,7 @@ INSERT_TOOLS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 @dataclass(slots=True)
 class AirCutChecks:
-    """Checks for missing cuts, which are called with the moves in their order.
+    """Checks for missing cuts, to be called for each move in program order.
 
     Call ``check_feed`` or ``check_rapid`` after each move has been cut, and ``record_pause`` between moves.
     """
@@ -94,14 +94,14 @@ class AirCutChecks:
     _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
     def record_pause(self) -> None:
-        """Record a wait or an output that is switched.
+        """Record a wait or a switched output.
 
-        A pause may be the purpose of the present tool position.
+        Such a pause may be the purpose of the current tool position.
         """
         self._went_in = None
 
     def check_rapid(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
-        """Yield the faults of the feeds before a rapid and of earlier rapids that cut nothing."""
+        """Yield a fault if the feeds before a rapid cut nothing, or if earlier rapids cut nothing."""
         if tool != self._tool:
             self._tool, self._went_in = tool, None
         yield from self._end_of_feeds()

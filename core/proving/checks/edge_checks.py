@@ -43,7 +43,7 @@ _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, Too
 
 @dataclass(slots=True)
 class EdgeChecks:
-    """Checks of cutting edges, which are called in the order of the moves after each move has been cut."""
+    """Checks of cutting edges, to be called in program order after each move has been cut."""
 
     stock: Stock | None = None
     is_stock_specified: bool = False  # the stock is specified instead of assumed
@@ -184,7 +184,7 @@ class EdgeChecks:
             )
 
     def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """Check for an arc on the bar side of the deepest part-off, where no part has a contour."""
+        """Check for an arc on the bar side of the deepest part-off, beyond the end of the part."""
         if self.part_off_z is None or move.kind is not BlockKind.ARC or shape.kind not in INSERT_TOOLS:
             return
         front = max(z for z, _ in move.points)
@@ -257,7 +257,7 @@ def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
 
 
 def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """Check that a round tool that does not rotate is on the axis when it cuts."""
+    """Check that a non-rotating round tool is on the axis when it cuts."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = Message(
@@ -321,8 +321,8 @@ def _check_cutting_side(
 ) -> Iterator[Found]:
     """Check for cuts with the back of an insert.
 
-    These are deep backward feeds, and walls that are too steep for the insert. ``cuts`` are the cuts of the
-    straight pieces of the move.
+    Such cuts are deep backward feeds, and feeds along walls that are too steep for the insert. ``cuts`` are
+    the cuts of the straight pieces of the move.
     """
     forward, across = shape.direction
     if not forward or not across:

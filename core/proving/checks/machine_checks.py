@@ -50,7 +50,7 @@ def is_cutting_move(block: Block) -> bool:
 
 @dataclass(slots=True)
 class CuttingChecks:
-    """Checks that are called with the blocks of a program in their order.
+    """Checks to which the blocks of a program are passed in their order.
 
     ``findings`` returns the results. A fault that persists gives one finding, at its first block. For
     languages other than OmniTurn, only the tool and the spindle are checked, because their frames and
@@ -110,7 +110,7 @@ class CuttingChecks:
                     (self._cut if own else self._check_other_dialect_cut)(block)
 
     def _check_first_move(self, block: Block) -> None:
-        """Warn about an incremental first move, because its start position was unknown in the proof."""
+        """Warn about an incremental first move, because its start position is unknown in the proof."""
         self.is_position_known = True
         if block.modal.absolute is False:
             text = (
@@ -329,7 +329,7 @@ def _finding(block: Block, severity: Severity, check: str, text: str, hint: str)
 def check_travel(
     blocks: Sequence[Block], machine: Machine, dialect: Dialect = Dialect.OMNITURN
 ) -> Iterator[Diagnostic]:
-    """Yield an error for each block whose machine positions exceed the travel limits anywhere on the move."""
+    """Yield an error for each block whose move exceeds the travel limits in machine positions."""
     limits = [(axis, *axis.travel_with_margin) for axis in machine.axes]
     for block in _iter_outside_blocks(blocks, limits):
         for (axis, least, most), (low, high) in zip(limits, block.compute_machine_bounds(), strict=True):

@@ -1,4 +1,4 @@
-"""The checks of the proof, with one entry per check, used for the findings and for ``docs/checks.md``."""
+"""The checks of the proof, one entry per check, for the findings and for ``docs/checks.md``."""
 
 from __future__ import annotations
 

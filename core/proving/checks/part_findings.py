@@ -49,7 +49,7 @@ _SAFE = 0.5  # fraction of the speed at which a bar begins to whirl
 class PartFindings:
     """The findings of a program, collected while each move is checked and removes its material.
 
-    The moves must be passed in their order.
+    The moves must be passed in program order.
     """
 
     find_shape: Callable[[int], ToolShape | None]
@@ -231,7 +231,7 @@ class PartFindings:
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=is_certain)
 
     def _check_rubbing(self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """Check for an insert that returns in rapid along the surface that it has just turned.
+        """Check for an insert that rapids back along the surface that it has just turned.
 
         The insert must be specified.
         """
@@ -342,7 +342,7 @@ class PartFindings:
         return ends[0] * ends[1] < 0.0 and float(move.path[:, 1].min()) < front
 
     def _record_part_off(self, move: TipMove, cut: Cut, shape: ToolShape | None, tool: int) -> None:
-        """Record the stub that a parting tool leaves at the axis, until the tool cuts the stub."""
+        """Record the stub that a parting tool has left at the axis and has not cut yet."""
         if self._left is not None and self._left[0] != tool:
             self._tell_left()
         r = abs(move.points[-1][1])
@@ -427,7 +427,7 @@ def _find_body_hit(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cu
 
 
 def _shift_toward_chuck(move: TipMove, distance: float) -> TipMove:
-    """Return the move shifted toward the chuck by ``distance`` in mm, which is a clearance."""
+    """Return the move shifted toward the chuck by the clearance ``distance``, in mm."""
     return move._replace(points=tuple((z - distance, r) for z, r in move.points))
 
 

@@ -44,7 +44,7 @@ class Found(NamedTuple):
 
 
 class DriveLimits(NamedTuple):
-    """Limits of the Z axis and the spindle, with 0 if unknown.
+    """Limits of the Z axis and the spindle; 0 means unknown.
 
     The acceleration along Z is in mm/s², and the deceleration of the spindle is in rpm/s.
     """
@@ -58,7 +58,7 @@ UNKNOWN_LIMITS = DriveLimits()
 
 @dataclass(slots=True)
 class ThreadChecks:
-    """Checks of threads, which are called with the moves in their order.
+    """Checks of threads, to be called for each move in program order.
 
     Call ``record_material`` before each cut and ``check_move`` after it. ``has_releasing_holder`` returns,
     for a T number, whether the tap holder reverses or releases the tap automatically.
@@ -208,7 +208,7 @@ class ThreadChecks:
         return z0 - met.front_z_mm if z1 < z0 else met.back_z_mm - z0
 
     def _braking_distance(self, move: TipMove) -> float:
-        """Return the distance in mm in which the axis accelerates to the speed of the lead.
+        """Return the distance in mm in which the axis accelerates to the speed that the lead requires.
 
         The axis stops from this speed in the same distance.
         """

@@ -1,4 +1,4 @@
-"""The history of the offsets: changes, past states, and an undo function that does not affect other rows."""
+"""The history of the offsets: changes, past states, and an undo that does not affect other rows."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def undo_last_step_in_store(connection: sqlite3.Connection, reason: ChangeReason
 def _last_step(
     connection: sqlite3.Connection, log: HistoryTable, kind: OffsetKind | None, number: int | None = None
 ) -> int | None:
-    """Return the number of the latest step that is not undone yet, or None.
+    """Return the number of the latest step that is not undone yet, or None if no step remains.
 
     ``number`` limits the search to the steps that changed this row.
     """

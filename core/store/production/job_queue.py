@@ -29,7 +29,7 @@ class JobRow(NamedTuple):
     """One job of the queue.
 
     ``base_part_count`` is the part count of the program from which the job counts, or None if the job is
-    not active. ``part_count`` is the present part count of the program.
+    not active. ``part_count`` is the current part count of the program.
     """
 
     id: int
@@ -98,7 +98,7 @@ def read_jobs(
 
 
 def _job(connection: sqlite3.Connection, row: JobRow, held: PendingCounts) -> JobRow:
-    """Return a job with its present part count.
+    """Return a job with its current part count.
 
     If a reset of the count has not been written to disk yet, the parts made before the reset still count
     for the job.
@@ -201,7 +201,7 @@ def deactivate_job(connection: sqlite3.Connection) -> None:
 
 
 def save_count_before_reset(connection: sqlite3.Connection, program: str) -> None:
-    """Save the number of parts that the active job has made before the part count of its program is reset."""
+    """Save the number of parts made by the active job before its program's part count is reset."""
     key = program_records.find_loaded_key(connection, program)
     for row in read_jobs(connection):
         if row.is_active and program_records.find_loaded_key(connection, row.program) == key:
@@ -209,7 +209,7 @@ def save_count_before_reset(connection: sqlite3.Connection, program: str) -> Non
 
 
 def record_loaded_text(connection: sqlite3.Connection, program: str, record_key: str) -> None:
-    """Record that the program text with the record key ``record_key`` is loaded under the name ``program``.
+    """Record that the program text with the key ``record_key`` is loaded under the name ``program``.
 
     The active job of the program retains the parts that it has made.
     """

@@ -118,7 +118,7 @@ def retire_feature(connection: sqlite3.Connection, feature_id: int) -> None:
 
 
 def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
-    """Add a reading, with the present time if the reading has no time, and return its ID.
+    """Add a reading, with the current time if the reading has no time, and return its ID.
 
     Raises StoreError if the value is not finite, or if the feature does not exist or is retired.
     """
@@ -164,7 +164,7 @@ def read_readings(connection: sqlite3.Connection, program: str, limit: int) -> t
 
 
 def _select_intact_rows(connection: sqlite3.Connection, rows: list[Any]) -> list[Any]:
-    """Return the rows with a reading, identified by the first column, that matches its checksum."""
+    """Return the rows whose reading, identified by the first column, matches its checksum."""
     return [
         row for row in rows if row_checksums.read_intact_row(connection, "part_readings", row[0]) is not None
     ]

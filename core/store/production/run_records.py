@@ -17,7 +17,7 @@ LAST_ORIGIN_KEY = "last_event"  # key of the setting with the origin of the last
 
 
 class LoadedTexts:
-    """The record keys of the texts that were loaded since the store was opened, by program name."""
+    """The record keys of the texts that were loaded since the store opened, by program name."""
 
     def __init__(self) -> None:
         self._keys = dict[str, str]()
@@ -84,8 +84,8 @@ class RunRecords:
     ) -> Future[None]:
         """Log an event with its origin, and count a part of the program ``counted_program``.
 
-        No part is counted if ``counted_program`` is empty. All this is written in one transaction. The
-        future is done when the data are on disk.
+        No part is counted if ``counted_program`` is empty. The event and the count are written in one
+        transaction. The future is done when the data are on disk.
         """
         key = self._loaded.find_key(counted_program) if counted_program else ""
 
@@ -102,7 +102,7 @@ class RunRecords:
         return self._store.keep(keeping)
 
     def read_last_origin(self) -> EventOrigin | None:
-        """Return the origin of the last stored event of a control process, or None."""
+        """Return the origin of the last stored event of a control process, or None if none is stored."""
         match self._store.run_query(settings.read_setting, LAST_ORIGIN_KEY):
             case [str() as control, int() as number]:
                 return EventOrigin(control, number)
@@ -147,7 +147,7 @@ class RunRecords:
         return self._store.store_latest_durably(("start", ""), operation)
 
     def record_cycle(self, program: str, cycle_time_s: float) -> Future[None]:
-        """Record one complete cycle of a program with its time in seconds."""
+        """Record one complete cycle of a program and its time in seconds."""
         key = self._loaded.find_key(program)
         return self._store.keep(lambda unwritten: unwritten.add_cycle(key, cycle_time_s))
 

@@ -27,7 +27,7 @@ def get_c_turn_pins(file: HalFile) -> tuple[str, ...]:
 
 
 def load_c_components(file: HalFile, *, shares_input: bool) -> None:
-    """Load the components for C, and call them after the encoder and before the spindle drive.
+    """Load the components for C, which run after the encoder and before the spindle drive.
 
     If ``shares_input`` is True, the spindle speed and C use the same drive input.
     """
@@ -141,7 +141,7 @@ CARD_NOTES = (
 def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
     """Load hostmot2 for an Ethernet card, which the thread reads first and writes last.
 
-    The pins ``further`` also report that inputs of the card are not current.
+    The pins ``further`` also report that inputs of the card are stale.
     """
     lathe = file.lathe
     file.add_load(f"loadrt threads name1={lathe.servo_thread} period1={lathe.period_s * 1e9:.0f}")
@@ -191,7 +191,7 @@ def _list_drive_faults(file: HalFile) -> list[str]:
 
 
 def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
-    """Load one ``pid`` component per axis, which is called after the setpoints."""
+    """Load one ``pid`` component per axis, to run after the setpoints."""
     names = [f"pid.{axis.name.lower()}" for axis in axes]
     if names:
         file.add_load(f"loadrt pid names={','.join(names)}")

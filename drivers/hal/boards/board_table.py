@@ -1,4 +1,4 @@
-"""The table [board] of the machine file, from which ``turndesk machine hal`` writes LinuxCNC's HAL file.
+"""The table [board] of the machine file, from which ``turndesk machine hal`` writes the HAL file.
 
 [hal] contains the pins or signals that TurnDesk uses, and [board] contains the hardware that is connected
 to them. Scales follow from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file contains
@@ -30,12 +30,12 @@ C_AXIS = "C"
 
 
 def _channel_key(*, meaning: str) -> Any:
-    """Return the declaration of a channel of the board, with -1 if the file does not specify it."""
+    """Return the declaration of a channel of the board, whose default -1 means not specified."""
     return declare_key(KeyRange(0, 63), default=-1, meaning=meaning)
 
 
 def _pulse_key(default: int, *, meaning: str) -> Any:
-    """Return the declaration of a time of a step pulse in nanoseconds."""
+    """Return the declaration of a step pulse time in nanoseconds."""
     return declare_key(KeyRange(100, 1_000_000), default=default, meaning=meaning)
 
 
@@ -290,7 +290,7 @@ def _missing(place: str, expected: str) -> FileFinding:
 
 
 def _number_finding(path: str, number: int, expected: str) -> FileFinding:
-    """Return the finding for a number that is missing (negative) or out of range."""
+    """Return the finding for a number that is out of range, or negative because it is missing."""
     if number < 0:
         return _missing(path, expected)
     return FileFinding(path, str(number), Message("expected {expected}", expected=expected))

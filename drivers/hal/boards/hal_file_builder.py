@@ -33,7 +33,7 @@ class LatheAxis:
 
     @property
     def unit(self) -> str:
-        """Return the unit of the positions as a text."""
+        """Return the unit of the positions as text."""
         return "degree" if self.name == C_AXIS else "mm"
 
 
@@ -107,7 +107,7 @@ _READ_FUNCTIONS = re.compile(
 class HalFile:
     """A HAL file that is being built.
 
-    ``find_terminal`` returns the terminal of a board pin, or None.
+    ``find_terminal`` returns the terminal of a board pin, or None if the pin has no terminal.
     """
 
     lathe: LatheData
@@ -146,7 +146,7 @@ class HalFile:
         self.sections.append(FileSection(title, []))
 
     def add_comment(self, comment: str) -> None:
-        """Add a comment to the present section."""
+        """Add a comment to the current section."""
         self.sections[-1].lines.append(f"# {comment}")
 
     def set_pin(self, pin: str, value: float, comment: str = "") -> None:
@@ -211,7 +211,7 @@ class HalFile:
         self.wiring_rows.append(WiringRow(found.label, name, signal, (path,)))
 
     def add_signal(self, path: str, name: str) -> None:
-        """Create a signal without a pin, which is set manually."""
+        """Create a signal that has no pin and is set manually."""
         self._done.add(path)
         self.sections[-1].lines.append(f"newsig {name} bit")
         self.wiring_rows.append(WiringRow("", "-", name, (path,)))
@@ -271,7 +271,7 @@ class HalFile:
             self.findings.append(FileFinding(path, format_toml_value(pin), why))
 
     def connect_remaining(self) -> None:
-        """Connect every name of the machine file that has not been connected to its terminal yet."""
+        """Connect the remaining names of the machine file to their terminals."""
         self.start_section("Inputs and outputs")
         for path in self.lathe.terminal_names:
             if path not in self._done:

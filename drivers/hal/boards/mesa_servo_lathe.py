@@ -30,7 +30,7 @@ _PWM_HZ = 48_000  # Frequency of the analog outputs, as in Mesa's samples.
 
 
 def build_mesa_servo_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file for ±10 V velocity drives, with position loops of encoders and pid components."""
+    """Build the HAL file for ±10 V velocity drives, with encoder and pid position loops."""
     hint = f"an input or relay of the card: {_CARD}.inmux.00.input-00 … -15, {_CARD}.ssr.00.out-00 … -05"
     file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
     file.check_notes += [

@@ -9,14 +9,14 @@ from drivers.hal.bridge.row_streams import HalPins
 
 
 class FollowingMonitor:
-    """A monitor that detects axes outside their windows for too long."""
+    """A monitor that detects axes whose following error exceeds its window for too long."""
 
     def __init__(self, config: BridgeConfig, pins: HalPins) -> None:
         self._config, self._pins = config, pins
         self._over = [0.0] * len(config.axes)  # Seconds outside the window.
 
     def reset(self) -> None:
-        """Discard the times outside the windows."""
+        """Reset the times for which the axes have been outside their windows."""
         self._over = [0.0] * len(self._config.axes)
 
     def find_faulty_axes(self, command: Sequence[float], actual: Sequence[float]) -> Iterator[str]:

@@ -265,12 +265,12 @@ class HalBridge:
 
     @property
     def _is_thread_stopped(self) -> bool:
-        """Return whether HAL's servo thread has stopped, so that its pins have old values."""
+        """Return whether HAL's servo thread has stopped, which means that its pins are no longer updated."""
         return self._sampled and self._quiet > _SAMPLE_TIMEOUT_S
 
     @property
     def _is_stale(self) -> bool:
-        """Return whether hal.link_fault reports that the board's inputs are old."""
+        """Return whether hal.link_fault reports that the board's inputs are stale."""
         return "link-fault" in self.config.bits and bool(self.pins["link-fault"])
 
     def _open_chain(self) -> None:
@@ -386,7 +386,7 @@ class HalBridge:
     def _update_power(self, now: float) -> None:
         """End the reset pulse of the chain, and switch on the power.
 
-        The power is switched on when HAL plays the present axis positions.
+        The power is switched on when HAL plays the current axis positions.
         """
         self._chain_pins.update(now)
         if self._grant_at <= now:

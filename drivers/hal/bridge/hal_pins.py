@@ -87,7 +87,7 @@ def parse_signals(pins: Mapping[str, HalPin], output: str) -> dict[str, HalSigna
 def describe_pin_error(
     expected_pin: ExpectedPin, pins: Mapping[str, HalPin], signals: Mapping[str, HalSignal]
 ) -> str:
-    """Return the error of a pin or signal that the machine file names, or an empty text if it is correct."""
+    """Return the error of a pin or signal in the machine file, or an empty string if it is correct."""
     pin, signal = pins.get(expected_pin.pin), signals.get(expected_pin.pin)
     if pin is None and signal is None:
         return (

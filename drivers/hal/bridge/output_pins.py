@@ -43,13 +43,13 @@ class ChainPins:
         self._reset_until = self._watch_from = -INFINITY
 
     def close_chain(self, now: float) -> None:
-        """Restart the watchdog and start the reset pulse if they are needed to close the chain."""
+        """Restart the watchdog and start the reset pulse if this is necessary to close the chain."""
         if not self._pins["alive"]:
             self._watch_from = now + _WATCHDOG_RESTART_S
         if not self._pins["chain-ok"]:
             self._reset_until = now + _RESET_PULSE_S
 
     def update(self, now: float) -> None:
-        """End the restart of the watchdog and the reset pulse when their times have come."""
+        """End the watchdog restart and the reset pulse when they are due."""
         self._pins["watch"] = now >= self._watch_from
         self._pins["reset"] = now < self._reset_until and bool(self._pins["alive"])

@@ -81,7 +81,7 @@ def number(head: Mapping[str, object], key: str, default: float = 0.0) -> float:
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """Return a text from the head of a packet, or an empty text if it is missing."""
+    """Return a string from the head of a packet, or an empty string if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 

@@ -65,7 +65,7 @@ class _PendingRow(NamedTuple):
 
 
 class RowStreams:
-    """A pair of streams that numbers the rows and recalls rows that have not been played yet."""
+    """A pair of streams that numbers its rows and recalls rows that have not been played."""
 
     def __init__(self, streams: tuple[RowStream, RowStream], pins: HalPins) -> None:
         self._streams = streams
@@ -111,9 +111,9 @@ class RowStreams:
         return self.played_row_due_s
 
     def find_first_recallable_row(self, time_s: float) -> int | None:
-        """Return the first row from this time on that can be recalled, or None.
+        """Return the first row from ``time_s`` on that can be recalled, or None if it is too late.
 
-        ``time_s`` is in seconds. The result is None if it is too late to recall the row.
+        ``time_s`` is in seconds.
         """
         soonest = self.played_row_number + _MARGIN
         for each in self._due:
@@ -149,7 +149,7 @@ class RowStreams:
     def recall_rows(self, time_s: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
         """Replace all rows from ``due_time_s`` on, and return False without a change if it is too late.
 
-        Until ``unchanged_until`` seconds, the replacement is the same path.
+        Up to the time ``unchanged_until`` in seconds, the replacement follows the same path.
         """
         first = self.find_first_recallable_row(time_s)
         if first is None or self.is_changing:

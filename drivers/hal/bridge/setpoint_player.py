@@ -21,7 +21,7 @@ def make_row_function(pieces: list[MotionPiece]) -> Callable[[float], SetpointRo
 
 
 def _rest_row(queue: PieceQueue, t: float) -> SetpointRow:
-    """Return the row with the position of each axis and with zero travel per revolution."""
+    """Return the row with the given axis positions and zero travel per revolution."""
     return tuple([each for p in queue.get_commanded_state(t)[0] for each in (p, 0.0)])
 
 
@@ -136,7 +136,7 @@ class SetpointPlayer:
         return self.queue.get_end_time(time_s) if self.is_cam_inactive else INFINITY
 
     def get_motion_at(self, time_s: float) -> MotionState:
-        """Return the position and the velocity at ``t``, which are predicted for a cam."""
+        """Return the position and velocity at ``t``, predicted if a cam is active."""
         if self.cam is None or (self.cam_end_time_s is not None and time_s >= self.cam_end_time_s):
             return self.queue.get_commanded_state(time_s)
         p, per_turn = self.cam.path_queue.get_commanded_state(self._cam_turns(self.cam, time_s))

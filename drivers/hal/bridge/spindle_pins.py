@@ -20,16 +20,16 @@ class SpindlePins:
 
     @property
     def is_orienting(self) -> bool:
-        """Whether the drive orients the spindle to an angle."""
+        """Return whether the drive orients the spindle to an angle."""
         return "orient" in self._config.spindle and bool(self._pins["spindle.orient"])
 
     @property
     def held_c_position(self) -> float | None:
-        """Position of C after the drive has changed to position mode, or None."""
+        """Return the position of C once the drive has changed to position mode, otherwise None."""
         return self.c_position if self._c_from == INFINITY else None
 
     def update(self, now: float) -> None:
-        """Change to position mode and orient the spindle when their times have come."""
+        """Change to position mode and orient the spindle when each action is due."""
         if self._c_from <= now:
             self._c_from = INFINITY
             self._pins["spindle.position_mode"] = 1
@@ -55,13 +55,13 @@ class SpindlePins:
         self._c_from = time_s
 
     def release_c(self) -> None:
-        """Return the drive from position mode."""
+        """Release C by switching the drive back from position mode."""
         self.c_position, self._c_from = None, INFINITY
         if "position_mode" in self._config.spindle:
             self._pins["spindle.position_mode"] = 0
 
     def orient_spindle(self, head: PacketHead, now: float) -> None:
-        """Orient the spindle; ``orient_spindle`` falls first, because its rising edge latches the angle."""
+        """Orient the spindle, with the orient pin off first, because its rising edge latches the angle."""
         self._release_angle()
         if head.get("on") is not True or not self._pins["chain-ok"]:
             return

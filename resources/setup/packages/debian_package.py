@@ -58,7 +58,7 @@ def get_debian_version(version: str, target: SystemRelease) -> str:
     """Return the version of the Debian package, such as ``0.1.0~202612010830.1a2b3c4+debian12``.
 
     A version with a commit sorts before the release with the same number. Raises BundleError if the
-    checkout has changes that are not committed.
+    checkout has uncommitted changes.
     """
     number, _, commit = version.partition("-")
     if "changed" in commit:
@@ -132,7 +132,7 @@ def _control_files(folder: Path, words: Mapping[str, str]) -> None:
 
 
 def _copyright() -> str:
-    """Return the licenses of TurnDesk and of all packages in it, in Debian's machine-readable format."""
+    """Return the licenses of TurnDesk and its packages in Debian's machine-readable format."""
     license_text = (PROJECT_FOLDER / "LICENSE").read_text(encoding="utf-8")
     mit = "\n".join(f" {line}" if line.strip() else " ." for line in license_text.splitlines())
     parts = [

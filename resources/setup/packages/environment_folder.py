@@ -1,6 +1,6 @@
-"""Folder with TurnDesk and all its Python packages for one Python version, which can be moved.
+"""Relocatable folder with TurnDesk and all its Python packages for one Python version.
 
-The folder has the structure of a virtual environment; ``bin/python`` is a link to the Python of the system.
+The folder has the structure of a virtual environment; ``bin/python`` is a link to the system's Python.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _NEEDLESS = ("bin", "share/man", "share/doc")
 def make_environment_folder(
     folder: Path, wheel: Path, python_version: str, machine: str, wheel_folder: Path
 ) -> None:
-    """Fill a folder for a Python version, such as ``3.11``.
+    """Fill a folder with the environment for a Python version, such as ``3.11``.
 
     ``wheel_folder`` is the folder with all wheels that TurnDesk needs. Raises BundleError if a package
     cannot be installed.
@@ -59,10 +59,7 @@ def make_environment_folder(
 
 
 def _without_traces(packages: Path) -> None:
-    """Delete compiled files and files that depend on this computer.
-
-    In the latter files, pip records data about this computer and the present time.
-    """
+    """Delete compiled files, and files in which pip records data about this computer and build."""
     for compiled in [*packages.rglob("__pycache__")]:
         shutil.rmtree(compiled)
     for info in packages.glob("*.dist-info"):

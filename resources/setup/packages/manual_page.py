@@ -47,7 +47,7 @@ def format_manual_page() -> str:
 
 
 def _commands(parser: argparse.ArgumentParser, name: str) -> Iterator[str]:
-    """Yield the commands of a parser and their subcommands."""
+    """Yield the commands of a parser, including subcommands."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             helps = {each.dest: each.help or "" for each in action._choices_actions}
@@ -77,6 +77,6 @@ def _value_of(action: argparse.Action) -> str:
 
 
 def escape_text(text: str) -> str:
-    """Return a text in which all commands and special characters of ``man`` are escaped."""
+    """Return the text with all commands and special characters of ``man`` escaped."""
     text = text.replace("\\", r"\e").replace("-", r"\-")
     return re.sub(r"^(?=[.'])", r"\\&", text)

@@ -1,4 +1,4 @@
-"""Archives that always have the same bytes for the same files: sorted, with one owner and one time."""
+"""Archives with the same bytes for the same files: sorted, with one owner and one timestamp."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 
 
 def get_release_time() -> int:
-    """Return the time for all files of a release, in seconds since 1970 (``SOURCE_DATE_EPOCH``)."""
+    """Return the timestamp for all files of a release, in seconds since 1970 (``SOURCE_DATE_EPOCH``)."""
     return int(os.environ.get("SOURCE_DATE_EPOCH", "0"))
 
 
 def normalize_member(member: tarfile.TarInfo) -> tarfile.TarInfo:
-    """Set the owner and the time of an archive member, and return the member.
+    """Set the owner and the time of an archive member, and return this member.
 
-    The owner becomes root, and the time becomes the time of the release.
+    The owner becomes root, and the time becomes the release time.
     """
     member.uid = member.gid = 0
     member.uname = member.gname = "root"
@@ -26,7 +26,7 @@ def normalize_member(member: tarfile.TarInfo) -> tarfile.TarInfo:
 
 
 def write_tar_gz(folder: Path, target: Path, name: str) -> None:
-    """Write the files of a folder to a compressed archive, in which they are in the folder ``name``."""
+    """Write the files of a folder to a compressed archive, inside a top-level folder ``name``."""
     with (
         target.open("wb") as file,
         gzip.GzipFile("", "wb", 6, file, mtime=get_release_time()) as packed,
@@ -52,7 +52,7 @@ def repack_tar_gz(path: Path) -> None:
 
 
 def _is_command(path: Path) -> bool:
-    """Return whether a file is a command, which is a script outside of the packages or a program of Qt."""
+    """Return whether a file is a command: an executable outside the packages, or a program of Qt."""
     is_package = "site-packages" in path.parts
     return bool(path.stat().st_mode & 0o100) and (not is_package or path.parent.name == "libexec")
 
@@ -60,8 +60,8 @@ def _is_command(path: Path) -> bool:
 def set_times(folder: Path) -> None:
     """Set the time and the mode of everything in a folder.
 
-    The time is the time of the release, and the modes do not depend on the umask. Only commands remain
-    executable; libraries and modules are made readable only.
+    The time is the release time, and the modes do not depend on the umask. Only commands remain executable;
+    the executable bit of libraries and modules is cleared.
     """
     for path in (folder, *folder.rglob("*")):
         if not path.is_symlink():

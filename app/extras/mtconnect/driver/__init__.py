@@ -1,1 +1,1 @@
-"""MTConnect SHDR adapter that reports values and accepts no commands."""
+"""MTConnect SHDR adapter, which reports values and accepts no commands."""

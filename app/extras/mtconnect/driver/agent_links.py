@@ -1,7 +1,7 @@
-"""Connections to MTConnect agents: SHDR lines, unsent data of each agent, and the listening socket.
+"""Connections to MTConnect agents: SHDR lines, unsent data per agent, and the listening socket.
 
 The lines have the format of the reference agent: ``time|key|value|key|value``. Each condition is on a
-separate line. The rules are from the tokenizer, token mapper and adapter of the C++ agent. SHDR has no
+separate line. The format follows the tokenizer, token mapper and adapter of the C++ agent. SHDR has no
 escape characters.
 """
 
@@ -29,7 +29,7 @@ ItemValue = str | float | None  # None: not known
 
 
 class ActiveCondition(NamedTuple):
-    """Condition that is active.
+    """Active MTConnect condition.
 
     ``condition_level`` is WARNING or FAULT, and ``code`` identifies the condition.
     """
@@ -40,7 +40,7 @@ class ActiveCondition(NamedTuple):
 
 
 class MachineReport(NamedTuple):
-    """State of the machine at one instant, with the values of samples and events and the active conditions.
+    """State of the machine at one instant: values of samples and events, and active conditions.
 
     A missing key means that the value is not known.
     """
@@ -57,8 +57,8 @@ def format_utc_time(time: datetime) -> str:
 def make_pong(heartbeat_s: float) -> bytes:
     """Return the reply to a PING.
 
-    ``heartbeat_s`` is in seconds. The reply states it in milliseconds, limited to 1 ms to just under half an
-    hour.
+    ``heartbeat_s`` is in seconds. The reply contains it in milliseconds, limited to the range from 1 ms to
+    just under half an hour.
     """
     return b"* PONG %d\n" % min(max(round(1000 * heartbeat_s), 1), _LONGEST_BEAT)
 
@@ -73,10 +73,10 @@ def format_value(item: DataItem, value: ItemValue) -> str:
 
 
 def replace_separators(text: str) -> str:
-    """Return a text that the agent reads as one value.
+    """Return the text with its separators and quotation marks replaced, so that it is one value.
 
-    Separators and quotation marks are replaced. Otherwise a leading quotation mark or ``--multiline--``
-    would make the agent read the data that follow as part of the value.
+    Otherwise a leading quotation mark or ``--multiline--`` would make the agent read the data that follow
+    as part of the value.
     """
     text = _CONTROL.sub(" ", text).replace("|", "/").replace("--multiline--", "- multiline -")
     text = text.encode("utf-8", "replace").decode("utf-8")[:MAX_VALUE_LENGTH].strip()
@@ -100,9 +100,9 @@ def make_active_line(time_text: str, key: str, active_condition: ActiveCondition
 
 
 def make_cleared_line(time_text: str, key: str, code: str = "") -> str:
-    """Return the line for the end of one code of a condition.
+    """Return the line that ends one code of a condition.
 
-    If ``code`` is empty, the whole condition ends.
+    If ``code`` is empty, the line ends the whole condition.
     """
     return f"{time_text}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
 
@@ -137,7 +137,7 @@ class SentState:
         return "".join(lines)
 
     def report_changes(self, report: MachineReport, time: str) -> str:
-        """Return the lines of the changes in a report, and store the changes as sent."""
+        """Return lines with the values that a report changes, and store these values as sent."""
         new = dict(self._new_values(report))
         lines = [make_values_line(time, new)] if new else []
         for key, before in self._conditions.items():
@@ -160,9 +160,9 @@ class SentState:
 
 
 def _differs(item: DataItem, before: ItemValue, now: ItemValue) -> bool:
-    """Return whether a value has changed.
+    """Return whether a value has changed enough to be sent.
 
-    The change of a sample must exceed a minimum, except for a change from or to 0.
+    A sample must change by more than a minimum, except for a change from or to 0.
     """
     if isinstance(before, str) or isinstance(now, str) or before is None or now is None:
         return before != now
@@ -180,7 +180,7 @@ def _whole_condition(at: str, key: str, active: tuple[ActiveCondition, ...] | No
 def _changed_condition(
     time: str, key: str, before: tuple[ActiveCondition, ...] | None, now: tuple[ActiveCondition, ...] | None
 ) -> list[str]:
-    """Return the lines of new and changed conditions, followed by the lines of ended conditions."""
+    """Return the lines of new and changed codes of a condition, followed by those of ended codes."""
     if not now or before is None:
         return _whole_condition(time, key, now)
     codes = {each.native_code for each in now}
@@ -201,22 +201,21 @@ PING_TIMEOUT_S = 5.0  # seconds within which an additional agent must send PING
 
 
 class AgentLostError(Exception):
-    """Error for an agent that has disconnected or does not respond.
+    """Error if an agent has disconnected or does not respond.
 
     The message states the reason.
     """
 
 
 class AgentDisconnectedError(AgentLostError):
-    """Error for an agent that has closed its connection."""
+    """Error if an agent has closed its connection."""
 
 
 class AgentLink:
-    """Connection of an agent on a non-blocking socket.
+    """Connection to an agent on a non-blocking socket.
 
-    The constructor takes the requested PING interval in seconds as ``heartbeat_s``. ``waiting_since`` is the
-    time in seconds at which the agent connected while all connections were in use, or None if the agent
-    receives data.
+    The ``heartbeat_s`` parameter is the requested PING interval in seconds. ``waiting_since`` is the time
+    in seconds since when the agent has waited for a free connection, or None if the agent receives data.
     """
 
     def __init__(
@@ -238,7 +237,7 @@ class AgentLink:
     def queue_data(self, data: bytes) -> None:
         """Queue data for the agent.
 
-        Raises AgentLostError if too much earlier data is waiting.
+        Raises AgentLostError if too much unsent data is already queued.
         """
         if len(self._out) + len(data) > MAX_UNSENT_BYTES:
             raise AgentLostError(
@@ -252,7 +251,7 @@ class AgentLink:
     def flush(self) -> None:
         """Send as much queued data as the socket accepts.
 
-        Raises AgentLostError.
+        Raises AgentLostError if the connection fails.
         """
         try:
             sent = self.agent_socket.send(self._out)
@@ -267,7 +266,7 @@ class AgentLink:
     def read_data(self, now_s: float) -> None:
         """Read received data, reply to each PING, and count other lines.
 
-        Raises AgentLostError.
+        Raises AgentLostError if the connection ends or a line is invalid.
         """
         try:
             come = self.agent_socket.recv(READ_BYTES)
@@ -295,8 +294,8 @@ class AgentLink:
     def check_timeout(self, now_s: float) -> None:
         """Raise AgentLostError if the PING of an agent is overdue.
 
-        This applies to an agent that has stopped sending PING, and to an agent that waits for a free
-        connection without sending PING.
+        A PING is overdue if the agent has stopped sending PING, or if the agent waits for a free connection
+        and has never sent one.
         """
         if self.waiting_since is not None and now_s - self.waiting_since > PING_TIMEOUT_S:
             raise AgentDisconnectedError("all connections are in use, and this agent does not send PING")
@@ -317,7 +316,7 @@ _UNANSWERED = 30_000  # ms without a response after which the other computer cou
 def open_listening_socket(bind_address: str, port: int) -> socket.socket:
     """Return a bound, listening socket.
 
-    Raises DriverError with the cause.
+    Raises DriverError if the socket cannot be opened.
     """
     try:
         family, kind, proto, _, address = socket.getaddrinfo(
@@ -363,7 +362,7 @@ def accept_connection(listener: socket.socket) -> socket.socket:
 
 
 def _tune(wire: socket.socket) -> None:
-    """Configure a socket to detect a lost peer and to send lines without delay."""
+    """Configure a socket so that it detects a lost peer and sends lines without delay."""
     wire.setblocking(False)
     wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     wire.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

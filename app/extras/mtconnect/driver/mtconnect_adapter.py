@@ -1,6 +1,6 @@
-"""MTConnect adapter, and the device model (``Devices.xml``) of the reported items.
+"""MTConnect adapter, and the device model (``Devices.xml``) of the data items.
 
-Each agent receives the complete state and then the changes. Values are sent in millimeters. The device
+Each agent receives the complete state first, and then the changes. Values are in millimeters. The device
 model has no ``nativeUnits``, so the agent does not convert the values.
 """
 
@@ -41,7 +41,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(slots=True)
 class ConnectionCounts:
-    """Numbers of connections and ignored lines since the adapter was opened."""
+    """Counts of connections and ignored lines since the adapter was opened."""
 
     accepted_count: int = 0
     rejected_count: int = 0  # connections beyond the limit
@@ -50,7 +50,7 @@ class ConnectionCounts:
 
 
 def get_utc_now() -> datetime:
-    """Return the present time in UTC."""
+    """Return the current time in UTC."""
     return datetime.now(UTC)
 
 
@@ -58,7 +58,7 @@ class MtconnectAdapter:
     """Adapter that reports the machine to agents.
 
     The owner calls ``run_once`` repeatedly. The constructor parameter ``read_report`` is a function that
-    returns the present state of the machine.
+    returns the current state of the machine.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class MtconnectAdapter:
     def open(self) -> None:
         """Start listening for agents.
 
-        Raises DriverError on failure.
+        Raises DriverError if the port cannot be opened.
         """
         try:
             self._door = open_listening_socket(self._settings.bind, self._settings.port)
@@ -106,9 +106,9 @@ class MtconnectAdapter:
         self.send_changes()
 
     def run_once(self, timeout_s: float = 0.0) -> None:
-        """Process pending work.
+        """Process pending network events, and send a report when it is due.
 
-        The method waits for data until the next report, but at most ``timeout_s`` seconds.
+        The method waits for data until the next report is due, but at most ``timeout_s`` seconds.
         """
         left = max(self._next_look - self._clock.now(), 0.0)
         for key, _ in self._selector.select(min(timeout_s, left)):
@@ -120,7 +120,7 @@ class MtconnectAdapter:
             self.send_changes()
 
     def close(self) -> None:
-        """Disconnect all agents, which then report all values as unavailable."""
+        """Disconnect all agents. The agents then report all values as unavailable."""
         for link in self._links.copy():
             self._forget(link)
         if self._door is not None:
@@ -168,9 +168,9 @@ class MtconnectAdapter:
         self._tell(link, self._sent.make_complete_state(format_utc_time(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
-        """Serve a waiting agent.
+        """Serve a waiting agent, or disconnect the agent if no connection can be freed.
 
-        If necessary, the first connection that has never sent PING is closed.
+        If all connections are in use, the first connection that has never sent a PING is closed.
         """
         served = self._served()
         silent = next((other for other in served if not other.has_pinged), None)
@@ -273,8 +273,8 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 def make_devices_xml(device: Component, description_text: str, creation_time: datetime) -> str:
     """Return the XML document of the device model.
 
-    ``description_text`` is for people. The uuid depends only on the name of the device. Raises DriverError
-    if the device name is not valid for agents.
+    ``description_text`` is for human readers. The uuid depends only on the device name. Raises DriverError
+    if agents do not accept the device name.
     """
     if not _NAME.fullmatch(device.name):
         raise DriverError(
@@ -315,7 +315,7 @@ def _header(time: datetime) -> Element:
 
 
 def _element(component: Component, device: str, parent: Element) -> Element:
-    """Return the element of a component with its items and sub-components, in the order of the schema.
+    """Return the XML element of a component with its items and sub-components, in schema order.
 
     Identifiers begin with the device name, so they are unique in an agent with several devices.
     """

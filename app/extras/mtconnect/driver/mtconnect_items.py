@@ -19,9 +19,9 @@ class Category(StrEnum):
 class DataItem:
     """Data item that the adapter reports.
 
-    ``key`` is the name of the item in SHDR lines, and ``units`` are the units of the sent values. Samples
-    have ``decimal_places`` decimals. A change is sent only if it exceeds ``minimum_change`` plus
-    ``relative_change`` times the value.
+    ``key`` is the name of the item in SHDR lines, and ``units`` are the units of the sent values. Values of
+    samples are rounded to ``decimal_places`` decimals. A change is sent only if it exceeds
+    ``minimum_change`` plus ``relative_change`` times the value.
     """
 
     key: str
@@ -56,7 +56,7 @@ class MachineLayout:
     """Layout of the machine, which determines its data items.
 
     ``spindle_name`` is the name of the spindle component. ``is_spindle_positionable`` means that the
-    spindle is also a rotary axis with an angle.
+    spindle can also be positioned at an angle, as a rotary axis.
     """
 
     linear_axes: tuple[str, ...]
@@ -123,7 +123,7 @@ def _own_drive(axis: str) -> tuple[DataItem, ...]:
 def _linear(layout: MachineLayout) -> Iterator[Component]:
     """Yield the components of the linear axes.
 
-    A minimum change of 3 µm suppresses encoder noise at standstill.
+    Changes of less than 3 µm are not reported, to suppress encoder noise at standstill.
     """
     for axis in layout.linear_axes:
         at = DataItem(

@@ -8,7 +8,7 @@ from core.table_schema import DriverDeclaration, DriverTable
 
 @make_key_table
 class MtconnectTable:
-    """Settings of the adapter with its address, the PING interval ``heartbeat`` in s, and the device name."""
+    """Settings of the adapter: address, PING interval ``heartbeat`` in s, and device name."""
 
     enabled: bool = declare_key(default=False, meaning="true: TurnDesk serves an MTConnect adapter.")
     bind: str = declare_key(

@@ -1,7 +1,7 @@
-"""Linux input devices (evdev), which are found by name or USB number, opened exclusively, and read.
+"""Linux input devices (evdev): finding them by name or USB number, opening and reading them.
 
-Events have the format of the kernel. Each packet contains ``struct input_event`` entries, and an entry that
-marks lost events if necessary.
+The events have the format of the kernel. Each packet contains ``struct input_event`` entries. A special
+entry marks lost events.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ EVENT_STRUCT = struct.Struct("@llHHi")
 class InputEvent(NamedTuple):
     """Event of an input device.
 
-    ``time_s`` is the time stamp of the kernel in seconds on the selected clock.
+    ``time_s`` is the kernel's time stamp in seconds, on the clock that was selected for the device.
     """
 
     time_s: float
@@ -57,7 +57,7 @@ class EventPacket(NamedTuple):
 
 
 class PacketParser:
-    """Parser that converts bytes into complete packets.
+    """Parser that divides received bytes into complete packets.
 
     Data from SYN_DROPPED to the next SYN_REPORT are discarded.
     """
@@ -68,7 +68,7 @@ class PacketParser:
         self._lost = False
 
     def parse(self, data: bytes) -> Iterator[EventPacket]:
-        """Add received bytes and yield every packet that is now complete."""
+        """Add received bytes, and yield every packet that is complete with these bytes."""
         self._bytes += data
         whole = len(self._bytes) // EVENT_STRUCT.size * EVENT_STRUCT.size
         read, self._bytes = self._bytes[:whole], self._bytes[whole:]
@@ -85,7 +85,7 @@ class PacketParser:
 
 
 class AxisRange(NamedTuple):
-    """Range of an axis from ``minimum`` to ``maximum``, with the present ``value``."""
+    """Range of an axis from ``minimum`` to ``maximum``, with the current ``value``."""
 
     minimum: int
     maximum: int
@@ -102,7 +102,7 @@ UDEV_RULES_PATH = "/etc/udev/rules.d/70-turndesk-pendant.rules"
 
 
 class EventSource(Protocol):
-    """Open device that provides its events as bytes of ``struct input_event``, and its present state."""
+    """Open device. It provides its current state, and its events as bytes of ``struct input_event``."""
 
     def read(self) -> bytes:
         """Return the bytes received since the last call, or empty bytes.
@@ -118,14 +118,14 @@ class EventSource(Protocol):
     def read_pressed_keys(self) -> frozenset[int]:
         """Return the codes of all pressed keys.
 
-        Raises OSError.
+        Raises OSError if the device is disconnected.
         """
         ...
 
     def read_axis_ranges(self) -> Mapping[int, AxisRange]:
         """Return the ranges and positions of all axes by code.
 
-        Raises OSError.
+        Raises OSError if the device is disconnected.
         """
         ...
 
@@ -138,7 +138,7 @@ class EventSource(Protocol):
 class DeviceEntry:
     """Device that is listed in /sys.
 
-    All nodes of the same device have the same ``stem``.
+    All nodes of one device have the same ``stem``.
     """
 
     node: str
@@ -188,7 +188,7 @@ def _entry(path: Path) -> DeviceEntry:
 def _bits(words: str) -> Iterable[int]:
     """Yield the numbers of the set bits in a bit field of the kernel.
 
-    The kernel writes the bit field as hexadecimal longs, with the highest long first.
+    The kernel writes the bit field as hexadecimal longs, starting with the highest long.
     """
     size = 8 * struct.calcsize("@l")
     for place, word in enumerate(reversed(words.split())):
@@ -258,7 +258,7 @@ def _apart(meant: Sequence[DeviceEntry]) -> str:
 
 
 def _request(direction: int, number: int, size: int) -> int:
-    """Return the number of an ioctl of input devices, as calculated by the kernel macro _IOC."""
+    """Return the ioctl number of a request to an input device, calculated like the kernel macro _IOC."""
     return direction << 30 | size << 16 | ord("E") << 8 | number
 
 
@@ -269,9 +269,9 @@ _CHUNK = 64 * 24
 
 
 def _ioctl(device: int, request: int, value: int | bytes | bytearray | array.array[int]) -> None:
-    """Send one request to a device.
+    """Send one ioctl request to a device.
 
-    The module ``fcntl`` exists only on Linux.
+    The module ``fcntl`` is imported here because it exists only on Linux.
     """
     import fcntl
 
@@ -281,7 +281,7 @@ def _ioctl(device: int, request: int, value: int | bytes | bytearray | array.arr
 class KernelDevice:
     """Implementation of ``EventSource`` for a device node.
 
-    The node is opened exclusively, so its keys do not reach the screen. Time stamps are on the monotonic
+    The node is opened exclusively, so key presses do not reach the screen. Time stamps are on the monotonic
     clock. The constructor raises DriverError if the device cannot be opened.
     """
 

@@ -1,6 +1,6 @@
-"""Pendant of the operator station, with its thread, its buttons and its ``core.ports`` implementations.
+"""Pendant of the operator station: thread, buttons and its ``core.ports`` implementations.
 
-The thread finds the device, reads it, and searches for it again after it was unplugged. The pendant adds
+The thread finds and reads the device, and searches for it again after it was unplugged. The pendant adds
 stops, feed hold and handwheel counts. A press that arrives late has no effect until the button is released
 and pressed again. A release always has an effect.
 """
@@ -34,8 +34,8 @@ CLOSE_TIMEOUT_S = 1.0  # seconds that closing waits for the thread
 class PendantState:
     """State of the pendant.
 
-    ``inputs`` are named as in the machine file. ``missing_reason`` is the reason why TurnDesk does not read
-    the pendant, or empty.
+    ``inputs`` have the names of the machine file. ``missing_reason`` is the reason why TurnDesk does not
+    read the pendant, or an empty string.
     """
 
     input_states: Mapping[str, bool]
@@ -47,9 +47,9 @@ class PendantState:
 class PendantReader:
     """Reader of a pendant.
 
-    The ``open_device`` parameter opens the nodes of the device, and raises DriverError if they cannot be
-    opened. The ``now`` parameter reads the clock of the events. ``start`` reads the device in a separate
-    thread. A test can call ``process_events`` without a thread.
+    The ``open_device`` parameter opens the nodes of the device, or raises DriverError. The ``now``
+    parameter reads the clock of the events. ``start`` reads the device in a separate thread. A test can
+    call ``process_events`` without a thread.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class PendantReader:
         self._thread: threading.Thread | None = None
 
     def get_state(self) -> PendantState:
-        """Return the present state.
+        """Return the current state.
 
         This method can be called from any thread.
         """
@@ -94,7 +94,7 @@ class PendantReader:
     # --- thread ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Search for the device once, so that its state is known, and start the thread."""
+        """Search for the device once, so that its state is known. Then start the thread."""
         self.process_events(0.0)
         self._thread = threading.Thread(target=self._run, name="pendant", daemon=True)
         self._thread.start()
@@ -113,7 +113,7 @@ class PendantReader:
                 self._ending.wait(_AGAIN)
 
     def process_events(self, timeout_s: float) -> None:
-        """Wait up to ``timeout_s`` for events and process them, or search for a missing device."""
+        """Wait up to ``timeout_s`` for events and process them. If the device is missing, search for it."""
         self._looked = self.read_clock()
         if not self._nodes:
             self._open()
@@ -171,7 +171,7 @@ class PendantReader:
 def _pressed(nodes: Sequence[EventSource]) -> tuple[set[int], dict[int, AxisRange]]:
     """Return the pressed keys and the axis ranges of all nodes.
 
-    Raises OSError.
+    Raises OSError if the device is disconnected.
     """
     keys: set[int] = set()
     ranges: dict[int, AxisRange] = {}
@@ -191,8 +191,8 @@ LOST_EVENTS_MESSAGE = "pendant events were lost; the handwheel may have turned f
 class PendantStation:
     """Implementation of ``core.ports.Station`` for an operator station with a pendant.
 
-    If the pendant has a stop button, it must be present, or else no cycle can run. If it has no stop
-    button, unplugging it causes one feed hold. The pendant cannot start any motion.
+    If the pendant has a stop button, no cycle can run without the pendant. If it has no stop button,
+    unplugging it causes one feed hold. The pendant cannot start motion.
     """
 
     def __init__(self, station: Station, pendant: PendantReader, *, has_stops: bool, has_wheel: bool) -> None:
@@ -242,7 +242,7 @@ class PendantIO:
     def write(self, name: str, is_on: bool) -> None:
         """Write an output of the machine.
 
-        Raises DriverError.
+        Raises DriverError if the output cannot be written.
         """
         self._io.write(name, is_on)
 
@@ -267,9 +267,9 @@ class PendantButtons:
     """Buttons and handwheel of the pendant.
 
     ``control_by_name`` maps names of the machine file to controls. ``stop_inputs`` are the names of the
-    inputs that have an effect even if they are late. ``pressed_names`` are the names of the pressed
-    buttons. ``wheel_counts`` is the handwheel count. ``has_absolute_wheel`` means that the wheel reports
-    positions instead of steps.
+    inputs whose presses take effect even if they arrive late. ``pressed_names`` are the names of the
+    pressed buttons. ``wheel_counts`` is the handwheel count. ``has_absolute_wheel`` means that the wheel
+    reports positions instead of steps.
     """
 
     control_by_name: Mapping[str, PendantControl]
@@ -285,7 +285,7 @@ class PendantButtons:
     _at: int | None = None  # position of a wheel that reports positions
 
     def set_initial_state(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
-        """Set the present state of the device.
+        """Set the current state of the device.
 
         Buttons that are already pressed have no effect, except stop buttons.
         """
@@ -302,7 +302,7 @@ class PendantButtons:
             self._at = self.axis_ranges[self.wheel_control.event_code].value
 
     def release_all(self) -> None:
-        """Release all buttons and discard the position of the wheel because the device is disconnected."""
+        """Release all buttons and discard the wheel position, because the device is disconnected."""
         self.pressed_names.clear()
         self.ineffective_names.clear()
         self._at = None
@@ -310,7 +310,7 @@ class PendantButtons:
     def apply_packet(self, packet: EventPacket, now_s: float) -> None:
         """Apply the events of a packet.
 
-        ``now`` is the present time in seconds on the clock of the events.
+        ``now`` is the current time in seconds on the clock of the events.
         """
         for event in packet.events:
             late = now_s - event.time_s > MAX_EVENT_AGE_S
@@ -366,9 +366,9 @@ class PendantButtons:
         return self._share(control) > _FREE
 
     def _share(self, control: PendantControl) -> float:
-        """Return the deflection of an axis in the direction of a control as a ratio of half its range.
+        """Return the deflection of an axis toward a control, as a fraction of half the axis range.
 
-        The result is negative in the opposite direction.
+        The result is negative if the axis is deflected in the opposite direction.
         """
         reach = self.axis_ranges.get(control.event_code)
         if reach is None or reach.maximum <= reach.minimum:

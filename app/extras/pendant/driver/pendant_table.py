@@ -117,8 +117,8 @@ class PendantModel:
     """Settings of the pendant.
 
     ``device`` is the name of the device or its hexadecimal ``vendor:product``. ``serial`` distinguishes
-    identical devices. ``counts`` states whether the wheel reports steps (REL), or its position from 0 to
-    255 as a Shuttle does.
+    identical devices. ``counts`` specifies whether the wheel reports steps (REL) or, as a Shuttle does, a
+    position from 0 to 255.
     """
 
     device: str = declare_key(
@@ -185,7 +185,7 @@ def _wrong_button(path: str, terminal: str) -> str:
 
 
 def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
-    """Yield a finding for each button that has more than one function."""
+    """Yield a finding for each button to which more than one function is assigned."""
     taken: dict[object, str] = {}
     for path, terminal in buttons.items():
         code = parse_button_name(terminal.removeprefix(PENDANT_PREFIX))
@@ -196,10 +196,7 @@ def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
 
 
 def _wheel(file: MachineFileReading) -> str:
-    """Return the address of the handwheel on the pendant.
-
-    The address is empty if the pendant does not have the handwheel.
-    """
+    """Return the address of the handwheel on the pendant, or an empty string if it is elsewhere."""
     path = f"{_WHEEL}.at"
     at = file.values.text(path) if file.values.has_values(path) else ""
     return at if at.startswith(PENDANT_PREFIX) else ""

@@ -55,7 +55,7 @@ def _width(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
 
 
 def _corner(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the touched-off corner from the tool data, or the corner at the chuck for an unknown tool."""
+    """Return the touched-off corner from the tool data; an unknown tool has the corner at the chuck."""
     shape = settings.tool(number(values, "T"))
     return RIGHT if shape is not None and shape.direction[0] > 0 else LEFT
 
@@ -96,7 +96,7 @@ class BladeWriter:
         return self.calculate_z_at_chuck_corner(front - self.width)
 
     def write_positioning(self, z: float, r: float) -> None:
-        """Write a move along Z at the present radius, then a move to radius ``r``.
+        """Write a move along Z at the current radius, then a move to radius ``r``.
 
         Unnecessary moves are omitted.
         """

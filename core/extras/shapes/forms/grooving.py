@@ -84,7 +84,7 @@ def _groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _loop(filled_shape: FilledShape, code: CodeWriter, outer: float, first: float) -> None:
-    """Write several grooves of one plunge each, as a loop with incremental moves."""
+    """Write a loop with incremental moves that cuts several grooves, with one plunge for each."""
     deep = get_tool_side(filled_shape) * (outer - filled_shape.get_number("BOTTOM") / 2.0)
     code.write_rapid(z=first)
     code.append_lines(

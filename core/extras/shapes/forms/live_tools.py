@@ -1,4 +1,4 @@
-"""Shapes for a live tool with the spindle as C axis: cross holes, flats and slots in the planes XC and ZC."""
+"""Shapes for a live tool with the spindle as C axis: cross holes, flats and slots."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ CROSS_HOLES_SHAPE = Shape(
 def _flat_path(
     filled_shape: FilledShape, settings: ProgramSettings
 ) -> tuple[float, list[tuple[float, float]]]:
-    """Return the X of the entry and the path of the tool center around the flats, seen from the front."""
+    """Return the entry X, and the path of the tool center around the flats as seen from the front."""
     many, radius = int(filled_shape.get_number("FLATS")), filled_shape.get_number("DIA") / 2.0
     away = filled_shape.get_number("ACROSS") / 2.0 + radius
     outside = filled_shape.get_number("FROM") / 2.0 + radius

@@ -74,7 +74,7 @@ They are not fields, and proposals use them.
 
 
 def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
-    """Return the values LOWEST and HIGHEST of a contour, without moves square across the face.
+    """Return LOWEST and HIGHEST of a contour, ignoring moves square across the face.
 
     The result is empty if roughing along Z cannot cut the contour.
     """
@@ -86,7 +86,7 @@ def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
 
 
 def _stock_and_end(values: FieldValues) -> tuple[float, float]:
-    """Return the diameters of the stock and of the deepest cut, which are equal if they are unknown."""
+    """Return the diameters of the stock and of the deepest cut; if unknown, they are equal."""
     low = number(values, LOWEST) or number(values, "SMALL")
     high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
     if text(values, "SIDE") == INSIDE or "DIAM" in values:
@@ -136,7 +136,7 @@ def write_spindle_start(
 ) -> None:
     """Write the tool call, the spindle start and the approach.
 
-    Constant surface speed is included if it is specified.
+    Constant surface speed is included if a surface speed is specified.
     """
     code.cutting_edge = filled_shape.get_number("COMP") or 1.0
     code.write_tool_start(filled_shape.get_number("T"), filled_shape.get_number("RPM"), x, z)

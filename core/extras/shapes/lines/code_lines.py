@@ -34,7 +34,7 @@ class BarFeedLoop(NamedTuple):
 
     @property
     def feed_length(self) -> float:
-        """Return the length by which the bar is fed at a time."""
+        """Return the length by which each feed advances the bar."""
         return self.part_length if self.feeds_each_part else self.part_count * self.part_length
 
 
@@ -208,7 +208,7 @@ class CodeWriter:
     def format_feed(self, feed: float) -> str:
         """Return the words that make the next move a cut at ``feed`` per revolution.
 
-        The text is empty if these words are already active.
+        The result is an empty string if these words are already active.
         """
         word = f"F{format_short_number(feed, 6)}" if feed else self._feed
         if word == self._feed:
@@ -250,7 +250,7 @@ class CodeWriter:
     def write_contour_turning(self, turning: ContourTurning) -> None:
         """Write roughing with G75, then the contour.
 
-        Roughing and nose compensation are included only if they are specified.
+        Roughing is included only if it is specified, and so is nose compensation.
         """
         there = resolve_points(turning.points)
         first = there[0]
@@ -277,7 +277,7 @@ class CodeWriter:
             self.write_cut(x=turning.clear_radius)
 
     def write_contour(self, points: Sequence[ContourPoint]) -> None:
-        """Write the lines of a contour after its first point, which the tool has already reached."""
+        """Write the lines of a contour; the tool has already reached its first point."""
         for (_, before), (row, here) in pairwise(zip(points, resolve_points(points), strict=True)):
             x = (
                 here[1]
@@ -295,12 +295,12 @@ class CodeWriter:
                 self.write_line(x, z, row.chamfer, row.radius)
 
     def cancel_compensation(self, offset: float) -> None:
-        """Write the end of the nose compensation if a contour used this offset."""
+        """Cancel the nose compensation if a contour has used this offset."""
         if offset:
             self.append_lines("G40")
 
     def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
-        """Write a hole from the present position to ``end``, with pecks or in one pass.
+        """Write a hole from the current position to ``end``, with pecks or in one pass.
 
         ``start`` is the depth of an existing hole.
         """
@@ -367,7 +367,7 @@ def add_leading_zero(word: str) -> str:
 def round_length(value: float, *, is_metric: bool, is_diameter: bool = False) -> float:
     """Return a length rounded to the resolution of the control.
 
-    If ``is_diameter`` is True, the length is rounded to the resolution of a diameter.
+    If ``is_diameter`` is True, the resolution of a diameter is used.
     """
     step = _STEPS[is_metric] * (2.0 if is_diameter else 1.0)
     return round(value / step) * step
@@ -383,14 +383,14 @@ def round_depth_up(radius: float, *, is_metric: bool) -> float:
 
 
 def encode_comment_number(value: float, places: int = 5) -> str:
-    """Encode a number for a comment, with P for the point and a leading M for minus: 0P5, M0P035."""
+    """Encode a number for a comment, with P for the point and M for a minus sign: 0P5, M0P035."""
     text = f"{abs(value):.{places}f}".rstrip("0").rstrip(".")
     sign = "M" if value < 0 and text.strip("0.") else ""
     return sign + text.replace(".", "P")
 
 
 def decode_comment_number(text: str) -> float | None:
-    """Return the number that ``encode_comment_number`` encoded, or None if the text has another format."""
+    """Return the number that ``encode_comment_number`` encoded, or None for text in another format."""
     found = _NUMBER.fullmatch(text)
     if found is None:
         return None

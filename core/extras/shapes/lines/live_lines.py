@@ -1,4 +1,4 @@
-"""Program lines for a live tool in OmniTurn and SINUMERIK: spindle as C axis, and the planes XC and ZC."""
+"""Program lines for a live tool in OmniTurn and SINUMERIK, with C axis and planes XC and ZC."""
 
 from __future__ import annotations
 
@@ -32,9 +32,8 @@ class FaceMilling(NamedTuple):
     """Milling around the end of a part, repeated at each depth.
 
     ``path`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is the X at Y 0
-    that is clear of the part and to which the tool returns after each round. If ``is_closed`` is True, the
-    path leads around the part, and the tool moves directly to its first point, which is also clear of the
-    part.
+    that is clear of the part; the tool returns to it after each round. If ``is_closed`` is True, the path
+    leads around the part, and the tool moves directly to its first point, which is also clear of the part.
     """
 
     entry_x: float
@@ -45,7 +44,7 @@ class FaceMilling(NamedTuple):
 
 
 class CylinderSlots(NamedTuple):
-    """Slots in a cylinder, each ``length_z`` long in Z and ``angle_span_deg`` degrees around the cylinder.
+    """Slots in a cylinder, each ``length_z`` long in Z and ``angle_span_deg`` degrees wide around it.
 
     ``diameter`` is the diameter of the cylinder. ``bottom_radii`` contains the radius of the mill's end for
     each pass; the passes alternate in direction. ``clearance_radius`` is a radius clear of the part.
@@ -94,7 +93,7 @@ class LiveToolWriter:
             self._code.append_lines(f"{word}{format_short_number(degrees, 3)}", wait)
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
-        """Write drilled and indexed holes, as a loop if there are several holes."""
+        """Write the moves of indexed drilled holes, as a loop if there are several holes."""
         code = self._code
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         self._angle("CA", holes.start_angle_deg)
@@ -154,7 +153,7 @@ class LiveToolWriter:
 
 
 def _wait(degrees: float, c_rpm: float) -> float:
-    """Return the dwell in seconds until C is in position.
+    """Return the dwell in seconds that C needs to reach its position.
 
     The dwell is necessary because the drive does not report that C is in position.
     """
@@ -178,7 +177,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         return f"{name}{'' if len(name) == 1 else '='}{format_sinumerik_number(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
-        """Write the switch of X between radius and diameter.
+        """Write the words that switch X between radius and diameter.
 
         TRANSMIT measures X and Y in the same unit.
         """

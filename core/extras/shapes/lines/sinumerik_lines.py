@@ -1,4 +1,4 @@
-"""Program lines of a shape in SINUMERIK, with separated words, leading zeros, CYCLE95, CYCLE81 and CYCLE83.
+"""Program lines of a shape in SINUMERIK: separated words, leading zeros, and drilling cycles.
 
 Grooves use G1, or CYCLE93 if the form specifies the second cutting edge of the blade.
 """
@@ -87,7 +87,7 @@ class SinumerikCodeWriter(CodeWriter):
         self._move("G1", self.format_point(x, z), suffix, self._fresh(feed))
 
     def _fresh(self, feed: float) -> str:
-        """Return the word for a feed, or an empty text if the feed is already active."""
+        """Return the word for a feed, or an empty string if the feed is already active."""
         word = f"F{format_sinumerik_number(feed, 6)}" if feed else self._feed
         said, self._feed = ("" if word == self._feed else word), word
         return said

@@ -1,4 +1,4 @@
-"""Tapping on the axis with a floating holder, and selection of the standard drill for the hole."""
+"""Tapping on the axis with a floating holder, and selection of the standard tap drill."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ def _metric() -> Iterator[float]:
 def find_tap_drill(minimum: float, maximum: float, *, is_metric: bool) -> tuple[str, float] | None:
     """Return the name and size of the drill for a hole between two limits, or None.
 
-    The limits and the size are in mm or inches. The drill is the largest one that is not above the middle
-    of the limits, because drills cut oversize. If there is no such drill, the next larger drill is used.
+    Limits and size are in mm or inches. The drill is the largest within the limits that is not above their
+    middle, because drills cut oversize, or else the smallest one within the limits.
     """
     sold = {f"{size:g}": size for size in _metric()} if is_metric else _INCH
     fits = sorted((size, name) for name, size in sold.items() if minimum <= size <= maximum)
@@ -207,7 +207,7 @@ def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
 def _called(name: str, size: float, series: ThreadSeries, settings: ProgramSettings) -> str:
     """Return the name of a drill.
 
-    The size in the program's unit follows the name if the name is in another unit.
+    If the name is in another unit, the size in the program's unit is added.
     """
     size = convert_length(size, series, is_metric=settings.metric)
     shown = format_short_number(size, 3 if settings.metric else 4)
@@ -295,7 +295,7 @@ def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator
 
 
 def _propose_tapping_rpm(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the proposed rpm, limited to the maximum rpm of the C axis for a rigid tap."""
+    """Return the proposed rpm; for a rigid tap it is limited to the maximum rpm of the C axis."""
     turns = _turns(values, settings)
     most = settings.shop.max_c_rpm if _rigid(values) else math.inf
     return min(turns, most) if isinstance(turns, float) else turns

@@ -1,4 +1,4 @@
-"""Thread series by name, and the limits of a thread by class, from the formulas of the standards.
+"""Thread series by name, and thread limits by class, from the formulas of the standards.
 
 The sources are ASME B1.1 for unified threads, and ISO 965-1 for metric threads, whose tolerances are
 rounded to preferred numbers (R 40). Pipe threads follow B1.20.1, ISO 7-1 and ISO 228-1. ACME threads follow
@@ -14,7 +14,7 @@ from fractions import Fraction
 
 
 class ThreadSeries(StrEnum):
-    """The standard thread series, and OWN for a thread that is defined by its dimensions."""
+    """The standard thread series, and OWN for a thread defined by its own dimensions."""
 
     UNC = "UNC"
     UNF = "UNF"
@@ -151,7 +151,7 @@ def find_thread_size(series: ThreadSeries, name: str) -> ThreadSize | None:
 
 
 def _names(series: ThreadSeries, size: ThreadSize) -> tuple[str, ...]:
-    """Return the names of a size with and without its pitch."""
+    """Return the names of a size, one with and one without the pitch."""
     if series in {ThreadSeries.M, ThreadSeries.MF}:
         return size.name, f"{size.name.partition('X')[0]}X{size.pitch:g}"
     turns = (25.4 if series in METRIC_SERIES else 1.0) / size.pitch
@@ -245,8 +245,8 @@ def _middle(pair: tuple[float, float]) -> float:
 def _v_root(pitch_diameter: float, pitch: float, nose: float, *, is_inside: bool) -> float:
     """Return the final diameter of a tool tip with the radius ``nose``.
 
-    The diameter is at half the sharp V, minus the tip truncation. A nose of 0 means the standard profile: a
-    truncation of H/6 outside (rounded root) and, inside, a flat of P/8, which is a truncation of H/8.
+    The diameter is at half the sharp V, minus the tip truncation. Without a nose radius the profile is
+    standard: a truncation of H/6 outside (rounded root) and, inside, a flat of P/8, i.e. H/8.
     """
     high = V60_HEIGHT_FACTOR * pitch
     lack = nose or high / (8.0 if is_inside else 6.0)
@@ -328,7 +328,7 @@ _PLACE_G |= {1.5: 32, 1.75: 34, 2.0: 38, 2.5: 42, 3.0: 48, 3.5: 53, 4.0: 60, 4.5
 
 
 def _preferred(value: float, *, up: bool = False) -> float:
-    """Return the nearest preferred number of the series R 40.
+    """Return the nearest preferred number of the R 40 series.
 
     If ``up`` is True, return the first preferred number that is at least 99 % of the value.
     """

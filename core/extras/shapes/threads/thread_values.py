@@ -46,7 +46,7 @@ def get_series(values: FieldValues) -> ThreadSeries:
 
 
 def find_thread_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits | None:
-    """Return the limits for series, size and class in the unit of the series, or None if they are unknown."""
+    """Return the thread limits for series, size and class in the series' unit, or None if unknown."""
     series, inside = get_series(values), text(values, "SIDE") == INSIDE
     found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
@@ -61,7 +61,7 @@ def find_thread_limits(values: FieldValues, settings: ProgramSettings) -> Thread
 
 
 def make_diameter_proposal(limit_name: str) -> ValueProposal:
-    """Return a function that proposes a diameter of the standard; ``limit_name`` is ``crest`` or ``root``."""
+    """Return a function that proposes a standard diameter; ``limit_name`` is ``crest`` or ``root``."""
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         known = find_thread_limits(values, setting)
@@ -77,7 +77,7 @@ def make_diameter_proposal(limit_name: str) -> ValueProposal:
 
 
 def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the pitch of the thread size."""
+    """Propose the pitch that belongs to the thread size."""
     series = get_series(values)
     found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
@@ -97,7 +97,7 @@ def list_classes_for_side(values: FieldValues) -> tuple[str, ...]:
 
 
 def has_standard_series(values: FieldValues) -> bool:
-    """Return whether the thread has a standard series and therefore a size."""
+    """Return whether the thread belongs to a standard series and therefore has a size."""
     return get_series(values) is not ThreadSeries.CUSTOM
 
 
@@ -115,7 +115,7 @@ def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue
 
 
 def propose_pass_count(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the number of passes for the pitch, from 4 for the finest pitch to 16 for the coarsest.
+    """Propose a number of passes for the pitch, from 4 for the finest to 16 for the coarsest pitch.
 
     Insert makers recommend these numbers.
     """
@@ -126,7 +126,7 @@ def propose_pass_count(values: FieldValues, settings: ProgramSettings) -> FieldV
 def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
     """Return the included flank angle in degrees.
 
-    This is the angle of the series, otherwise the angle in the tool data, otherwise 60.
+    This is the angle of the series; if it is unknown, the angle in the tool data, or else 60.
     """
     shape = settings.tool(number(values, "T"))
     point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
@@ -136,7 +136,7 @@ def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
 def propose_infeed_angle(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose an infeed angle that is at least half a degree smaller than the flank angle.
 
-    For a thread of 60°, the result is 29°, as in the control.
+    For a 60° thread, the result is 29°, as in the original control.
     """
     return math.ceil(find_flank_angle(values, settings) / 2.0) - 1.0
 
@@ -171,7 +171,7 @@ G35_LEAD_LIMITS_IN = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G
 
 
 def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield the errors of a thread in its dimensions, the machine's limits and the tool."""
+    """Yield the errors of a thread with respect to its dimensions, the machine's limits and the tool."""
     inside = filled_shape.get_text("SIDE") == INSIDE
     crest, root, pitch = (
         filled_shape.get_number("CREST"),
@@ -330,7 +330,7 @@ def _by_sheet(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldEr
 
 
 def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if the series does not have this size or class, in which case no values are proposed."""
+    """Yield an error if the series does not have this size or class, so that no values are proposed."""
     series, allowed = get_series(filled_shape.values), list_classes_for_side(filled_shape.values)
     size, tolerance = filled_shape.get_text("SIZE"), filled_shape.get_text("CLASS")
     if series is not ThreadSeries.CUSTOM and size and find_thread_size(series, size) is None:
@@ -354,7 +354,7 @@ def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> 
 
 
 def find_coarse_step(filled_shape: FilledShape, settings: ProgramSettings) -> float:
-    """Return the step of the axis under the G35 or G35F2 that a lead requires, or 0 if neither is required.
+    """Return the axis step for the G35 or G35F2 that a lead requires, or 0 if neither is required.
 
     The step is in the unit of the program.
     """

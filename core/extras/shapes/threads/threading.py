@@ -96,7 +96,7 @@ def _cycle97(filled_shape: FilledShape, _settings: ProgramSettings, code: CodeWr
 def _far(filled_shape: FilledShape) -> float:
     """Return the diameter before threading at the far end of the thread.
 
-    It differs from the start diameter for a tapered thread.
+    For a tapered thread it differs from the diameter at the start.
     """
     outwards = -1.0 if filled_shape.get_text("SIDE") == INSIDE else 1.0
     return filled_shape.get_number("CREST") + outwards * filled_shape.get_number(

@@ -66,7 +66,7 @@ class ClearingData:
 
     @property
     def is_up_cut(self) -> bool:
-        """Return whether pockets are milled clockwise, which is up-cut milling (negative Q9) with M3."""
+        """Return whether Q9 is negative, so that pockets are milled clockwise (up-cut with M3)."""
         return (self.tool.read_value(9, 1.0) < 0.0) != (self.tool.running_rpm < 0.0)
 
     @property
@@ -195,7 +195,7 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
 def _move_to_depth(
     clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
 ) -> Iterator[Block]:
-    """Yield the moves to the start of a ring at the depth ``z``, if necessary along a ramp."""
+    """Yield the moves to the start of a ring at the depth ``z``, along a ramp if necessary."""
     tool = clearing.tool
     if not cut.moves_at_depth:
         yield from tool.move_above(cut.ramp_loop[0].start, clearing.clearance_z_mm)
@@ -249,7 +249,7 @@ def _element(tool: CycleTool, element: Element, z: float, feed: float) -> Block:
 
 
 def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
-    """Yield the blocks of cycle 23, which finishes the floor up to the allowance on the walls."""
+    """Yield the blocks of cycle 23, which finishes the floor and leaves the allowance on the walls."""
     clearing = ClearingData(tool, area)
     feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
     plan = clearing.plan_level(tool.radius_mm)
@@ -319,7 +319,7 @@ def _add_approach_arcs(
 def _make_quarter_arcs(
     wall_point: Point, direction: Point, radius_mm: float, *, is_left: bool
 ) -> tuple[Arc, Arc]:
-    """Return quarter circles on the pocket side that lead to a point of the wall and away from the wall."""
+    """Return the approach and departure quarter circles at a wall point, on the pocket side."""
     x, y = get_left_normal(direction)
     side = (x, y) if is_left else (-x, -y)
     centre = wall_point[0] + side[0] * radius_mm, wall_point[1] + side[1] * radius_mm
@@ -383,7 +383,7 @@ def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
 def run_contour_cycle(
     state: State, tool: CycleTool, number: int, contours: ContourSequence, column: int
 ) -> Iterator[Block]:
-    """Yield the blocks of a cycle of ``CONTOUR_CYCLES`` for the given contours.
+    """Yield the blocks of one of the ``CONTOUR_CYCLES`` for the given contours.
 
     Raises ProgramError for invalid cycle data.
     """

@@ -74,7 +74,7 @@ _DefinitionNode = CycleDefinition | CycleLine | PatternDefinition | ContourDefin
 
 
 class ActiveCycle:
-    """The cycle that CYCL DEF defined last, which M89 calls after every positioning block."""
+    """The cycle of the last CYCL DEF, with its calls by CYCL CALL, M99 and M89."""
 
     def __init__(self, state: State) -> None:
         self._state = state
@@ -101,7 +101,7 @@ class ActiveCycle:
             yield from self.add_cycle_line(node)
 
     def select_points(self, rows: Mapping[int, TableRow]) -> None:
-        """Set the pattern points from the rows of a point table, which contain X, Y, and Z above Q203."""
+        """Set the pattern points from point table rows, which contain X, Y and the height above Q203."""
         self._points = [(row.get("X", 0.0), row.get("Y", 0.0), row.get("Z", 0.0)) for row in rows.values()]
 
     def define_cycle(self, node: CycleDefinition) -> Iterator[Block]:
@@ -138,7 +138,7 @@ class ActiveCycle:
             self._begin(node.cycle_number)
 
     def _not_supported(self, node: CycleDefinition | CycleLine) -> ProgramError:
-        """Return the error for a cycle number that is not supported."""
+        """Return the error for a cycle that TurnDesk does not support."""
         kind = _CYLINDER_CYCLES.get(node.cycle_number)
         kind_suffix = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
         name = Message("CYCL DEF {number}{kind}", number=node.cycle_number, kind=kind_suffix)
@@ -151,10 +151,10 @@ class ActiveCycle:
         self._number, self._lines, self.called_program = number, {}, ""
 
     def _preset(self, column: int) -> None:
-        """Execute cycle 247, which activates the zero and the basic rotation of a row of the preset table.
+        """Execute cycle 247, which activates a preset with its zero and its basic rotation.
 
-        Without a preset table, the zero of the machine file remains active and a warning is logged. Raises
-        ProgramError for an undefined preset.
+        If no preset table exists, the zero of the machine file remains active and a warning is logged.
+        Raises ProgramError for an undefined preset.
         """
         state, number = self._state, self._state.q_values.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
@@ -184,7 +184,7 @@ class ActiveCycle:
     def add_cycle_line(self, node: CycleLine) -> Iterator[Block]:
         """Yield the blocks of one line of a cycle numbered below 200.
 
-        Cycles that do not machine are executed immediately. Raises ProgramError if the cycle is not
+        Cycles without machining are executed immediately. Raises ProgramError if the cycle is not
         supported.
         """
         if node.cycle_number in _TRANSFORMS and node.line_number == 0:
@@ -203,14 +203,14 @@ class ActiveCycle:
 
     @property
     def contours(self) -> tuple[ContourPart, ...]:
-        """Return the contours of the active cycle, which are empty unless it is a contour cycle."""
+        """Return the contours of the active cycle, or an empty tuple if it is not a contour cycle."""
         return self._contours if self._number in CONTOUR_CYCLES else ()
 
     def call_cycle(self, column: int, contours: ContourSequence = ()) -> Iterator[Block]:
         """Yield the blocks of the active cycle at the tool position.
 
-        The argument ``contours`` contains the contours of the active cycle after their subprograms were
-        read. Raises ProgramError if no cycle is defined.
+        ``contours`` are the contours that were read from the subprograms of the active cycle. Raises
+        ProgramError if no cycle is defined.
         """
         text = "No machining cycle is defined."
         self._state.check_condition(
@@ -236,7 +236,7 @@ class ActiveCycle:
         self._state.check_condition(contours, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _check_lines(self, column: int) -> None:
-        """Raise ProgramError if the definition of a cycle numbered below 200 lacks a line."""
+        """Raise ProgramError if a line is missing in the definition of a cycle numbered below 200."""
         number = self._number
         missing = next(
             (part for part in range(1, LAST_LINE_NUMBERS[number] + 1) if part not in self._lines), None
@@ -271,7 +271,7 @@ class ActiveCycle:
         return self._state.setup.limits.can_orient_spindle
 
     def _angle(self, node: CycleLine) -> float:
-        """Return the angle of cycle 13, to which M19 turns the spindle, in degrees.
+        """Return the spindle angle that cycle 13 defines for M19, in degrees.
 
         Raises ProgramError if the angle is missing.
         """
@@ -323,10 +323,10 @@ class ActiveCycle:
         return seconds
 
     def _make_tilt_plane(self, node: CycleLine) -> PlaneBlock:
-        """Return cycle 19 converted to a PLANE block.
+        """Convert cycle 19 to a PLANE block and return the block.
 
-        The PLANE block has spatial angles. If cycle 19 has no angles, the PLANE block is a reset. No axis
-        moves unless the block has a feed. Raises ProgramError for an invalid word.
+        The block contains spatial angles, or resets the plane if cycle 19 has no angles. No axis moves
+        unless the block has a feed. Raises ProgramError for an invalid word.
         """
         if node.text and node.text.upper() not in _SET_UP_WORDS:
             text = Message("{node} is not an axis.", node=node.text)

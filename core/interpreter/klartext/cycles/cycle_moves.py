@@ -49,8 +49,8 @@ def make_orientation_block(state: State, angle_deg: float) -> Block:
 class CycleTool:
     """The tool in a cycle, with positions in program coordinates in mm.
 
-    ``value`` is a function that returns a cycle parameter for its Q number, as programmed. ``column`` is
-    the column of the block at which the cycle is called.
+    ``value`` is a function that returns the programmed value of a cycle parameter, given its Q number.
+    ``column`` is the column of the block at which the cycle is called.
     """
 
     def __init__(self, state: State, number: int, value: Callable[[int], float | None], column: int) -> None:
@@ -158,7 +158,7 @@ class CycleTool:
         return None if found is None else found / self._state.transformation.scale_factor
 
     def log_note(self, text: str) -> None:
-        """Log a note, once, that this cycle works differently on this control."""
+        """Log a note that this cycle works differently on this control. The note is logged only once."""
         self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
@@ -231,7 +231,7 @@ class CycleTool:
     def warn_about_unknown_orientation(self) -> None:
         """Log a warning that the direction of the cutting edge is unknown.
 
-        The direction is unknown because the spindle cannot be oriented.
+        The spindle cannot be oriented on this machine.
         """
         text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
@@ -244,7 +244,7 @@ class CycleTool:
         return self.move_straight(self.xy_position, z, feed)
 
     def move_above(self, position: Point, clearance_z_mm: float) -> Iterator[Block]:
-        """Yield rapids to a position at or above ``clearance_z_mm``, and then down to this height."""
+        """Yield a rapid over a position at or above ``clearance_z_mm``, and a rapid down to this height."""
         yield self.move_to_z(max(clearance_z_mm, self.z_position))
         yield self.move_straight(position)
         yield self.move_to_z(clearance_z_mm)
@@ -315,7 +315,7 @@ class CycleTool:
         return replace(state.make_action_block(SpindleRun(rpm)), in_hole=is_in_hole)
 
     def set_spindle_speed(self, rpm: float) -> list[Block]:
-        """Return the block that sets the signed spindle speed ``rpm``; a speed of 0 stops the spindle.
+        """Return a list with the block that sets the signed spindle speed ``rpm``; 0 stops the spindle.
 
         The list is empty if the spindle already runs at this speed.
         """
@@ -366,10 +366,7 @@ class CycleTool:
         return make_orientation_block(self._state, angle)
 
     def stop_program(self, message: str) -> Block:
-        """Return a block that stops the program for a manual action by the operator.
-
-        Cycle Start continues the program.
-        """
+        """Return a block that stops the program so that the operator can act; Cycle Start continues it."""
         return self._state.make_action_block(ProgramStop(optional=False, message=message))
 
 
@@ -415,9 +412,9 @@ class RoundedRectangle:
     def generate_outline_moves(
         self, tool: CycleTool, placement: Placement, feed: float, *, is_clockwise: bool
     ) -> Iterator[Block]:
-        """Yield the moves once around the rectangle at the present height.
+        """Yield the moves once around the rectangle at the current height.
 
-        The path starts at the middle of the side in the direction +u.
+        The path starts at the middle of the side at positive u.
         """
         r = min(self.corner_radius_mm, self.half_side_u_mm, self.half_side_v_mm)
         side = -1.0 if is_clockwise else 1.0

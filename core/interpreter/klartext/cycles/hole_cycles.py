@@ -21,7 +21,7 @@ _MAX_PECKS = 10_000
 
 
 def run_reaming(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 201, which moves down and up at a feed."""
+    """Yield the blocks of cycle 201 (reaming), which enters and leaves the hole at a feed."""
     surface, clear, bottom = read_heights(tool)
     feed = tool.read_feed(206)
     yield tool.move_to_z(clear)
@@ -206,8 +206,8 @@ def run_floating_tapping(tool: CycleTool) -> Iterator[Block]:
 def run_rigid_tapping(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 207, which is like cycle 206 but has a pitch instead of a feed.
 
-    The sign of the pitch determines the direction. At the end, the spindle runs again at its previous speed
-    and in its previous direction.
+    The sign of the pitch determines the direction. At the end, the spindle resumes its previous speed and
+    direction.
     """
     surface, clear, bottom = read_heights(tool)
     lead, rpm = _thread(tool)
@@ -234,7 +234,7 @@ def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
 
 
 def _thread(tool: CycleTool) -> tuple[float, float]:
-    """Return the lead in mm/rev and the signed spindle speed in rpm for cutting into the thread.
+    """Return the lead in mm/rev and the signed spindle speed in rpm for cutting the thread.
 
     Raises ProgramError if the pitch is missing.
     """

@@ -1,4 +1,4 @@
-"""Table of the milling cycles 210 to 215 and 251 to 257, with the older cycles executed as newer ones."""
+"""Table of milling cycles 210 to 215 and 251 to 257; older cycles are executed as newer ones."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> 
 
 
 def _round_corners(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 212, whose corners have the tool radius if Q220 is 0."""
+    """Yield the blocks of cycle 212; if Q220 is 0, the corner radius is the tool radius."""
     radius = tool.read_length_mm(220, 0.0) or tool.radius_mm
     yield from _make_centered_cycle(
         mill_rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.mm_per_unit}

@@ -107,7 +107,7 @@ def _pecking(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 2, which has a feed, or of cycle 17, which has a pitch.
+    """Yield the blocks of tapping with a feed (cycle 2) or with a pitch (cycle 17).
 
     The sign of the pitch determines the direction.
     """

@@ -84,7 +84,7 @@ class _MillingParameters:
     def compute_wall_levels(self) -> list[float]:
         """Return the Z heights of the wall finishing passes in mm, in steps of Q338.
 
-        If Q338 is 0, the only height is the bottom.
+        If Q338 is 0, there is one pass at the bottom.
         """
         step = self.tool.read_length_mm(338, 0.0)
         return [
@@ -211,7 +211,7 @@ def _helix(
 def _clear_level(
     milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, feed: float
 ) -> Iterator[Block]:
-    """Yield the clearing moves of the present level, from the center line to the ring."""
+    """Yield the clearing moves of the current level, from the center line to the ring."""
     tool = milling.tool
     if ring.half_side_u_mm - ring.half_side_v_mm > MIN_LENGTH_MM:
         yield tool.move_straight(
@@ -448,9 +448,9 @@ _CONTOUR_PARAMETERS: CycleParameters = {
 
 
 def _finishing(tool: CycleTool) -> CycleParameters:
-    """Return the finishing parameters with the feed Q385 and infeeds of Q338.
+    """Return the finishing parameters, with the feed Q385 and infeeds of Q338.
 
-    If Q338 is 0, finishing has one infeed.
+    If Q338 is 0, finishing takes a single infeed.
     """
     feed: CycleParameters = {12: 385} if tool.read_value(385, 0.0) else {}
     return {**feed, 10: 338 if tool.read_value(338, 0.0) else -1e9}

@@ -42,9 +42,9 @@ MAX_CLOSING_GAP_MM = (
 class SlContour:
     """The elements of one contour in the program's X and Y.
 
-    ``label`` is the name of the contour in messages. ``side`` is L or R, or an empty string without
-    compensation. ``is_pocket`` comes from CONTOUR DEF; if it is None, the side determines whether the
-    contour is a pocket.
+    ``label`` is the name of the contour in messages. ``compensation_side`` is L or R, or an empty string
+    without compensation. ``is_pocket`` comes from CONTOUR DEF; if it is None, the side determines whether
+    the contour is a pocket.
     """
 
     label: str

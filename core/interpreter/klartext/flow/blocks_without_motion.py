@@ -314,8 +314,8 @@ def _axis_value(state: State, group: int, number: int, axis: str) -> float | Non
 def _compensation(state: State, number: int, index: int) -> float:
     """Return the radius, length or R2 of the active tool, in mm.
 
-    With ``index`` 1, the result is the table value. With 2, it includes the deltas of the table, and with 3
-    also the deltas of TOOL CALL.
+    ``index`` selects the table value (1), the table value plus the table deltas (2), or this sum plus the
+    deltas of TOOL CALL (3).
     """
     row = _row(state, state.modal.tool) or MillTool()
     plain, off, called = {

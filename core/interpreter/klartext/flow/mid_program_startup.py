@@ -1,6 +1,6 @@
 """Start of a pass from a saved state, for MDI and for mid-program startup (RESTORE POS).
 
-The modal state comes from the saved pass. The axis positions are the present positions.
+The modal state comes from the saved pass. The axis positions are the current positions.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...]) -> Chec
 
 
 def restore_state(state: State, start: PassStart, *, is_inch: bool) -> None:
-    """Update the state with the present axis positions, tool, preset and machine functions."""
+    """Update the state with the current axis positions, tool, preset and machine functions."""
     setup, point = state.setup, start.checkpoint
     assert setup.kinematics is not None  # otherwise, the pass was rejected
     state.kinematics = setup.kinematics

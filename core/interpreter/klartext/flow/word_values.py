@@ -166,7 +166,7 @@ def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | N
 
 
 def read_programmed_feed(state: State, feed: FeedWord | None, column: int) -> tuple[float, str] | None:
-    """Return F as programmed and its base, or None for a rapid.
+    """Return F as programmed and the base of the feed, or None for a rapid.
 
     The base is U for a feed per revolution, Z for a feed per tooth, or an empty string for a feed per
     minute.

@@ -101,7 +101,7 @@ def reduce_plunging_feed(state: State, feed: float | None, length: float, descen
 
 
 def compute_rotary_feed(state: State, feed: float, targets: Mapping[str, float]) -> float:
-    """Return the feed of a move of only rotary axes to ``targets``, in degrees/s.
+    """Return the feed in degrees/s of a move to ``targets`` in which only rotary axes move.
 
     F is normally in degrees/min. Under M116, F is in mm/min of the tip relative to the workpiece. It is
     then converted with the distance of the tip from the rotary axes at the start. If the tip is on the axis

@@ -35,7 +35,7 @@ def check_surface_normal(state: State, node: PathFunction, *, is_compensated: bo
 
 
 def warn_before_cut(state: State, node: PathFunction) -> None:
-    """Warn once of a cut with the table in another position than the plane, or with the spindle stopped."""
+    """Warn once if a cut starts with the table not at the angles of the plane or the spindle stopped."""
     if all(word.axis not in LINEAR_AXES for word in node.axes) and not node.words:
         return
     if not state.modal.spindle and "spindle" not in state.reported_findings:

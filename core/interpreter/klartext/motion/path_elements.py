@@ -53,8 +53,8 @@ class PathElement:
     """A line or arc from ``start`` to ``end``.
 
     ``feed`` is the programmed feed, or None for a rapid. ``arc`` is in the first two axes of
-    ``axis_order``, usually X and Y. ``rotary`` contains the continuous target angles of rotary axes in
-    degrees. ``line_number`` and ``block_text`` are the line and the text of its block.
+    ``axis_order``, usually X and Y. ``rotary_targets_deg`` contains the continuous target angles of rotary
+    axes. ``line_number`` and ``block_text`` are the line and the text of its block.
     """
 
     start: Vector
@@ -74,7 +74,7 @@ class PathElement:
 
     @property
     def planar_element(self) -> Element | None:
-        """Return the element in X and Y, or None without one.
+        """Return the line or arc of this element in X and Y, or None if it does not exist.
 
         Vertical arcs and elements without motion in X and Y do not have a planar element.
         """

@@ -49,7 +49,7 @@ BlockGenerator = Callable[[], Iterator[Block]]
 
 @dataclass(slots=True)
 class _InsertedEvent:
-    """The blocks of an event between buffered elements, such as an M function.
+    """The blocks of an event, such as an M function, between two buffered elements.
 
     ``line`` and ``text`` are the line and the text of the event's block.
     """
@@ -61,7 +61,7 @@ class _InsertedEvent:
 
 @dataclass(slots=True)
 class _Approach:
-    """An APPR block, or a block that turns compensation on; the contour starts at its end point."""
+    """An APPR block or a block that turns compensation on. The contour starts at the end of this block."""
 
     node: PathFunction
     element: PathElement
@@ -74,8 +74,8 @@ _CORNER_HINT = "Put RND or CHF between two contour elements."
 class PathRunner:
     """Generator of the blocks of path functions.
 
-    The argument ``datum`` of ``execute_move`` contains the machine positions to which M91 and M92 refer. It
-    is None without M91 and M92.
+    The argument ``datum`` of ``execute_move`` contains the machine positions to which M91 and M92 refer, or
+    is None if the block has neither M91 nor M92.
     """
 
     def __init__(self, state: State) -> None:
@@ -91,7 +91,7 @@ class PathRunner:
     def blocking_reason(self) -> str:
         """Return the reason why elements are buffered, so that no pass can start here.
 
-        The text is empty if no elements are buffered.
+        The result is an empty string if no elements are buffered.
         """
         if self._side:
             return "radius compensation is active"
@@ -355,7 +355,7 @@ class PathRunner:
                 yield from self._enter(each, first, "", 0.0)
 
     def _check_no_corner(self) -> None:
-        """Raise ProgramError if a corner has no next element yet."""
+        """Raise ProgramError if the element after a buffered corner is still missing."""
         corner, self._corner = self._corner, None
         if corner is not None:
             text = Message(
@@ -481,7 +481,7 @@ def _reduced_feed(state: State, each: PathElement) -> float | None:
 
 
 def _replace_points(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
-    """Return the element with the points of ``flat`` in the working plane.
+    """Return the element with its points in the working plane replaced by those of ``flat``.
 
     The element runs from height ``z0`` to height ``z1``, in mm.
     """

@@ -86,7 +86,7 @@ def make_working_plane(state: State, node: PlaneBlock) -> ActivePlane:
 def _note_swivel_direction(state: State, node: PlaneBlock, frame: Matrix) -> None:
     """Log a note that the swivel direction depends on the start position of the table.
 
-    The proof does not know the start position.
+    The start position is unknown when the program is proved.
     """
     if len(find_reachable_solutions(state.kinematics, frame, state.rotary_angles)) > 1:
         text = (
@@ -180,7 +180,7 @@ def _relative(state: State, node: PlaneBlock) -> Matrix:
 
 
 def _base(state: State, node: PlaneBlock) -> Matrix:
-    """Return the reference frame of the block.
+    """Return the reference frame of a PLANE block.
 
     The reference frame is the active plane for PLANE RELATIV, and the basic rotation otherwise.
     """
@@ -267,7 +267,7 @@ def make_retract_block(state: State, distance_mm: float, feed: float | None) -> 
 
 
 def compute_retract_length(state: State, retract_word: RetractWord | None) -> float:
-    """Return the length of the retract MB in mm, or 0 without MB.
+    """Return the length of the retract MB in mm, or 0 if MB is not programmed.
 
     MB MAX ends just before the first software limit.
     """

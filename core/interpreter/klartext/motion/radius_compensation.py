@@ -97,9 +97,9 @@ def _along(element: PathElement, flat: Element, z0: float, z1: float) -> PathEle
 
 @dataclass(frozen=True, slots=True)
 class ContourEntry:
-    """A block that leads from the tool position ``start`` to the first point of a contour.
+    """A block that leads from the tool position ``start_position`` to the first point of a contour.
 
-    ``side`` is L or R, or empty without compensation. All lengths are in mm, in program coordinates.
+    ``compensation_side`` is L, R or an empty string (none). Lengths are in mm in program coordinates.
     """
 
     node: PathFunction
@@ -176,7 +176,7 @@ def _arc_in(
 ) -> Arc:
     """Return the approach arc, which ends at the offset contour in the direction of the contour.
 
-    The angle of the arc is CCA, or the arc starts at a tangent line.
+    The arc has the angle CCA, or starts at the end of a line that is tangent to the arc.
     """
     size, turn = _radius(state, entry)
     left = get_left_normal(direction)

@@ -13,8 +13,8 @@ from core.language.klartext.klartext_words import AxisWord
 def find_rotary_targets(state: State, node: PathFunction, zero: Mapping[str, float]) -> dict[str, float]:
     """Return the target angles of the rotary axes; modulo axes move the shorter distance.
 
-    Words are relative to ``zero``. With M127, the travel is the difference of the displayed angles. An
-    incremental word specifies the travel directly.
+    The axis words are relative to ``zero``. With M127, the travel is the difference of the displayed
+    angles. An incremental word specifies the travel directly.
     """
     found = {}
     for axis in state.kinematics.rotary_axes:

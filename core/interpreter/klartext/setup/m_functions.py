@@ -69,7 +69,7 @@ _ADVICE = {
 
 
 def check(state: State, codes: Sequence[MFunction]) -> None:
-    """Raise ProgramError for M functions that this machine lacks, that conflict, or that M128 excludes."""
+    """Raise ProgramError for M functions that are not available, that conflict, or that M128 forbids."""
     limits = state.setup.limits
     known = (
         CODES_BEFORE_MOTION

@@ -60,7 +60,7 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
 
 
 def define_tool(state: State, node: ToolDefinition) -> None:
-    """Execute TOOL DEF, whose length and radius have priority over the tool table.
+    """Execute TOOL DEF. Its length and radius have priority over the tool table.
 
     Raises ProgramError for an invalid length or radius.
     """
@@ -129,7 +129,7 @@ def _measure(
 
 
 def update_tool_dimensions(state: State) -> None:
-    """Update the length and radius of the active tool from the present TOOL DEF or tool table."""
+    """Update the length and radius of the active tool from the current TOOL DEF or tool table."""
     tool, (longer, thicker) = state.modal.tool, state.tool_deltas_mm
     offset = state.setup.tools.get(tool)
     table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)

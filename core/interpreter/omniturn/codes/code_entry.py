@@ -1,4 +1,4 @@
-"""Types of the code table: entries, word rules, meanings of F and S, limits, and rejecting conditions."""
+"""Types of the code table: entries, word rules, meanings of F and S, limits, reject conditions."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class RejectCondition(Enum):
 
 
 class CodeEntryError(CodedError, ValueError):
-    """Error for an entry of the code table that contradicts itself."""
+    """Error for a code table entry that contradicts itself."""
 
 
 class ErrorTemplate(NamedTuple):
@@ -150,7 +150,7 @@ class WordRule:
     def find_error(self, number: float, limit: float = inf) -> ErrorTemplate | None:
         """Return the error for a number, or None if the number is valid.
 
-        ``limit`` is the present value if the maximum is a ``WordLimit``.
+        ``limit`` is the current value of the limit if the maximum is a ``WordLimit``.
         """
         too_small = number < self.minimum or (self.excludes_minimum and number == self.minimum)
         if too_small or (self.is_nonzero and number == 0) or (self.is_whole and number % 1):
@@ -252,7 +252,7 @@ class CodeEntry:
 
 
 def names(text: str) -> frozenset[str]:
-    """Return the set of names in a space-separated text."""
+    """Split a space-separated string into a set of names."""
     return frozenset(text.split())
 
 

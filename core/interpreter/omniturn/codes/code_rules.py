@@ -70,10 +70,10 @@ def check_value(
     *,
     extra_remedy: str = "",
 ) -> float | None:
-    """Check a converted number by the rule of the line's code, and return it.
+    """Check a converted number by the rule of the line's code, and return the number.
 
-    The number is converted to mm, rounded, or without its sign. ``extra_remedy`` is another remedy for a
-    number above the limit. Raises ProgramError if the rule rejects the number.
+    The number may have been converted to mm, rounded, or stripped of its sign. ``extra_remedy`` is another
+    remedy for a number above the limit. Raises ProgramError if the rule rejects the number.
     """
     code = code or statement.code_entry
     rule, word = code.word_rules[letter], statement.words.get(letter)
@@ -102,12 +102,12 @@ def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None)
 
 
 def get_limit(state: State, maximum: WordLimit) -> float:
-    """Return the present value of a limit, in mm/s or mm/rev for feeds and in rpm for speeds."""
+    """Return the current value of a limit, in mm/s or mm/rev for feeds and in rpm for speeds."""
     return _LIMITS[maximum](state)
 
 
 def format_limit(state: State, maximum: WordLimit) -> str:
-    """Return the present value of a limit as text in the unit of the program."""
+    """Return the current value of a limit as text in the unit of the program."""
     value = get_limit(state, maximum)
     if maximum not in {WordLimit.FEED, WordLimit.ACTIVE_FEED, WordLimit.LEAD}:
         return f"{value:g}"

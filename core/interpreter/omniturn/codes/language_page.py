@@ -74,7 +74,7 @@ def _numbers() -> str:
 def _anchor(entry: CodeEntry, anchors: set[str]) -> str:
     """Return the HTML anchor of a code, such as ``#g75``, for its first entry.
 
-    The text is empty for further entries of the same code.
+    The result is an empty string for further entries of the same code.
     """
     name = re.sub(r"[^a-z0-9]", "", entry.name.lower())
     if not name or name in anchors:

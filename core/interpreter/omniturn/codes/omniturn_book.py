@@ -60,7 +60,7 @@ def _meanings(code: CodeEntry) -> Iterator[tuple[str, str]]:
 def _range(rule: WordRule) -> str:
     """Return the range of a word as text.
 
-    The text is empty unless the rule has a fixed minimum and a fixed maximum.
+    The result is an empty string unless the rule has a fixed minimum and a fixed maximum.
     """
     most = rule.maximum
     if isinstance(most, WordLimit) or not (isfinite(most) and isfinite(rule.minimum)):

@@ -66,8 +66,8 @@ def check_pass_count(statement: Statement, letter: str, count: int, description:
 def make_move_blocks(state: State, statement: Statement, moves: Sequence[CycleMove]) -> Iterator[Block]:
     """Yield the motions as blocks, without motions of zero length.
 
-    All motions are checked before the first block is yielded. Raises ProgramError without a valid feed, or
-    for a feed per revolution with the spindle stopped.
+    All motions are checked before the first block is yielded. Raises ProgramError if the feed is invalid or
+    missing, or if it is a feed per revolution and the spindle is stopped.
     """
     kept: list[CycleMove] = []
     at = state.x, state.z

@@ -57,8 +57,8 @@ _CORNERS = frozenset({"C", "R"})
 def read_contour(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Element]:
     """Return the contour from its first point, in mm.
 
-    The coordinates are in the frame of the cycle's line ``statement``. The active state does not change.
-    Raises ProgramError for a line that is not allowed in a contour.
+    The coordinates are in the frame of ``statement``, the line of the cycle. The active state does not
+    change. Raises ProgramError for a line that is not allowed in a contour.
     """
     reader = _Reader(state, statement)
     for each in lines:
@@ -243,7 +243,7 @@ def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[State
 def _plunges_at_start(first: Element) -> bool:
     """Return whether the contour becomes deeper at its first point.
 
-    ``first`` is in depth and length from the start point.
+    ``first`` is the first point, as depth and length from the start point.
     """
     (depth, length), (there, further) = first.start, first.end
     return there > depth + _SAME and abs(further - length) > _SAME
@@ -277,7 +277,7 @@ def _passes(
 
 
 def _make_view(state: State, statement: Statement, contour: list[Element]) -> ContourFrame:
-    """Return the frame of the contour. Raises ProgramError (code ``cycle-quadrant`` or ``cycle-nothing``)."""
+    """Return the frame of the contour. Raises ProgramError if the start point does not suit its ends."""
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]

@@ -32,9 +32,9 @@ class ThreadCycle:
     """The data of one threading cycle, in mm with X as a radius, and in radians.
 
     ``x0`` and ``z0`` are the start point. ``x_outward_sign`` is the sign of X away from the part.
-    ``z_cutting_sign`` is the sign of Z in the cutting direction. ``depth`` is the depth of the last pass
-    from the start point. ``first_infeed`` is the I word per side. ``taper_mm`` is the change of X from the
-    start point to the end.
+    ``z_cutting_sign`` is the sign of Z in the cutting direction. ``depth_mm`` is the depth of the last pass
+    from the start point. ``first_infeed_mm`` is the I word per side. ``taper_mm`` is the change of X from
+    the start point to the end.
     """
 
     x0: float
@@ -178,7 +178,7 @@ def _count(statement: Statement, depth: float, first_infeed: float, lead: float)
 
 
 def _read_radius_word(state: State, statement: Statement, letter: str) -> float | None:
-    """Return I or A in mm as a radius, or None without the word. Under G72, the word is a diameter."""
+    """Return I or A in mm as a radius, or None if the word is missing. Under G72, the word is a diameter."""
     value = round_to_resolution(state, statement, letter)
     return None if value is None else value * state.mm_per_x_unit / state.mm_per_z_unit
 
@@ -264,7 +264,7 @@ class _ThreadBlockGenerator:
 
 
 def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
-    """Log a warning, once, for a cut with a wrong table position or with the spindle stopped.
+    """Log a single warning for a cut with a wrong table position or with the spindle stopped.
 
     The table position is wrong if it is not the position of the active plane.
     """

@@ -60,9 +60,9 @@ class BranchingPass(Interpreter):
 
     @property
     def block_count(self) -> int:
-        """Return the number of blocks so far.
+        """Return the number of blocks that this pass has generated.
 
-        The number includes the blocks of the original pass up to the time of the copy.
+        In a copy, the number includes the blocks of the original pass up to the time of the copy.
         """
         return self._state.blocks
 

@@ -1,6 +1,6 @@
 """Loops, subroutines and program end of OmniTurn programs.
 
-They are located before execution, so that the program flow can follow them.
+They are located before a program is executed, so that the program flow can follow them.
 """
 
 from __future__ import annotations
@@ -216,7 +216,7 @@ def _is_probably(statement: Statement, word: str) -> bool:
 def find_structure(statements: Iterable[Statement], length: int) -> tuple[ProgramStructure, list[Diagnostic]]:
     """Return the structure of a program of ``length`` lines, and the errors of the structure.
 
-    ``statements`` are the lines that contain more than X and Z, in order.
+    ``statements`` are, in order, the lines that contain words other than X and Z.
     """
     finder = _Finder(length)
     calls: list[Statement] = []
@@ -251,12 +251,12 @@ def get_input_terminal(statement: Statement) -> str:
 
 
 def is_call_made(statement: Statement, read_input: Callable[[str], bool]) -> bool:
-    """Return whether a conditional call is made in the present state of the inputs."""
+    """Return whether a conditional call is made in the current state of the inputs."""
     return read_input(get_input_terminal(statement)) == is_called_when_closed(statement)
 
 
 def is_called_when_closed(statement: Statement) -> bool:
-    """Return the input state for which a conditional call is made."""
+    """Return whether a conditional call is made when its input is closed, rather than open."""
     return statement.flow_code == "M95" or statement.get_value("C") == 1
 
 
@@ -275,7 +275,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         return twin
 
     def stop_here(self) -> None:
-        """End the program at the present position, so that no further line is executed."""
+        """End the program at the current position, so that no further line is executed."""
         self._stop = None
         self.end_index = self.next_index
 
@@ -317,10 +317,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         self.next_index = line - 1
 
     def _update_end(self) -> None:
-        """Set the end of execution to the end of the frame or to the stop line.
-
-        The one that is reached first applies.
-        """
+        """Set the end of execution to the end of the frame or the stop line, whichever comes first."""
         stop, end = self._stop, self.active_frame.end_index
         self.end_index = stop if stop is not None and self.next_index <= stop < end else end
 
@@ -332,7 +329,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
     def record_loop_executions(self, start: int, execution_count: int) -> None:
         """Record ``execution_count`` executions of the loop whose LS is at index ``start``.
 
-        Each execution ends at the first line of the loop.
+        After each execution, the position is at the first line of the loop.
         """
         self.active_frame.remaining_repeats[start] -= execution_count
 

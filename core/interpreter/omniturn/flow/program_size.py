@@ -18,7 +18,7 @@ from core.message import Message
 class ProgramSize(NamedTuple):
     """The number of elementary blocks and of executed lines of a program or section.
 
-    ``largest_loop_line`` is the line of the largest loop, or 0 without loops.
+    ``largest_loop_line`` is the line of the largest loop, or 0 if there are no loops.
     """
 
     block_count: int = 0
@@ -27,10 +27,10 @@ class ProgramSize(NamedTuple):
 
 
 def check_program_size(program: Program, read_input: Callable[[str], bool]) -> Diagnostic | None:
-    """Return the error for a program that executes too many blocks or lines, or None.
+    """Return the error for a program that executes too many blocks or lines, or None otherwise.
 
     Loops multiply the counts, and each call adds the counts of its subroutine. Conditional calls depend on
-    the present inputs.
+    the current inputs.
     """
     if not program.structure.loop_ends and not program.structure.subroutines:
         return _refusal(ProgramSize(len(program.executable_lines), len(program.executable_lines)))

@@ -1,4 +1,4 @@
-"""Arcs with G02 and G03, whose center is defined by R or by I and K."""
+"""Arcs with G02 and G03, defined by the radius R or by the center words I and K."""
 
 from __future__ import annotations
 

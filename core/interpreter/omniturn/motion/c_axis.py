@@ -72,7 +72,7 @@ def _entry(state: State, statement: Statement) -> CodeEntry:
 
 
 def read_c_rpm(state: State, statement: Statement, code: CodeEntry) -> float | None:
-    """Return S of the line in rpm without its sign, or None without S.
+    """Return S of the line in rpm without its sign, or None if the line has no S.
 
     Raises ProgramError if S exceeds the limit of C.
     """

@@ -207,8 +207,8 @@ def _refused(held: _BufferedMove, code: str, why: str) -> ProgramError:
 class ContourBuffer:
     """Buffer of blocks while a corner needs its second move or nose compensation is active.
 
-    The buffer contains at most one corner and the moves that compensation looks ahead. The returned blocks
-    are numbered consecutively.
+    The buffer contains at most one corner and the moves that compensation needs to look ahead. The returned
+    blocks are numbered consecutively.
     """
 
     def __init__(self, state: State) -> None:
@@ -219,7 +219,7 @@ class ContourBuffer:
         self._count: int | None = None  # number of the last returned block while the modifier is active
 
     def accept_block(self, block: Block) -> Iterator[Block]:
-        """Accept a block, and yield the blocks that later lines cannot change.
+        """Accept a block, and yield the blocks that no later line can change.
 
         Raises ProgramError if the corner or the compensation is not possible.
         """
@@ -238,7 +238,7 @@ class ContourBuffer:
             check_compensated_line(self._state, statement)
 
     def switch_compensation(self, switch: CompensationSwitch) -> Iterator[Block]:
-        """Process G41, G42 or G40, and yield the blocks that later lines cannot change.
+        """Process G41, G42 or G40, and yield the blocks that no later line can change.
 
         Raises ProgramError if compensation is not possible.
         """

@@ -106,7 +106,7 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
 
 
 def set_plain_feed(state: State, f: float) -> bool:
-    """Set the feed of a plain move if a new cutting feed is its only change, and return whether it was set.
+    """Set the feed of a plain move that changes only the cutting feed, and return whether it was set.
 
     Returns False without a change if the full statement is needed. This is the case after a rapid, within a
     contour, during compensation, under G35 and G36, and for a feed that causes an error or a warning.
@@ -339,7 +339,7 @@ def _check_position(state: State, statement: Statement, code: int) -> None:
 def _check_preset(
     state: State, statement: Statement, code: int, following_lines: Sequence[ExecutableLine]
 ) -> None:
-    """Raise ProgramError unless the next line is a G92 with the present coordinates."""
+    """Raise ProgramError unless the next line is a G92 with the current coordinates."""
     line = next((step for step in following_lines if step is not None), None)
     hint = "Write G92 with the current X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot_code != 92 or not {"X", "Z"}.issubset(line.words):

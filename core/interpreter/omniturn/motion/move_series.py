@@ -40,7 +40,7 @@ from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries,
 
 
 def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
-    """Return a mask (m,) of the lines that contain only X, Z and words that are already active."""
+    """Return a mask, shape (m,), of the lines that contain only X, Z and already active words."""
     answer = lines.is_plain_move.copy()
     fed = ~np.isnan(lines.feeds)
     for g in (0, 1, NO_G_CODE):
@@ -54,10 +54,10 @@ def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
 
 
 def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
-    """Return a mask (m,) of the lines that can be part of a series.
+    """Return a mask, shape (m,), of the lines that can be part of a series.
 
-    The mask contains the lines of ``mask_unchanged_lines``, and lines that only change the cutting feed to
-    a feed that needs no check.
+    These are the lines of ``mask_unchanged_lines``, and lines that change only the cutting feed to a feed
+    that needs no check.
     """
     answer = mask_unchanged_lines(state, lines)
     if state.steady_feed is None:
@@ -70,7 +70,7 @@ def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
 
 
 def _feeds(state: State, lines: LineColumns) -> FloatArray | None:
-    """Return the feed (m,) of each line in mm/s or mm/rev, or None if no line changes the feed."""
+    """Return the feeds of the lines in mm/s or mm/rev, shape (m,), or None if the feed is constant."""
     fed = ~np.isnan(lines.feeds)
     feeds = np.where(fed, state.convert_feed(lines.feeds), state.feed)
     if (feeds == state.feed).all():
@@ -132,7 +132,7 @@ def _compute_positions(state: State, word: FloatArray, at: float, scale: float) 
 def _round_to_resolution(
     state: State, letter: str, word: FloatArray, fine: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the numbers rounded to the control's resolution, and a mask of the numbers that were finer.
+    """Return the numbers rounded to the control's resolution, and a mask of the numbers that changed.
 
     The result agrees with ``straight_moves.round_coordinates``.
     """
@@ -185,8 +185,8 @@ class SeriesReader:
     ) -> tuple[StraightMoveSeries, int] | None:
         """Return the next moves and the number of executed lines, or None if a series is not worthwhile.
 
-        ``lines`` and ``blocks`` are the remaining numbers of lines and blocks up to the limits. Requires
-        ``state.fast``.
+        ``max_line_count`` and ``max_block_count`` are the remaining lines and blocks up to the limits.
+        Requires ``state.fast``.
         """
         at = self._flow.next_index
         if at in self._without:
@@ -202,7 +202,7 @@ class SeriesReader:
     def _consecutive(
         self, start_index: int, lines: int, blocks: int
     ) -> tuple[StraightMoveSeries, int] | None:
-        """Return the series of consecutive lines, or None."""
+        """Return the series of consecutive lines, or None if a series is not worthwhile."""
         end = min(
             self._ready.find_next_statement(start_index),
             self._flow.end_index,

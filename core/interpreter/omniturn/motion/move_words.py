@@ -64,7 +64,7 @@ def replace_move_words(block: Block, element: Element) -> str:
 
 
 def _without_secondary_offset(block: Block, element: Element, words: dict[str, float]) -> Element:
-    """Return the element without the secondary offset that D adds to the X and Z words of its line."""
+    """Return the element without the secondary offset that D adds to X and Z on its line."""
     scale = units.get_mm_per_unit(is_metric=block.modal.metric)
     scale_x = scale / 2 if block.modal.diameter else scale
     x = block.x - block.x0 - words.get("X", 0.0) * scale_x

@@ -218,7 +218,7 @@ class CompensationStage:
         self._contour: _Contour | None = None
 
     def accept_item(self, item: StageItem) -> Iterator[Block]:
-        """Accept an item, and yield the blocks that later items cannot change.
+        """Accept an item, and yield the blocks that no later item can change.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -263,7 +263,7 @@ _TURNS_C = frozenset({"CA", "CI"})
 
 
 def get_nose_code(statement: Statement) -> int:
-    """Return the code number of G40, G41 or G42 on a line, or 0."""
+    """Return the code number of G40, G41 or G42 on a line, or 0 if the line has none of these codes."""
     return next((code for code in statement.modal_codes if code in NOSE_CODES), 0)
 
 

@@ -100,7 +100,7 @@ class LineColumns(NamedTuple):
         self.g_codes[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
 
     def list_moves(self) -> list[PlainMove | None]:
-        """Return each line in the form of ``parse_plain_move``.
+        """Return a list of the lines, in the form that ``parse_plain_move`` returns.
 
         The entry is None for a line that is not a plain move.
         """
@@ -150,7 +150,7 @@ def _read_length(
     digits: DigitArray,
     shapes: DigitArray,
 ) -> None:
-    """Fill the lines ``rows``, which all have this length.
+    """Fill the columns for the lines ``rows``, which all have this length.
 
     Lines of the same form are filled together, starting with the form of the first line.
     """
@@ -200,7 +200,7 @@ class _Lines(NamedTuple):
 def _read_shape(
     columns: LineColumns, rows: IntArray, match: re.Match[str], digits: DigitArray, lines: _Lines
 ) -> None:
-    """Fill the lines ``rows``, which all have the form of the match."""
+    """Fill the columns for the lines ``rows``, which all have the form of the match."""
     known = np.ones(len(rows), bool)
     for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.feeds)):
         if match[name] is not None:
@@ -305,8 +305,8 @@ def parse_lines(
     """Return the lines ready for execution.
 
     ``parse_line`` is called with the number (from 1) and the text of each line that is not parsed as an
-    array. With ``reads_every_line``, it is called for every line, because the meaning of a line depends on
-    earlier lines.
+    array. With ``reads_every_line``, ``parse_line`` is called for every line, because the meaning of a line
+    depends on earlier lines.
     """
     columns = LineColumns.make_empty(len(lines))
     others: dict[int, ExecutableLine] = {}

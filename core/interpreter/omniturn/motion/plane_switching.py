@@ -150,7 +150,7 @@ def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:
 
 
 def read_plane_length_mm(state: State, statement: Statement, letter: str, default: float) -> float:
-    """Return a word in mm as written, which is a length, or the diameter for D or for Z on the side."""
+    """Return a word in mm as written: a length, or a diameter for D and for Z on the side."""
     assert statement.plane_line is not None
     word = statement.plane_line.words.get(letter)
     return default if word is None else round_mill_length(state, statement.line, word)

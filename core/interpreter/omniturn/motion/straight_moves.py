@@ -1,4 +1,4 @@
-"""Straight moves, and the meaning of X and Z, the resolution and the checks that all moves share."""
+"""Straight moves, with the meaning of X and Z, the resolution, and the checks of all moves."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ ROUNDING_TOLERANCE = 1e-6  # of a step; tolerance for the rounding of decimal fr
 
 
 def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -> Block | None:
-    """Return the block of a line with only G00 or G01, X, Z and F, or None if the full statement is needed.
+    """Return the block of a line with only G00 or G01, X, Z and F.
 
-    Raises the same errors as ``make_straight_move``.
+    Returns None if the full statement is needed. Raises the same errors as ``make_straight_move``.
     """
     x, z, f, g, fine = move
     same = (g < 0 and f is None) or is_already_active(state, g, f)
@@ -38,9 +38,9 @@ def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -
 
 
 def is_already_active(state: State, g: int, f: float | None) -> bool:
-    """Return whether G00 or G01 and F are already active.
+    """Return whether the G00 or G01 and the F of a line are already active.
 
-    ``g`` is negative without a G code, and ``f`` is None without F.
+    ``g`` is negative if the line has no G code, and ``f`` is None if the line has no F.
     """
     if g == 0:
         return f is None and state.modal.rapid and not state.title_rapid
@@ -181,7 +181,7 @@ def get_resolution(state: State, letter: str) -> float:
 
 
 def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
-    """Return the number rounded to the resolution, and whether the number changed."""
+    """Return the number rounded to the resolution, and whether rounding changed the number."""
     return _nearest(get_resolution(state, letter), value)
 
 
@@ -212,7 +212,7 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
 
 
 def execute_dimension_modes(state: State, statement: Statement) -> None:
-    """Execute the modes of a line for distances, units and X words."""
+    """Execute the modes of a line that define distances, units and the meaning of X."""
     if not statement.modal_codes:
         return
     modal = state.modal

@@ -75,7 +75,7 @@ def cancel_repeat(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def end_program(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M30, which resets the M functions, or of M02, which does not reset them."""
+    """Yield the block of M30 or M02, which ends the program; only M30 resets the M functions."""
     reset = statement.m_number == 30
     warn_about_short_dwell(state)
     state.stay(

@@ -49,7 +49,7 @@ def _limit(state: State, statement: Statement, code: int) -> float:
 
 
 def execute_speed_word(state: State, statement: Statement) -> None:
-    """Execute S of a line, which is in rpm under G97 and a surface speed under G96."""
+    """Execute S of a line: a spindle speed in rpm under G97, or a surface speed under G96."""
     word = statement.words.get("S")
     if word is None or word.value is None or statement.is_s_speed_limit:
         return

@@ -79,7 +79,7 @@ def select_secondary_offset(state: State, statement: Statement) -> None:
 def add_work_shift(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of G10, which adds to the work shift that the next T activates.
 
-    Raises ProgramError without X and Z.
+    Raises ProgramError if the line has neither X nor Z.
     """
     check_word_groups(statement, statement.code_entry)
     x, z = (
@@ -95,9 +95,9 @@ def add_work_shift(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def set_preset(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of G92, which assigns program coordinates to the present position.
+    """Yield the block of G92, which assigns program coordinates to the current position.
 
-    Raises ProgramError without X and Z.
+    Raises ProgramError if the line has neither X nor Z.
     """
     check_word_groups(statement, statement.code_entry)
     if {"X", "Z", "F"} <= statement.words.keys():

@@ -104,7 +104,7 @@ def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> 
 
 
 def note_ineffective_cycle(state: State, log: DiagnosticLog, line: LexedBlock) -> None:
-    """Log a note, once, that a cycle has no effect on this machine.
+    """Log a single note that a cycle has no effect on this machine.
 
     Raises ProgramError if the parameters of the cycle are not supported.
     """

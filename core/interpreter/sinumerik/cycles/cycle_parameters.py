@@ -98,7 +98,7 @@ class CycleCall:
         return {name: each for name, each in zip(names, arguments, strict=False) if each.is_specified}
 
     def _check(self) -> None:
-        """Raise ProgramError if the cycle is not allowed in the present state.
+        """Raise ProgramError if the cycle is not allowed in the current state.
 
         A cycle is not allowed in a rotated, scaled or mirrored frame, or with nose compensation. With
         TRANSMIT, only drilling cycles are allowed.
@@ -129,7 +129,7 @@ class CycleCall:
         return "" if argument is None or argument.text is None else argument.text.upper()
 
     def read_number(self, name: str, default: float = 0.0) -> float:
-        """Return a number as programmed, or ``default`` if it is omitted.
+        """Return a number as programmed, or ``default`` if the parameter is omitted.
 
         Raises ProgramError for a string.
         """
@@ -401,7 +401,7 @@ class CycleCall:
 
 
 def make_action_step(action: Action, spindle_direction: int | None = None) -> CycleStep:
-    """Return a step that executes an action at the present position.
+    """Return a step that executes an action at the current position.
 
     ``spindle_direction`` has the same meaning as in ``CycleStep``.
     """

@@ -43,7 +43,7 @@ _SAME = 1e-6  # mm
 class HolePositions(NamedTuple):
     """The Z positions of one hole: retract plane, reference plane, safety clearance and bottom.
 
-    ``drilling_sign`` is the sign of the drilling direction along Z. ``x`` is the present X position of the
+    ``drilling_sign`` is the sign of the drilling direction along Z. ``x`` is the current X position of the
     tool.
     """
 
@@ -60,7 +60,7 @@ class HolePositions(NamedTuple):
 
 
 def read_hole(cycle: CycleCall) -> HolePositions:
-    """Return the hole of a cycle call. Raises ProgramError with the name of an invalid parameter."""
+    """Return the hole of a cycle call. Raises ProgramError, naming the parameter, if one is invalid."""
     if cycle.state.plane != 17:
         text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
         hint = "Write G17 before this block and G18 after it."
@@ -148,7 +148,7 @@ def run_boring(cycle: CycleCall) -> Iterator[Block]:
 
 
 def run_pecking(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE83, whose pecks decrease by DAM.
+    """Return the blocks of CYCLE83. DAM reduces the depth of successive pecks.
 
     After each peck, the drill retracts fully (VARI 1) or by a short distance (VARI 0).
     """
@@ -218,7 +218,7 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
 def _turning(cycle: CycleCall) -> list[CycleStep]:
     """Return the step that starts the spindle in the direction SDIR, if necessary.
 
-    Raises ProgramError without a speed.
+    Raises ProgramError if no speed is programmed.
     """
     direction = cycle.read_number("SDIR")
     if direction not in {3.0, 4.0}:
@@ -273,7 +273,7 @@ def _steps_to_spindle_angle(cycle: CycleCall, hole: HolePositions, angle: float)
 def make_spindle_lock_steps(cycle: CycleCall, position: CycleStep, angle: float) -> list[CycleStep]:
     """Return the steps that lock the spindle as the C axis and rotate it to an angle.
 
-    The spindle is locked at the present position. The angle is in degrees.
+    The spindle is locked at the current position. The angle is in degrees.
     """
     turn, speed = compute_shortest_c_travel(cycle.state, angle), cycle.state.setup.limits.max_axis_speeds[2]
     turned = [position._replace(feed=speed, c_travel_deg=turn)] if turn else []
@@ -298,7 +298,7 @@ _MAX_HOLES = 1000
 
 
 def make_missing_cycle_error(line: LexedBlock) -> ProgramError:
-    """Return the error for a hole pattern without an active drilling cycle."""
+    """Return the error for a hole pattern if no drilling cycle is active."""
     text = Message("{call} uses the cycle called with MCALL, but no MCALL is active.", call=line.called_name)
     hint = "Write MCALL CYCLE81( ) or another cycle before this block."
     return line.make_error(line.call_column, "pattern-cycle", text, hint)

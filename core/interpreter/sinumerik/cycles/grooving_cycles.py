@@ -58,7 +58,7 @@ class GrooveGeometry(NamedTuple):
 
 
 def read_groove(cycle: CycleCall) -> GrooveGeometry:
-    """Return the groove of a cycle call. Raises ProgramError with the name of an invalid parameter."""
+    """Return the groove of a cycle call. Raises ProgramError, naming the parameter, if one is invalid."""
     kind = (cycle.read_machining_type("VARI", range(1, 19)) - 1) % 10 + 1
     cycle.check_parameter(kind <= 8, "VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
     cycle.check_zero("STA1", "program a groove on a taper as a CYCLE95 contour")

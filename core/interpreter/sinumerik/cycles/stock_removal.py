@@ -228,7 +228,7 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
 
 
 class _Plan:
-    """Planner of the motions in depth and length, which are X and Z, or Z and X for passes along X."""
+    """Planner of the motions in depth and length: X and Z, or Z and X for passes along X."""
 
     def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind

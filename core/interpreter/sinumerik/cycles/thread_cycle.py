@@ -46,7 +46,7 @@ def get_coarse_lead(nominal_size: float) -> float:
 
 
 def check_lead_nonzero(cycle: CycleCall, lead: float, name: str) -> None:
-    """Raise ProgramError with the name of a parameter if the lead is 0."""
+    """Raise ProgramError, naming the parameter, if the lead is 0."""
     hint = "Enter PIT, or MPIT from 3 to 68 for M3 to M68."
     cycle.check_parameter(lead, name, "{name} does not define a lead", hint, WRONG_THREAD_LEAD)
 
@@ -209,8 +209,8 @@ def _cut(
     """Return the blocks of all passes.
 
     Each pass consists of the approach, the infeed, the threads to ``end_points`` with their leads, the
-    retract and the return. ``start`` returns the start point on the surface for a delay and a shift.
-    ``clearance_x`` is X of the retract.
+    retract and the return. The function ``start`` returns the start point on the surface for a delay and a
+    shift. ``clearance_x`` is X of the retract.
     """
     steps: list[CycleStep] = []
     for later in starts:

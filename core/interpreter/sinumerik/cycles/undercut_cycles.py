@@ -38,8 +38,8 @@ class UndercutSize(NamedTuple):
     """The dimensions of an undercut in mm and degrees.
 
     ``depth`` is measured from the surface, and ``width`` is measured from the shoulder. ``corner_radius``
-    is the radius of both corners. ``entry_angle_deg`` is the entry angle. ``face_depth`` is the depth in
-    the shoulder, or 0 without one.
+    is the radius of both corners. ``entry_angle_deg`` is the entry angle. ``face_depth`` is the depth of
+    the undercut in the shoulder, or 0 if the shoulder is not undercut.
     """
 
     depth: float
@@ -257,7 +257,7 @@ def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, 
     """Return the sign of X away from the part, and the sign of Z away from the shoulder.
 
     ``position_number`` (1 to 4) determines the signs, or the tip quadrant if it is 0. Raises ProgramError
-    without an active tool or a valid quadrant.
+    if no tool is active or its quadrant is invalid.
     """
     state = cycle.state
     text = "{call} needs an active tool with an offset."
@@ -271,7 +271,7 @@ def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, 
 
 
 def make_profile(undercut_position: UndercutPosition, size: UndercutSize) -> list[Element]:
-    """Return the profile, which leads down the slope from outside, along the bottom, and up the shoulder."""
+    """Return the profile: down the slope from outside, along the bottom, and up the shoulder."""
     slope = tan(radians(size.entry_angle_deg))
     begin = undercut_position.compute_point(-DEFAULT_RETRACT_MM, size.width + DEFAULT_RETRACT_MM / slope)
     foot = undercut_position.compute_point(size.depth, size.width - size.depth / slope)

@@ -1,6 +1,6 @@
 """Start of a pass from a saved state, for MDI (MDA) and for block search with calculation.
 
-The modal state comes from the saved pass. The axis positions are the present positions.
+The modal state comes from the saved pass. The axis positions are the current positions.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...], blocks:
 
 
 def restore_state(state: State, pass_start: PassStart) -> None:
-    """Update the state with the present axis positions, offsets and machine functions."""
+    """Update the state with the current axis positions, offsets and machine functions."""
     was, now = state.modal, pass_start.checkpoint.modal
     state.x, state.z, state.c = state.setup.start
     if not pass_start.is_mdi_line:
@@ -98,7 +98,7 @@ _SINGLE_BLOCK_KEYWORDS = frozenset({ControlKeyword.DEFINE, ControlKeyword.MESSAG
 
 
 def check_single_block(source: ProgramSource, third_axis: str = INTERNAL_AXIS_NAME) -> Diagnostic | None:
-    """Return the error for a block that cannot be executed alone, or None."""
+    """Return the error for a block that cannot be executed alone, or None if it can be."""
     line = lex_line(1, source.lines[0] if source.lines else "", third_axis)
     if line.errors:
         return None  # reported when the block is executed
@@ -121,7 +121,7 @@ def check_single_block(source: ProgramSource, third_axis: str = INTERNAL_AXIS_NA
 
 
 def _check_words(line: LexedBlock) -> Diagnostic | None:
-    """Return the error for a word that depends on later blocks, or None."""
+    """Return the error for a word that depends on later blocks, or None if no word depends on them."""
     for word in line.words:
         if word.name in CORNER_WORDS:
             return _refuse(

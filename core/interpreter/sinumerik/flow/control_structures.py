@@ -51,7 +51,7 @@ class Routine:
     _partners: dict[int, tuple[int, ...]] | None = None
 
     def map_structures(self) -> dict[int, tuple[int, ...]]:
-        """Return the line indices of each control structure, mapped from the index of each of its lines.
+        """Return a map from each line index of a control structure to all line indices of the structure.
 
         Raises ProgramError if a structure lacks its start or its end.
         """
@@ -85,19 +85,19 @@ class Routine:
         return label in {line.label, line.block_name}
 
     def read_proc_statement(self) -> ControlStatement | None:
-        """Return the PROC statement of the first line, or None."""
+        """Return the PROC statement of the first line, or None if this line has no PROC statement."""
         first = self.find_first_line()
         jump = None if first is None else first.control_statement
         return jump if jump is not None and jump.keyword is ControlKeyword.PROCEDURE else None
 
     def find_first_line(self) -> LexedBlock | None:
-        """Return the first line that contains more than a comment, or None."""
+        """Return the first line that contains more than a comment, or None if no line does."""
         lines = (self.get_line(at) for at in self.line_range)
         return next((line for line in lines if line.is_executable), None)
 
 
 def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
-    """Return the line indices of each control structure, mapped from each of these indices.
+    """Return a map from each line index of a control structure to all line indices of the structure.
 
     Raises ProgramError if a structure lacks its start or its end.
     """

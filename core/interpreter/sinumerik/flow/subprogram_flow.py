@@ -130,7 +130,7 @@ class _ArgumentTransfer:
             self.scope.numbers[name] = value if whole else float(round(value))
 
     def pass_array(self, parameter: ProcParameter, argument: CallArgument) -> None:
-        """Copy a VAR array, whose elements are copied back after the call.
+        """Copy a VAR array; its elements are copied back after the call.
 
         Raises ProgramError if the argument does not match the parameter.
         """
@@ -194,10 +194,10 @@ def _count(count: int) -> str:
 
 @dataclass(slots=True)
 class _Repeat:
-    """Lines that REPEAT executes again, from index ``start`` up to but not including ``end_index``.
+    """Lines that REPEAT executes again, from ``start_index`` up to but not including ``end_index``.
 
-    ``remaining_count`` is the number of remaining repeats, and ``back`` is the line at which execution then
-    continues.
+    ``remaining_count`` is the number of remaining repeats, and ``return_index`` is the line at which
+    execution then continues.
     """
 
     start_index: int
@@ -285,7 +285,7 @@ class Flow(ControlFlow[_Call]):
             self.next_index = part.return_index
 
     def end_subprogram(self) -> None:
-        """End a subprogram at M17, RET or its last line, and repeat it or return to the caller."""
+        """End a subprogram at M17, RET or its last line, and either repeat it or return to the caller."""
         call = self.active_frame
         call.remaining_passes -= 1
         call.repeats.clear()
@@ -307,7 +307,7 @@ class Flow(ControlFlow[_Call]):
         return name in self._known
 
     def find_routine(self, name: str) -> Routine | None:
-        """Return the program with this name, or None."""
+        """Return the program with this name, or None if it does not exist."""
         return self._known.get(name)
 
     def call_subprogram(self, line: LexedBlock, *, is_modal: bool = False) -> None:

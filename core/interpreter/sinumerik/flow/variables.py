@@ -34,7 +34,7 @@ class VariableScope:
     array_dimensions: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     def define_variable(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
-        """Define a number, or with ``sizes`` an array in which all elements have this value."""
+        """Define a number with this value or, if ``sizes`` is given, an array filled with this value."""
         if not sizes:
             self.numbers[name] = value
             return

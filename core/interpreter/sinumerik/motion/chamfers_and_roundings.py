@@ -1,6 +1,6 @@
 """Chamfers and roundings with CHF, CHR and RND between lines and arcs.
 
-If a move includes C, C reaches its end at the end of the first element.
+If a move includes C, the C axis reaches its target at the end of the first element.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Corner:
 
 
 def make_corner(state: State, statement: Statement, block: Block) -> Corner | None:
-    """Return the corner of a block, or None. Raises ProgramError if the corner is invalid."""
+    """Return the corner of a block, or None if it has none. Raises ProgramError if the corner is invalid."""
     word = statement.corner_word
     if word is None:
         return _modal_corner(state, statement, block)

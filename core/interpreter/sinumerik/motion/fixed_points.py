@@ -113,7 +113,7 @@ def _warn_ignored_value(state: State, statement: Statement, word: Word, end: flo
 
 
 def _make_rapid(state: State, statement: Statement, targets: dict[str, float]) -> Block:
-    """Return the rapid to these machine coordinates, on which all axes arrive at the same time."""
+    """Return a rapid to these machine coordinates in which all axes arrive at the same time."""
     state.threads = ()
     x, z = targets.get("X", state.x), targets.get("Z", state.z)
     modal = state.modal

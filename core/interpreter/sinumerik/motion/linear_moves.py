@@ -1,4 +1,4 @@
-"""Straight moves with G0 and G1, with or without C: end points, feeds and blocks, also of trimmed moves."""
+"""Straight moves with G0 and G1, with or without C: end points, feeds, whole or trimmed blocks."""
 
 from __future__ import annotations
 
@@ -281,7 +281,7 @@ def make_straight_block(state: State, statement: Statement) -> Block:
 
 
 def make_rapid_block(state: State, statement: Statement, travel: AxisTravel) -> Block:
-    """Return a rapid on which all axes arrive at the same time.
+    """Return a rapid in which all axes arrive at the same time.
 
     The slowest axis moves at its maximum speed.
     """
@@ -340,5 +340,5 @@ class PlainMoveFactory(AdjustedMoveFactory):
         return replace(made, feed=travel.compute_rapid_rate(self._state.setup.limits.max_axis_speeds))
 
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move of X and Z after a block, at the end of which C has reached its target."""
+        """Return a new move of X and Z after a block that ends with C at its target."""
         return replace(self.replace_element(block, element), c0=block.c, text=f"{block.text} ›")

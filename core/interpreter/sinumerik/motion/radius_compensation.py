@@ -66,7 +66,7 @@ class CompensationStage:
         self._contour = None
 
     def accept_block(self, block: Block) -> Iterator[Block]:
-        """Accept a block, and yield the blocks that later blocks cannot change.
+        """Accept a block, and yield the blocks that no later block can change.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -224,8 +224,8 @@ class _Contour(ContourStage):
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
         """Return the path around an outside corner.
 
-        The path is an arc, or under G451 the tangents up to their intersection. A rapid also uses tangents.
-        If their intersection is too far away, each half of the corner has its own tangents.
+        The path is an arc or, under G451, the tangents up to their intersection. A rapid also uses the
+        tangents. If the intersection is too far away, each half of the corner has its own tangents.
         """
         if not isinstance(element, Arc):
             return [element]

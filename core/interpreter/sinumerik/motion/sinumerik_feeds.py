@@ -1,4 +1,4 @@
-"""Feed words F, FB and OVR, and the G codes G94 to G97 as far as they define the meaning of F."""
+"""Feed words F, FB and OVR, and the effect of G94 to G97 on the meaning of F."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def check_block_feed(
 
     The feed is in mm (or degrees) per second or per revolution. A feed per revolution of the live tool is
     converted to a feed per second, because the live tool has a constant speed. Raises ProgramError with
-    alarm 10860 without a feed, or with a TurnDesk code if the spindle has no speed under G95.
+    alarm 10860 if no feed is active, or with a TurnDesk code if the spindle has no speed under G95.
     """
     modal = state.modal
     word = statement.words.get("FB")
@@ -90,5 +90,5 @@ def check_block_feed(
 
 
 def _first_axis_word(statement: Statement) -> Word | None:
-    """Return the first axis word of the block, or None."""
+    """Return the first axis word of the block, or None if the block has no axis words."""
     return next((statement.words[name] for name in statement.axis_names), None)

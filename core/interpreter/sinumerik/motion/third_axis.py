@@ -1,4 +1,4 @@
-"""Travel and direction of the C axis from its present position to a target, in degrees.
+"""Travel and direction of the C axis from its current position to a target, in degrees.
 
 The rules cover a modulo axis (0 to less than 360), a rotary axis without modulo (-360 to +360), and a
 linear axis in mm. This module does not depend on words, offsets and machines.

@@ -110,7 +110,7 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
 def _start_angle(
     state: State, statement: Statement, travel: AxisTravel, lead: float, growth: float
 ) -> Block | None:
-    """Return the backward move for SF, or None without SF.
+    """Return the backward move for SF, or None if SF is not programmed.
 
     The move delays the start of the thread by a fraction of a revolution.
     """

@@ -107,7 +107,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
 
 
 def _frame(state: State, statement: Statement, word: Word) -> FacePlane | SidePlane:
-    """Return the frame of the transformation for the present side of the tool.
+    """Return the frame of the transformation for the current side of the tool.
 
     The frame is relative to the spindle axis. Raises ProgramError if the word selects groove walls or a
     data set other than the first.

@@ -335,7 +335,7 @@ class ActiveTransformation:
     # --- output
 
     def make_corner(self, block: Block) -> Corner | None:
-        """Return the corner that the statement of this block programs, or None.
+        """Return the corner that the statement of this block programs, or None if it programs no corner.
 
         Raises ProgramError if the corner is invalid.
         """
@@ -344,7 +344,7 @@ class ActiveTransformation:
         return make_corner(self._plane, self._statement, block)
 
     def accept_block(self, block: Block, corner: Corner | None) -> Iterator[Block]:
-        """Accept a block, and yield the lathe blocks that later blocks cannot change.
+        """Accept a block, and yield the lathe blocks that no later block can change.
 
         Raises ProgramError if a corner or the compensation is not possible.
         """
@@ -353,7 +353,7 @@ class ActiveTransformation:
                 yield from self._to_lathe_blocks(compensated_block)
 
     def flush_corner(self) -> Iterator[Block]:
-        """Yield the buffered blocks if no move follows their corner.
+        """Yield the buffered blocks when no further move can follow their corner.
 
         Raises ProgramError if the corner needs a following move.
         """
@@ -440,7 +440,7 @@ class ActiveTransformation:
     def _zero(self, block: Block) -> _Zero:
         """Return the offsets and the modal state of the lathe for a block.
 
-        The end of the program also ends the transformation.
+        In the block that ends the program, the transformation is no longer active.
         """
         own = self._state.modal
         ends = isinstance(block.action, ProgramEnd)

@@ -80,9 +80,9 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
 
 
 def _warn_missing_function(state: State, statement: Statement, code: int, word: Word) -> None:
-    """Log a warning, once, that this machine lacks a machine-builder function.
+    """Log a single warning that this machine lacks a machine-builder function.
 
-    Without the function, the machine does not start.
+    The machine does not start a program that needs the missing function.
     """
     if f"M{code}" in state.logged_functions:
         return

@@ -27,10 +27,10 @@ def activate_settable_offset(state: State, statement: Statement) -> None:
 
 
 def execute_frame(state: State, statement: Statement) -> None:
-    """Execute TRANS, ROT, SCALE and MIRROR, or their A forms.
+    """Execute TRANS, ROT, SCALE and MIRROR, or their additive forms such as ATRANS.
 
-    TRANS, ROT, SCALE and MIRROR replace the frame, and the A forms add to the frame. A block without axis
-    words resets the frame. Raises ProgramError for invalid words.
+    TRANS, ROT, SCALE and MIRROR replace the frame, and the additive forms add to the frame. A block without
+    axis words resets the frame. Raises ProgramError for invalid words.
     """
     key = statement.frame_word
     if key is None:
@@ -203,7 +203,7 @@ def _path_modes(state: State, statement: Statement) -> None:
 
 
 def note_ineffective_words(state: State, statement: Statement) -> None:
-    """Log a note, once, for each word that has no effect."""
+    """Log one note for each word that has no effect."""
     for word in statement.g_words.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
         note_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
@@ -212,7 +212,7 @@ def note_ineffective_words(state: State, statement: Statement) -> None:
 
 
 def note_ineffective_word(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
-    """Log a note, once, that a function has no effect because of ``reason``."""
+    """Log a single note that a function has no effect because of ``reason``."""
     if reason and name not in state.logged_functions:
         state.logged_functions.add(name)
         found = statement.make_warning(
@@ -260,7 +260,7 @@ def _place(state: State, statement: Statement, name: str) -> float:
 def _limits(state: State, statement: Statement, *, upper: bool) -> None:
     """Set the working area of G25 and G26.
 
-    Their spindle speeds are set together with the spindle words.
+    The spindle speed limits of G25 and G26 are set together with the spindle words.
     """
     for name in ("X", "Z"):
         if name in statement.words:

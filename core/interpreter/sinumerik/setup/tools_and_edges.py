@@ -130,7 +130,7 @@ def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> T
 def _hint(word: Word | None) -> str:
     """Return the remedy for a tool without an offset.
 
-    On other controls, T0101 is tool 1 with its offset.
+    For T0101, the remedy is T1 D1, because other controls use T0101 for tool 1 with its offset.
     """
     if word is not None and word.quoted_name:
         return "Enter this name as the remark of a tool (F8)."
