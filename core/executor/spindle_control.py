@@ -372,7 +372,7 @@ class SpindleControl:
     def _check_stopped_spindle(self, now: float) -> None:
         """Let a requested spindle wait if it has stopped.
 
-        The spindle then does not start by itself when the cause of the stop disappears.
+        The spindle then does not start automatically when the cause of the stop disappears.
         """
         if self._ask is None:
             return

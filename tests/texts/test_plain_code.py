@@ -53,7 +53,6 @@ ACCEPTED: dict[str, frozenset[str]] = {
     ),
     "of its own": frozenset(
         {
-            "app/screen/entry_panel.py",
             "core/extras/drawings/reader_tools.py",
             "core/store/production/job_queue.py",
         }

@@ -367,7 +367,7 @@ class Journal(Persistence):
     def restore(self, source: Path) -> Path | None:
         """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Raises StoreError if the restore fails. Either way, a store is open afterwards: the restored store
+        Raises StoreError if the restore fails. In both cases, a store is open afterward: the restored store
         or the old store.
         """
         with self._lock:

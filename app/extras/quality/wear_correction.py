@@ -111,7 +111,7 @@ def _tool_value(
 ) -> FieldValue:
     """Return the new wear value.
 
-    The correction is added in the same way as an F2 entry in the tool table.
+    The correction is added like an F2 entry in the tool table.
     """
     if not isinstance(row, ToolRow):
         raise EntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
