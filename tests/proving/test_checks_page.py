@@ -32,7 +32,7 @@ def _named(module: ModuleType) -> Iterator[str]:
         if not (isinstance(call, ast.Call) and call.args and isinstance(call.args[0], ast.Constant)):
             continue
         name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
-        if name in {"_add", "_store_finding", ""}:
+        if name in {"_add", "_store_finding", "Found"}:
             yield str(call.args[0].value)
 
 

@@ -104,7 +104,7 @@ class Server:
     reports_repeats = True
     held: frozenset[int] = frozenset({int(Key.Key_S)})
 
-    def read_keys(self) -> frozenset[int]:
+    def read_pressed_keys(self) -> frozenset[int]:
         return self.held
 
     def has_button_down(self) -> bool:

@@ -51,7 +51,7 @@ from tests.texts import message, text_in_spanish
 
 KEY_LABEL = 8  # characters
 OFF = message("screen.off-setpoint", axis="Z", distance=2.1)
-_LOGGED = re.compile(r'\.log\(\s*"(\w+)"')
+_LOGGED = re.compile(r'\.log(?:_text|_event)\(\s*"(\w+)"')
 
 
 every_text = cache(collect_screen_texts)  # of every file there is: seconds

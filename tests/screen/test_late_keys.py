@@ -126,7 +126,7 @@ def test_shift_pressed_in_stall_applies_to_its_key(stall: Stall) -> None:
     class Server:
         reports_repeats = True
 
-        def read_keys(self) -> frozenset[int]:
+        def read_pressed_keys(self) -> frozenset[int]:
             return frozenset()  # all were let go by now
 
         def has_button_down(self) -> bool:

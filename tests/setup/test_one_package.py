@@ -88,7 +88,7 @@ def test_a_wheel_without_a_record_is_rejected() -> None:
 @pytest.fixture
 def installed(tmp_path: Path) -> Path:
     """An installed turndesk whose command prints where its packages are, and another program's app."""
-    main = "from app.cli import other\ndef console() -> int:\n    print(other.__file__)\n    return 3\n"
+    main = "from app.cli import other\ndef run_console() -> int:\n    print(other.__file__)\n    return 3\n"
     files = FILES | {"app/cli/__init__.py": "", "app/cli/main.py": main, "app/cli/other.py": ""}
     with zipfile.ZipFile(io.BytesIO(merge_packages(wheel(files)))) as archive:
         archive.extractall(tmp_path)
