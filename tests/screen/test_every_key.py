@@ -40,7 +40,7 @@ LABELS = {
     "READOUT": {"setting readout"},
     "DRIVES": {"EnableDrives"},
     "RESET": {"Reset"},
-    "SPN STOP": {"SpindleStop"},
+    "SPN STOP": {"StopSpindle"},
     "SAVE": {"file", "store"},
     "SAV+MENU": {"file", "store"},
     "SAV+LOAD": {"file", "store", "load"},
@@ -166,8 +166,8 @@ def _of_entry(day: Day, stroke: Stroke) -> set[str]:
 def _of_jog(day: Day, name: str) -> set[str]:
     """Arrows while slides may be moved by hand, and what stops the spindle."""
     if manual_functions.MANUAL_KEYS.get(name) == manual_functions.STOP:
-        return {"SpindleStop"}
-    directions = {each.key for each in getattr(day.frame.current_page, "model").directions}  # noqa: B009
+        return {"StopSpindle"}
+    directions = {each.key_name for each in getattr(day.frame.current_page, "model").directions}  # noqa: B009
     return {"Jog", "JogByStep"} if name in directions and day.shot.state in MANUAL_STATES else set()
 
 

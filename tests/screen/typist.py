@@ -231,12 +231,12 @@ def _files(folder: Path) -> dict[str, object]:
 
 def record(monkeypatch: pytest.MonkeyPatch, typists: list[Typist]) -> None:
     """Have everything recorded and not carried out from the moment on in which somebody types."""
-    for kind, name in (
-        (Executor, "post"),
-        (ProgramLoader, "load"),
-        *((PlantControls, each) for each in STATION),
+    for kind, method, name in (
+        (Executor, "post", "post"),
+        (ProgramLoader, "start_loading", "load"),
+        *((PlantControls, each, each) for each in STATION),
     ):
-        monkeypatch.setattr(kind, name, _recorded(getattr(kind, name), name, typists))
+        monkeypatch.setattr(kind, method, _recorded(getattr(kind, method), name, typists))
     for name in ("write", "keep"):
         monkeypatch.setattr(Store, name, _counted(getattr(Store, name), typists))
     begin = LatestRequestWorker._begin
