@@ -7,7 +7,9 @@ import hashlib
 import io
 import subprocess
 import sys
+import tomllib
 import zipfile
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,8 @@ FILES = {
     f"{INFO}METADATA": "Name: turndesk\n",
     f"{INFO}RECORD": "old",
 }
+
+ROOT = Path(__file__).parents[2]
 
 
 def wheel(files: dict[str, str]) -> bytes:
@@ -147,3 +151,9 @@ def test_module_environment_lists_package_folder_first(monkeypatch: pytest.Monke
 def test_merged_packages_are_those_of_the_source_tree() -> None:
     assert [name for name in PACKAGES if not (PROJECT_FOLDER / name / "__init__.py").is_file()] == []
     assert wheel_merge._LAUNCHER.is_file()
+
+
+def test_command_of_an_editable_installation_exists() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    module, _, function = project["scripts"]["turndesk"].partition(":")
+    assert callable(getattr(import_module(module), function))
