@@ -41,7 +41,6 @@ NOT_CHECKED = frozenset({"kept", "keeps", "centre", "slides", "palms", "millimet
 ACCEPTED: dict[str, frozenset[str]] = {
     "figures": frozenset(
         {
-            "app/extras/analyses/analysis_tables.py",
             "drivers/hal/bridge/hal_bridge.py",
             "drivers/hal/bridge/packets.py",
             "drivers/hal/hal_link.py",
@@ -50,12 +49,6 @@ ACCEPTED: dict[str, frozenset[str]] = {
     ),
     "trouble": frozenset(
         {"app/extras/pendant/driver/pendant_station.py", "core/executor/station_signals.py", "core/ports.py"}
-    ),
-    "of its own": frozenset(
-        {
-            "core/extras/drawings/reader_tools.py",
-            "core/store/production/job_queue.py",
-        }
     ),
     "behind": frozenset(
         {

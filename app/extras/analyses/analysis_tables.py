@@ -44,9 +44,9 @@ def make_path_table(title: str, found: Found, metric: bool, marked: int) -> Tabl
     )
     heads = (tr("LINE"), tr("PATH DEVIATION"), *found.linear_axes)
     shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)
-    figures = frozenset(range(1, len(heads)))
+    number_columns = frozenset(range(1, len(heads)))
     return TableContent(
-        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=figures
+        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=number_columns
     )
 
 
@@ -80,9 +80,9 @@ def make_thread_table(
     )
     heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY ANGLE"), tr("LEAD ERROR"), tr("RPM DROP"))
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
-    figures = frozenset({1, 2, 3, 4})
+    number_columns = frozenset({1, 2, 3, 4})
     return TableContent(
-        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=figures
+        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=number_columns
     )
 
 

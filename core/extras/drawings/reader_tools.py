@@ -157,8 +157,8 @@ BlockKey = TypeVar("BlockKey", bound=Hashable)
 class BlockContent(NamedTuple):
     """Content of a block or group.
 
-    ``entity_count`` is the number of its own entities, and ``references`` are references to other blocks
-    with their counts.
+    ``entity_count`` is the number of entities without those of other blocks. ``references`` contains the
+    other blocks with their counts.
     """
 
     entity_count: int
