@@ -92,7 +92,7 @@ class WorkRequest:
     def __call__(self, reached: float = 0.0) -> None:
         """Report the progress of the work. Raises AbandonedError if the work must stop."""
         self.worker.check_canceled(self)
-        self.worker.progress_percent = int(reached)
+        self.worker.progress_count = int(reached)
 
     def publish_result(self, deliver: Callable[[], None]) -> None:
         """Call ``deliver`` with an intermediate result on the worker thread.
@@ -121,7 +121,7 @@ class LatestRequestWorker:
     grace_time_s: float = 0.0
     thread_owner: LatestRequestWorker | None = None
     read_time_s: Callable[[], float] = time.monotonic
-    progress_percent: int = 0  # Progress of the work in progress, in the unit of the work.
+    progress_count: int = 0  # Progress of the work in progress, in the unit of the work.
     lock: threading.Condition = field(default_factory=threading.Condition)
     _waiting: deque[WorkRequest] = field(default_factory=deque)
     _current: WorkRequest | None = None
@@ -179,7 +179,7 @@ class LatestRequestWorker:
             if self._current is not None and not self._current.is_queued:
                 self._current.is_wanted = False
             self._answers = deque(each for each in self._answers if each[0].is_queued)
-            self.progress_percent = 0
+            self.progress_count = 0
 
     def deliver_results(self) -> None:
         """Deliver the finished results in the order of the work.
@@ -276,7 +276,7 @@ class LatestRequestWorker:
                 self._running = False
             else:
                 self._current.start_time_s = self.read_time_s()
-            self.progress_percent = 0
+            self.progress_count = 0
             return self._current
 
 

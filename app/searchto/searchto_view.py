@@ -344,7 +344,7 @@ class SearchtoPage(ModelPage):
         if model.stage is SearchtoStage.SEARCHING:
             words = tr(Message("SEARCHING UP TO LINE {line}", line=line))
             return StateContent(
-                join_messages("  ·  ", (words, str(model.restart_finder.worker.progress_percent)))
+                join_messages("  ·  ", (words, str(model.restart_finder.worker.progress_count)))
             )
         return StateContent(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
 

@@ -173,9 +173,9 @@ def test_progress_is_that_of_the_running_request(worker: LatestRequestWorker) ->
     slow, heard = Slow(), Heard()
     worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
-    _until(lambda: worker.progress_percent == 7)
+    _until(lambda: worker.progress_count == 7)
     worker.cancel_request()
-    assert worker.progress_percent == 0
+    assert worker.progress_count == 0
 
 
 def test_intermediate_results_come_only_from_the_newest_request(

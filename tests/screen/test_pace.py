@@ -154,7 +154,7 @@ def test_change_other_than_time_is_drawn_in_next_frame(hands: Hands, counted: Co
 
 def test_another_program_is_drawn_in_next_frame(hands: Hands, counted: Counted) -> None:
     hands.desk.program_loader.replace_loaded(
-        replace(hands.desk.program_loader.loaded_program, progress_percent=7)
+        replace(hands.desk.program_loader.loaded_program, progress_count=7)
     )
     assert counted.tick() == 1
 

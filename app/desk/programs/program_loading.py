@@ -143,7 +143,7 @@ class LoadedProgram:
     diagnostics: tuple[Diagnostic, ...] = ()
     picture: ProgramPicture | None = None
     part_proof: PartProof | None = None
-    progress_percent: int = 0  # Number of blocks that are proved or drawn.
+    progress_count: int = 0  # Number of blocks that are proved or drawn.
     error_text: str = ""  # Reason why the program could not be read.
 
     @property
@@ -222,14 +222,14 @@ class ProgramLoader:
         self._publish(
             request,
             lambda now: replace(
-                now, phase=LoadingPhase.DRAWING, proof=proof, diagnostics=found, progress_percent=0
+                now, phase=LoadingPhase.DRAWING, proof=proof, diagnostics=found, progress_count=0
             ),
         )
         if not proved.waits_for_part:
             self.post_command(SupplyProof(proof))
         picture = steps.draw_path(job, partial(self._reached, request))
         phase = LoadingPhase.PROVING_PART if proved.waits_for_part else find_final_phase(proof)
-        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, progress_percent=0))
+        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, progress_count=0))
         self._prove_part(job, proved, picture, request)
         _freeze_garbage()
 
@@ -247,14 +247,14 @@ class ProgramLoader:
         self._publish(
             request,
             lambda now: replace(
-                now, phase=phase, proof=whole, diagnostics=found, part_proof=part, progress_percent=0
+                now, phase=phase, proof=whole, diagnostics=found, part_proof=part, progress_count=0
             ),
         )
         if proved.waits_for_part or whole != proved.proof:
             self.post_command(SupplyProof(whole))
 
     def _reached(self, request: WorkRequest, count: float) -> None:
-        self._publish(request, lambda now: replace(now, progress_percent=int(count)))
+        self._publish(request, lambda now: replace(now, progress_count=int(count)))
 
     def _publish(self, request: WorkRequest, change: Callable[[LoadedProgram], LoadedProgram]) -> None:
         request.publish_result(lambda: self.replace_loaded(change(self._now)))

@@ -103,7 +103,7 @@ class RunningRenewal:
             diagnostics=proved.diagnostics,
             phase=LoadingPhase.DRAWING,
             part_proof=None,
-            progress_percent=0,
+            progress_count=0,
         )
         if not proved.waits_for_part:
             request.publish_result(partial(self._publish, fresh))

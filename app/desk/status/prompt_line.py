@@ -228,7 +228,7 @@ def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
 
 
 def _progress(loaded: LoadedProgram) -> str:
-    count = Message(" {reached} BLOCKS", reached=loaded.progress_percent) if loaded.progress_percent else ""
+    count = Message(" {reached} BLOCKS", reached=loaded.progress_count) if loaded.progress_count else ""
     return Message("{phase} {loaded}{count}", phase=loaded.phase.value, loaded=loaded.name, count=count)
 
 

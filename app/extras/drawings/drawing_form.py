@@ -435,7 +435,7 @@ class AddedDrawingForm(AddedForm):
         if not self.planner.is_reading:
             return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
         words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
-        return tr(Message(words, seconds=self.plan_worker.progress_percent))
+        return tr(Message(words, seconds=self.plan_worker.progress_count))
 
     def poll(self) -> None:
         """Process the results of planning and of trials."""

@@ -197,7 +197,7 @@ def reading(desk: Desk, tmp_path: Path) -> Reading:
 
 
 def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Reading) -> None:
-    while desk.drawing.plan_worker.progress_percent < 7:
+    while desk.drawing.plan_worker.progress_count < 7:
         pass
     assert desk.shapes.prompt_text() == text("shapes.being-read", seconds=7)
     desk.shapes.write_form()
