@@ -25,8 +25,8 @@ _BESIDE = ("-journal", "-wal", "-shm")  # files that SQLite creates for a copy o
 def lock_file(file: int) -> None:
     """Lock the file without waiting; the lock lasts as long as the file is open.
 
-    Raises OSError if another process has locked the file. On systems without file locks the function does
-    nothing.
+    Raises OSError if the file is locked through another open file, in this process or another, or if the
+    file system does not support locks. On systems without file locks the function does nothing.
     """
     if sys.platform == "win32":
         import msvcrt  # noqa: PLC0415
@@ -101,7 +101,8 @@ def _record(kind: int) -> bytes:
 def create_unfinished_file(target: Path) -> Iterator[Path]:
     """Create an empty temporary file next to ``target``, and delete it at the end of the context.
 
-    The caller writes the file and renames it to ``target``. Raises OSError if the file cannot be created.
+    The caller writes the file and renames it to ``target``. Raises OSError if the file cannot be created or
+    locked.
     """
     remove_abandoned_files(target.parent)
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
@@ -119,8 +120,8 @@ def create_unfinished_file(target: Path) -> Iterator[Path]:
 def create_unfinished_folder(target: Path) -> Iterator[Path]:
     """Create a temporary folder next to ``target``, and delete it at the end of the context.
 
-    The caller fills the folder and renames it to ``target``. Raises OSError if the folder cannot be
-    created.
+    The caller fills the folder and renames it to ``target``. Raises OSError if the folder cannot be created
+    or locked.
     """
     remove_abandoned_files(target.parent)
     folder = tempfile.mkdtemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)

@@ -36,9 +36,9 @@ class StopMode(StrEnum):
 class MotionSegments(NamedTuple):
     """Motion of all axes as a sequence of segments with constant acceleration.
 
-    ``t`` (n,) contains the start times and ``durations_s`` (n,) the durations. ``positions``, ``velocities``
-    and ``accelerations`` (n, axes) contain the position, velocity and acceleration at the start of each
-    segment. The axes are at rest after the last segment.
+    ``start_times_s`` (n,) contains the start times and ``durations_s`` (n,) the durations. ``positions``,
+    ``velocities`` and ``accelerations`` (n, axes) contain the position, velocity and acceleration at the
+    start of each segment. The axes are at rest after the last segment.
     """
 
     start_times_s: FloatArray
@@ -223,11 +223,11 @@ class OrientingSpindle(Protocol):
 class Cam(NamedTuple):
     """Motion as a function of spindle revolutions instead of time.
 
-    ``segments.t`` and ``segments.durations_s`` are revolutions from the encoder count ``start_revolutions``
-    on, in the direction ``sign`` in which the spindle turns. ``segments.velocities`` and
-    ``segments.accelerations`` are per revolution. The axes are at rest before the start and after the end of
-    the cam. ``following_segments`` continue from that end as a function of time; their ``t`` are seconds
-    from there.
+    ``segments.start_times_s`` and ``segments.durations_s`` are revolutions from the encoder count
+    ``start_revolutions`` on, in the direction ``sign`` in which the spindle turns. ``segments.velocities``
+    and ``segments.accelerations`` are per revolution. The axes are at rest before the start and after the
+    end of the cam. ``following_segments`` continue from that end as a function of time; their
+    ``start_times_s`` are seconds from there.
     """
 
     start_revolutions: float

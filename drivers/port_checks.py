@@ -76,7 +76,10 @@ def require_estop_released(is_pressed: bool) -> None:
 
 
 def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
-    """Raise DriverError if the spindle drive cannot become the C axis because it is off or turning."""
+    """Raise DriverError if the spindle drive cannot become the C axis.
+
+    This is the case if the drives of the axes are off (``is_enabled`` is False) or the spindle is turning.
+    """
     if not is_enabled:
         raise DriverError(
             "C uses the spindle drive, and the drives are off; switch them on first",

@@ -29,7 +29,8 @@ def convert_segments(
     """Convert segments into motion pieces.
 
     ``yield_cpu`` is called repeatedly, because some drives cannot wait until thousands of pieces are
-    converted. Raises DriverError if an array has the wrong shape or a value is not finite.
+    converted. Raises DriverError if an array has the wrong shape, a value is not finite or a duration is
+    negative.
     """
     count = len(segments.start_times_s)
     shapes = {segments.positions.shape, segments.velocities.shape, segments.accelerations.shape}
@@ -149,11 +150,12 @@ class SetpointQueue(PieceQueue):
         self.get_transferred_until: Callable[[], float] = lambda: -math.inf
 
     def splice_segments(self, segments: MotionSegments, now: float) -> None:
-        """Replace all setpoints from time ``segments.t[0]`` on.
+        """Replace all setpoints from time ``segments.start_times_s[0]`` on.
 
-        The segments must start no earlier than the commit time after ``now``. They must continue the
-        remaining queue in position and velocity, be continuous, and end at rest. Otherwise DriverError is
-        raised, and the queue does not change.
+        The segments must start no earlier than the commit time after ``now``, and not before the time up to
+        which the drives already have setpoints. They must continue the remaining queue in position and
+        velocity, be continuous, and end at rest. Otherwise DriverError is raised, and the queue does not
+        change.
         """
         pieces = convert_segments(segments, len(self.axes), self.yield_cpu)
         start = pieces[0].start_time_s

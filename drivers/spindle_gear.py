@@ -159,7 +159,9 @@ class CamGearing:
     def load_cam(self, cam: Cam) -> None:
         """Replace the current cam from the start of the new path on.
 
-        Raises DriverError if the new cam counts from a different index pulse.
+        Raises DriverError if the new cam counts from a different index pulse or in the other direction.
+        Also raises DriverError if its path starts too early, does not continue the current motion, contains
+        a gap or a jump, or does not end at rest.
         """
         if not self.is_same_cam(cam):
             raise DriverError(
@@ -341,8 +343,9 @@ class GearedQueue(SetpointQueue):
     def engage_cam(self, cam: Cam, phase: SpindlePhaseFilter, now: float) -> None:
         """Make the axes follow the spindle from time ``now`` on.
 
-        ``phase`` measures the spindle angle. Raises DriverError if an axis is moving, and in the cases that
-        ``core.ports.SpindleGear`` lists.
+        ``phase`` measures the spindle angle. If the axes already move on a cam, the new cam replaces the
+        rest of that cam. Raises DriverError if an axis is moving without a cam, and in the cases that
+        ``CamGearing`` and ``core.ports.SpindleGear`` list.
         """
         gearing = self._gearing
         if gearing is not None and (gearing.has_moved or gearing.is_same_cam(cam)):
@@ -396,7 +399,8 @@ class GearedQueue(SetpointQueue):
     def splice_segments(self, segments: MotionSegments, now: float) -> None:
         """Splice time-based setpoints into the queue.
 
-        Raises DriverError if the axes still follow the spindle at the start time of the setpoints.
+        Raises DriverError if an axis that follows the spindle will have moved on the cam by the start time
+        of the setpoints, and in the cases that ``SetpointQueue.splice_segments`` lists.
         """
         gearing = self._gearing
         if (

@@ -296,9 +296,10 @@ class ToolSetting:
             self.desk.say(why)
 
     def _save_answer(self) -> str:
-        """Process the answer, and return the reason if it is rejected, or an empty string.
+        """Process the answer, and return the message to show, or an empty string.
 
-        Raises EntryError if the entered text is invalid.
+        The message is the reason why the answer is rejected or, after a touch-off, the note that the
+        operator must read. Raises EntryError if the entered text is invalid.
         """
         if self.question_name == TOOL_QUESTION:
             return self._tool()

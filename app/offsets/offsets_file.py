@@ -63,8 +63,8 @@ KEY_ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
 def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
     """Return the tool, secondary and zero offsets of a file as rows of the store.
 
-    A missing key is read as 0 or empty. A tool that has a shape but no X and Z has no offset, because its
-    tip position is not specified. Raise CommandError with all mistakes of the file.
+    A missing key is read as 0 or empty. A tool that has a shape but neither X nor Z has no offset, because
+    its tip position is not specified. Raise CommandError with all mistakes of the file.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -107,7 +107,8 @@ def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, Secondar
 def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
     """Return the tool shapes of a file as rows of the store.
 
-    Raise CommandError with all mistakes of the file.
+    Raise CommandError with all mistakes of the tool tables. The secondary and zero offsets of the file are
+    not checked.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -120,7 +121,7 @@ def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     """Return the tools of a file that have a shape, in mm, with the nose radius and tip of the same table.
 
     In the file, lengths are in inches. Outlines of holder and profile are texts in mm. Raise CommandError
-    with all mistakes of the file.
+    with all mistakes of the tool tables. The secondary and zero offsets of the file are not checked.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)

@@ -19,9 +19,11 @@ from core.message import CodedError, Message, get_error_code
 
 
 class FileOperationError(CodedError):
-    """A failed file operation, which left the file unchanged.
+    """A failed file operation, with a message that states the reason.
 
-    The message states the reason.
+    Each file is either unchanged or completely written. An operation with several steps may have completed
+    some of them: a renamed program may already have its new name, and some files of a transfer may already
+    be written.
     """
 
 
@@ -88,7 +90,7 @@ def copy_to_medium(target: Path, data: bytes) -> None:
 def write_new_file(target: Path, data: bytes) -> None:
     """Write a new file, and never replace an existing file.
 
-    Raise FileOperationError if the name exists.
+    Raise FileOperationError if the name exists or the file cannot be written.
     """
     try:
         create_synced_folder(target.parent)

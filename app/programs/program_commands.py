@@ -30,9 +30,10 @@ COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
 def complete_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name) -> str:
-    """Return ``name``, and add the extension of ``reference_name`` if it has no extension.
+    """Return ``name`` without surrounding blanks, with an extension that ``accepts_name`` accepts.
 
-    Raise FileOperationError for an invalid name.
+    The extension of ``reference_name`` is added if ``name`` has no extension or an extension that is not
+    accepted. Raise FileOperationError for an invalid name.
     """
     name = name.strip()
     if not name:
@@ -84,7 +85,8 @@ def rename_program(
 ) -> str:
     """Rename a program with its versions, part count and run record, and return the new name.
 
-    Raise FileOperationError on failure.
+    Raise FileOperationError on failure. If only the store fails, the file already has its new name, and the
+    versions, part count and run record remain under the old name.
     """
     name = complete_name(name, source, accepts_name)
     if name == source.name:
@@ -110,9 +112,10 @@ def rename_program(
 
 
 def delete_program(path: Path, persistence: Persistence) -> str:
-    """Archive a program as a version, and delete its file.
+    """Archive a program as a version, delete its file, and return the file name.
 
-    If FileOperationError is raised, the file still exists.
+    Raise FileOperationError if the file no longer exists, or if it cannot be read, archived or deleted. An
+    existing file is then unchanged.
     """
     try:
         persistence.save_version(path.name, _read(path), "deleted")

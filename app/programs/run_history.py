@@ -223,7 +223,9 @@ class PartCounter:
     def set_target(self, target_count: int) -> None:
         """Set the target number of parts, or 0 for no target.
 
-        Raise StoreError if the target cannot be stored.
+        The target is used immediately and is written to the disk later. A later write error is not raised,
+        and without an open store the target is not stored. Raise StoreError if the store is closed or
+        read-only; the new target is used even then.
         """
         before, self.target_count, self._announced = self.target_count, target_count, -1
         self.persistence.save_setting(_key(self.program_name), target_count or None)
@@ -239,7 +241,9 @@ class PartCounter:
     def correct_count(self, change: int) -> None:
         """Change the count by the number of parts that were made elsewhere or scrapped.
 
-        Raise StoreError if the count cannot be stored.
+        The count changes immediately and is written to the disk later. A later write error is not raised,
+        and without an open store the count is not stored. Raise StoreError if the store is closed or
+        read-only; the displayed count changes even then.
         """
         self.part_count, self._announced = self.part_count + change, -1
         self.persistence.runs.add_parts(self.program_name, change)
@@ -255,7 +259,9 @@ class PartCounter:
     def reset_count(self) -> None:
         """Reset the count to zero.
 
-        Raise StoreError if the count cannot be stored.
+        The count changes immediately and is written to the disk later. A later write error is not raised,
+        and without an open store the count is not stored. Raise StoreError if the store is closed or
+        read-only; the displayed count is zero even then.
         """
         before, self.part_count, self._announced = self.part_count, 0, -1
         self.persistence.runs.reset_parts(self.program_name)

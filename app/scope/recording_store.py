@@ -92,7 +92,8 @@ class RecordingStore:
     def save_named(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
         """Save a record under a name with date and time, and return its path.
 
-        Raise RecordingFileError on failure.
+        Raise RecordingFileError if there is not enough disk space or the folder cannot be used. Errors of
+        ``save_recording``, such as RecordError, are raised unchanged unless they are OSError.
         """
         path = self._make_path(name_stem, RECORD_SUFFIX)
         self._write_guarded(path, lambda: self.save_recording(record, path))
@@ -131,7 +132,8 @@ class RecordingStore:
     def read_recording(self, path: Path) -> ScopeRecord:
         """Open a stored record.
 
-        Raise RecordingFileError on failure.
+        Errors of ``open_recording``, such as RecordError for a damaged file, are raised unchanged. Raise
+        RecordingFileError instead of an OSError.
         """
         return self._run_reporting(path, lambda: self.open_recording(path))
 

@@ -91,7 +91,9 @@ class EventSounds:
     def save_settings(self, volume_percent: int, muted_kinds: frozenset[str]) -> None:
         """Store the volume and the muted kinds.
 
-        Raise StoreError on failure.
+        The volume is limited to 0 to 100 %. The settings are used immediately and are written to the disk
+        later. A later write error is not raised, and without an open store the settings are not stored.
+        Raise StoreError if the store is closed or read-only.
         """
         before, self.volume_percent, self.muted_kinds = (
             self.volume_percent,

@@ -131,8 +131,9 @@ class SerialPorts(Protocol):
 def store_received_program(received: ReceivedProgram, folder: Path, name: str) -> Path:
     """Store a received program as a new file, and return its path.
 
-    If ``name`` has no extension, the extension of the received program is added. Raise FileOperationError
-    if the name is invalid or exists, or if the disk rejects the file.
+    If ``name`` has no extension or an extension that programs do not have, the extension of the received
+    program is added. Raise FileOperationError if the name is invalid or exists, or if the disk rejects the
+    file.
     """
     name = complete_name(name, Path(received.name))
     if other := find_same_name(folder, name):

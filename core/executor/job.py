@@ -156,8 +156,9 @@ def compute_nominal_duration_s(block: Block) -> float:
 def check_block(block: Block, machine: Machine) -> None:
     """Check a block again before it moves an axis.
 
-    Raises AlarmError if the block exceeds the travel limits, if it uses feed per revolution with a stopped
-    spindle, or if it moves C while the spindle turns and the spindle is the C axis.
+    Raises AlarmError if the block exceeds the travel limits, or if it moves C while the spindle turns and
+    the spindle is the C axis. Also raises AlarmError if a block other than a rapid uses feed per revolution
+    with a stopped spindle and does not move C.
     """
     if not block.moves:
         return

@@ -245,8 +245,8 @@ class MachineControl:
     def release_jog_key(self) -> None:
         """Handle the release of a jog key or button, so that the next press starts a jog again.
 
-        A late or repeated release does not stop a motion that started after the jog. Raises DriverError if
-        a driver fails.
+        A late or repeated release has no effect on a program or homing that started after the jog, but it
+        stops any manual motion. Raises DriverError if a driver fails.
         """
         self.jog_end_reason = ""
         if self.state is MachineState.JOG:

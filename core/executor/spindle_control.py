@@ -273,7 +273,8 @@ class SpindleControl:
         """Send a changed speed and monitor the drive, once per tick.
 
         ``radius`` is the radius of the tool position in mm, for constant surface speed. Raises AlarmError
-        if the drive has tripped or does not follow its command.
+        if the drive has tripped, does not follow its command, no longer holds an orientation angle, or
+        reports a speed that is not a number. Raises DriverError if the drive rejects the speed.
         """
         self._now = now
         measured = self._port.speed()

@@ -131,7 +131,9 @@ def make_rounding(
 
     The radius of the arc is ``radius`` mm. Between two lines, each line is shortened by radius·tan(turn/2).
     Otherwise the center of the arc is the intersection of both elements, each offset by ``radius``. Raises
-    the errors of ``chamfer``, and CornerError if no arc is tangent to both elements within their lengths.
+    NoCornerError if the elements have the same direction. Between two lines, raises CornerTooLargeError if
+    a line is too short, and CornerError if the second line reverses the direction of the first. With an
+    arc, raises CornerError if no arc is tangent to both elements within their lengths.
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         return _fillet(first_element, second_element, radius)
@@ -186,7 +188,13 @@ _HALVINGS = 60
 
 
 def find_chamfer_leg(first_element: Element, second_element: Element, length: float) -> float:
-    """Return the leg of a chamfer that is ``length`` mm long. Raises the same errors as ``chamfer``."""
+    """Return the leg of a chamfer that is ``length`` mm long.
+
+    Between two lines, no error is raised, because ``chamfer`` checks the leg. With an arc, raises
+    NoCornerError if the elements have the same direction. Raises CornerTooLargeError if an element has no
+    length. Raises CornerError if the second element reverses the direction of the first, or if the elements
+    are too short for the chamfer.
+    """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         # The chamfer and its two legs are an isosceles triangle.
         return length / (

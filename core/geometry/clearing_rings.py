@@ -75,8 +75,9 @@ def make_clearing_rings(
     """Return the rings that clear an area.
 
     The outermost ring is ``first_inset`` mm inside the area, and the rings are ``ring_distance`` mm apart.
-    If ``conventional`` is True, the rings are clockwise (conventional milling with M3). Raises AreaError if
-    the tool does not fit.
+    ``radius`` is the tool radius in mm. If ``is_conventional`` is True, the rings are clockwise
+    (conventional milling with M3). Raises AreaError if the tool does not fit, if an inset is not closed, if
+    an island touches the edge of its pocket, or if more than 2000 rings are needed.
     """
     outmost = _find_patches(make_inset_loops(area, first_inset))
     if not outmost:

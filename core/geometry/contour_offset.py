@@ -64,8 +64,8 @@ _INFINITE_MM = float("inf")
 class GougeError(Exception):
     """An error raised if the offset of a contour cuts into the contour.
 
-    ``index`` is the number of the element that cannot be offset, from 0. ``reason`` is a clause about the
-    element.
+    ``element_index`` is the number of the element that cannot be offset, from 0. ``reason`` is a clause
+    about the element.
     """
 
     def __init__(self, index: int, reason: str) -> None:
@@ -88,8 +88,8 @@ class OffsetPiece(NamedTuple):
 def offset_element(element: Element, distance_left: float) -> Element:
     """Return the element offset by ``distance_left`` mm to its left.
 
-    A negative value offsets the element to the right. Arcs remain concentric. Raises GougeError (index 0)
-    for an arc whose radius would vanish.
+    A negative value offsets the element to the right. Arcs remain concentric. Raises GougeError
+    (``element_index`` 0) for an arc whose radius would vanish.
     """
     ax, az = get_left_normal(element.start_direction)
     bx, bz = get_left_normal(element.end_direction)
@@ -108,8 +108,9 @@ class OffsetBuilder:
 
     The path is ``distance_left`` mm to the left of the contour, or to the right if negative. It starts and
     ends square to the contour. Each element must have a length and must start at the end of the previous
-    element. GougeError is raised if an inside arc is too small, if an element vanishes or would be
-    reversed, or if the path is closer to any element than the distance. A second wall that is more than
+    element. GougeError is raised if an inside arc is too small, if an element reverses the direction of the
+    previous element, if the offset of an element vanishes or would be reversed, or if the path is closer to
+    any element than the distance by more than 0.0015 mm. A second wall that is more than
     GOUGE_CHECK_ELEMENT_COUNT elements away is not detected.
     """
 
@@ -373,7 +374,8 @@ def _follow_path(parts: list[Element]) -> list[Element]:
     """Return the parts that form a continuous path from the first part.
 
     If several parts start at the same point, the last one is used, because the offset loops between them.
-    Raises TrimError if a part of relevant length is not reached.
+    Raises TrimError if there are no parts, or if the parts after the end of the path are longer than 0.02
+    mm in total.
     """
     if not parts:
         raise TrimError

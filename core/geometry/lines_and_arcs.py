@@ -254,7 +254,7 @@ def get_left_normal(direction: Point) -> Point:
 def find_tangent_point(point: Point, center: Point, radius: float, *, is_clockwise: bool) -> Point:
     """Return the point at which a line from a point outside a circle is tangent to the circle.
 
-    The path follows the line and then the circle in the direction ``clockwise``.
+    The path follows the line and then the circle, clockwise if ``is_clockwise`` is True.
     """
     half = acos(min(1.0, radius / dist(point, center)))
     # In the direction of the circle, the tangent point is ``half`` after the direction of the point.

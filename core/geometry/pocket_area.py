@@ -238,7 +238,10 @@ def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
 
 
 def _chain_loops(parts: Sequence[Element]) -> list[ElementLoop]:
-    """Return the parts as closed loops, the longest first. Raises AreaError if a loop is not closed."""
+    """Return the parts as closed loops, in descending order of the longest part of each loop.
+
+    Raises AreaError if a loop is not closed.
+    """
     parts = _remove_tails(parts)
     starts = np.array([part.start for part in parts]).reshape(-1, 2)
     free = np.ones(len(parts), dtype=bool)

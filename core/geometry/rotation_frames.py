@@ -160,7 +160,7 @@ def make_frame_from_projections(first: float, second: float, rotation: float) ->
     """Return the frame of a plane from its projected angles ``first`` in ZX and ``second`` in YZ.
 
     X' is in the plane ZX before the frame is rotated by ``rotation`` about Z'. Angles are measured upward
-    from X and from Y. Raises InvalidFrameError if an angle is 90 degrees.
+    from X and from Y. Raises InvalidFrameError if ``first`` or ``second`` is 90 or -90 degrees.
     """
     (c1, s1), (c2, s2) = compute_exact_cos_sin(first), compute_exact_cos_sin(second)
     if min(abs(c1), abs(c2)) < MIN_SINE:

@@ -66,8 +66,11 @@ class Store:
         """Open the store in ``folder``, and create it if it does not exist.
 
         A read-only store can be opened while another process writes to it. It is empty if the file does not
-        exist. Raises StoreError if another process has the store open for writing, or if the file is
-        damaged, from another program or of a newer version. Such a file is not changed.
+        exist. Raises StoreError if the file is damaged, from another program or of a newer version; such a
+        file is not changed. Also raises StoreError if the folder or the file cannot be accessed. For
+        writing, raises StoreError if another process has the store open for writing, or if the file is
+        missing although its log exists. For reading only, raises StoreError if the file is of an older
+        version or its log has lost changes.
         """
         return cls(open_read_only(folder) if read_only else open_for_writing(folder))
 

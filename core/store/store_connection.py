@@ -25,9 +25,9 @@ _UNWRITABLE_CAUSES = frozenset({StoreErrorCause.FULL, StoreErrorCause.FORBIDDEN}
 def connect_store(path: Path, *, is_read_only: bool) -> sqlite3.Connection:
     """Open a connection to the store; the caller begins transactions explicitly.
 
-    Reading needs a little disk space in the folder of the file for SQLite's index. If the disk has no space
-    and the store has no log, the file is opened as immutable. Raises StoreError if the file cannot be
-    opened.
+    Reading needs a little disk space in the folder of the file for SQLite's index. If the disk is full or
+    the folder is not writable, and the store has no log, a read-only connection opens the file as
+    immutable. Raises StoreError if the file cannot be opened.
     """
     try:
         return _connection(path, "mode=ro" if is_read_only else "mode=rw")
@@ -97,7 +97,7 @@ class WriterLock:
 
     If another process briefly has the lock in order to read the owner of the store, locking is retried for
     0.1 s. ``pause`` waits between two attempts, for a time in seconds. Raises StoreError if the store is
-    already locked.
+    already locked or the lock file cannot be opened.
     """
 
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:

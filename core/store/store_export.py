@@ -52,7 +52,8 @@ def export_store(store: Store, folder: Path) -> int:
     """Write the newest version of every program and the other data, and return the number of programs.
 
     The folder appears only when it is complete. Raises StoreError if the folder exists and is not empty, or
-    cannot be written.
+    cannot be written. Also raises StoreError if the name of a program is invalid, or if its newest version
+    does not match its checksum.
     """
     try:
         if folder.exists() and any(folder.iterdir()):
@@ -217,7 +218,11 @@ def _number(field: RowField, text: str) -> FieldValue:
 
 
 def read_exported_programs(folder: Path) -> dict[str, bytes]:
-    """Return the programs of an exported folder by name. Raises StoreError if the folder is not an export."""
+    """Return the programs of an exported folder by name.
+
+    Raises StoreError if the folder is not an export, or if a program cannot be read or is larger than 64
+    MB.
+    """
     try:
         return {path.name: read_input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
@@ -239,7 +244,8 @@ def import_programs_and_offsets(
 ) -> None:
     """Save programs by name and offset rows by number, within the caller's transaction.
 
-    Raises StoreError if a name is invalid, or if a number or value is out of range.
+    Raises StoreError if a name is invalid, if a number or value is out of range, and in the other cases
+    that ``change_row`` lists.
     """
     for name, text in programs.items():
         program_records.save_program_version(connection, name, text, reason.text)

@@ -269,7 +269,7 @@ RowT = TypeVar("RowT", bound=OffsetRow)  # also for rows whose type is known onl
 def replace_fields(row: ConcreteRowT, values: Mapping[str, FieldValue]) -> ConcreteRowT:
     """Return the row with the given fields replaced.
 
-    Raises ValueError for an unknown field name.
+    For an unknown field name, raises ValueError before Python 3.13 and TypeError from Python 3.13 on.
     """
     named: dict[str, Any] = dict(values)  # the fields have different types
     return row._replace(**named)

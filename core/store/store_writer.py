@@ -132,7 +132,8 @@ class UnwrittenEntries:
 def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
     """Run an operation. Return why the store can never accept it, or an empty string on success.
 
-    A temporary disk error is raised, so that all entries are tried again later.
+    Only StoreError and a violated constraint are permanent. Any other SQLite error, such as that of a full
+    disk, is raised, so that all entries are tried again later.
     """
     try:
         operation(connection)

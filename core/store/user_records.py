@@ -88,7 +88,7 @@ def normalize_user_name(name: str) -> str:
 def save_user(connection: sqlite3.Connection, row: UserRow) -> None:
     """Add a user, or replace the level and PIN of a user.
 
-    Raises StoreError if no user with SERVICE level would remain.
+    Raises StoreError if the name is invalid, or if no user with SERVICE level would remain.
     """
     row = row._replace(name=normalize_user_name(row.name))
     connection.execute("DELETE FROM people WHERE name = ?", (row.name,))

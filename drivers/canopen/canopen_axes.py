@@ -80,7 +80,7 @@ class CanopenAxes:
     def connect(self) -> None:
         """Configure every drive.
 
-        Raises DriverError if a drive does not match the machine file.
+        Raises DriverError if a drive does not respond or does not match the machine file.
         """
         self.drives.configure_drives()
         self.queue.reset_to(self._actual_positions())
@@ -125,7 +125,8 @@ class CanopenAxes:
     def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
-        Raises DriverError if the setpoints are invalid or the drives cannot follow them.
+        Raises DriverError if a fault is active, the power is off or an axis is homing. Also raises
+        DriverError if the setpoints are invalid or the drives cannot follow them.
         """
         self._need_power()
         homing = self.active_homing or self._given_up
@@ -159,7 +160,9 @@ class CanopenAxes:
     def enable(self, is_on: bool) -> None:
         """Switch the power of the drives on or off, and wait until all drives have switched.
 
-        Raises DriverError with the names of the drives that do not switch on.
+        Switching off waits at most 0.3 s and reports no error if a drive still has power then. When
+        switching on, raises DriverError if a fault is active, if a drive rejects a request, or, with the
+        names of the drives, if drives do not switch on.
         """
         if not is_on:
             self._off(DriveState.SWITCH_ON_DISABLED)
@@ -185,7 +188,9 @@ class CanopenAxes:
     def home(self, axis: str) -> None:
         """Start homing an axis with the homing function of its drive.
 
-        Raises DriverError if the power is off or an axis is moving.
+        An axis without a drive or with an absolute encoder is not homed. Raises DriverError if the axis
+        does not exist. Also raises DriverError if a fault is active, the power is off, an axis is moving,
+        or the drive rejects the homing parameters.
         """
         require_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)

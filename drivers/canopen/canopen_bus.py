@@ -105,7 +105,7 @@ class CanBus(canopen.Network):
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send one frame.
 
-        Raises DriverError if the interface rejects the frame.
+        Raises DriverError if the bus is closed or has failed, or if the interface rejects the frame.
         """
         if self.bus is None or self.failure:
             raise DriverError(

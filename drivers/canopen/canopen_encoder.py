@@ -46,7 +46,7 @@ class CanEncoder:
     def connect(self) -> None:
         """Check the encoder and map its PDO.
 
-        Raises DriverError if the encoder does not match the machine file.
+        Raises DriverError if the encoder does not respond or does not match the machine file.
         """
         setup, config = self._setup, self._config
         if config.node is not None:

@@ -164,7 +164,8 @@ class SpindleHoming:
     def start_index_search(self, now: float) -> None:
         """Start the search for the encoder index.
 
-        Raises DriverError if the drive rejects the homing method.
+        Raises DriverError if the drive rejects the homing method, the homing speeds or the home offset, or
+        does not respond.
         """
         self._limit, self._why = _INDEX_SEARCH_S, "no encoder index was found within one revolution"
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX_METHOD)
@@ -173,7 +174,8 @@ class SpindleHoming:
     def start_position_setting(self, counts: int, now: float) -> None:
         """Start a homing without motion that sets the current position to ``counts``.
 
-        Raises DriverError if the drive rejects the homing method.
+        Raises DriverError if the drive rejects both homing methods for the present position (37 and 35),
+        the homing speeds or the home offset, or does not respond.
         """
         self._limit, self._why = _POWERED_MODE_CHANGE_S, "the drive does not accept its new position"
         try:

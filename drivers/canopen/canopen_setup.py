@@ -84,7 +84,8 @@ class NodeSetup:
     def write(self, index: int, subindex: int, value: int) -> None:
         """Write one object if its value differs, and read the value back.
 
-        Raises DriverError if the node rejects the value or stores a different value.
+        A write-only object is always written and is not read back. Raises DriverError if the node does not
+        respond, rejects the value or stores a different value.
         """
         variable = self.node.object_dictionary.get_variable(index, subindex)
         blind = variable is not None and not variable.readable  # For example, the command to clear a queue.
@@ -121,8 +122,9 @@ class NodeSetup:
         """Write TurnDesk's values and then those of the machine file to the objects that the node has.
 
         ``missing_objects`` collects the objects that the node lacks. Raises DriverError with the names of
-        all missing objects that are in ``required_objects``, or that are in the machine file and not
-        optional.
+        all missing objects that are in ``required_objects``, or otherwise of those that are in the machine
+        file and not optional. Also raises DriverError if the node does not respond, rejects a value or
+        stores a different value.
         """
         self.missing_objects = {}
         named = {(index, sub) for index, sub, _ in file_objects}
@@ -158,7 +160,7 @@ class NodeSetup:
     def write_optional_object(self, index: int, subindex: int, value: int) -> bool:
         """Write an object if the node has it, and return whether the node has it.
 
-        Raises DriverError if the node rejects the value or stores a different value.
+        Raises DriverError if the node does not respond, rejects the value or stores a different value.
         """
         if self.has_object(index, subindex):
             self.write(index, subindex, value)
@@ -189,7 +191,10 @@ class NodeSetup:
             )
 
     def require_modes(self, required_modes: int, family_modes: int = 0) -> None:
-        """Raise DriverError if a required mode is neither in object 6502h nor in ``family_modes``."""
+        """Raise DriverError if a required mode is neither in object 6502h nor in ``family_modes``.
+
+        A node without object 6502h is assumed to support all required modes.
+        """
         offered = family_modes | (
             self.read(od.SUPPORTED) if self.has_object(od.SUPPORTED, 0) else required_modes
         )
@@ -217,7 +222,10 @@ class NodeSetup:
             )
 
     def require_homing_method(self, method: int) -> None:
-        """Raise DriverError if the homing method is not in the drive's list of methods (object 60E3h)."""
+        """Raise DriverError if the homing method is not in the drive's list of methods (object 60E3h).
+
+        A drive without this list, or with an empty list, is assumed to support the method.
+        """
         listed = [self.read(od.HOME_METHODS, sub + 1) for sub in range(self.count_entries(od.HOME_METHODS))]
         offered = sorted({each for each in listed if each})
         if offered and method not in offered:
@@ -234,6 +242,7 @@ class NodeSetup:
         """Check the counts per motor revolution that result from the drive's objects.
 
         Raises DriverError if the drive's gear and feed objects do not result in ``counts`` per revolution.
+        The check is skipped if the drive lacks one of these objects or one of their values is 0.
         """
         places = [(od.GEAR, 1), (od.GEAR, 2), (od.FEED, 1), (od.FEED, 2)]
         if not all(self.has_object(*place) for place in places):

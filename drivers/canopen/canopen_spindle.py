@@ -50,7 +50,7 @@ class CanopenSpindle:
     def connect(self) -> None:
         """Configure the drive.
 
-        Raises DriverError if the drive does not match the machine file.
+        Raises DriverError if the drive does not respond or does not match the machine file.
         """
         config = self._config
         queue = self.drive.profile.record_queue if config.is_c_axis else None
@@ -153,7 +153,8 @@ class CanopenSpindle:
     def clear_fault(self) -> None:
         """Clear the fault without switching the power on.
 
-        A drive that has restarted is configured again. Raises DriverError if this configuration fails.
+        A drive that has restarted or did not reply to the last SYNC is configured again. Raises DriverError
+        if this configuration fails.
         """
         if self.drive.has_restarted or self.drive.missing_reply_count:
             self.connect()

@@ -99,7 +99,8 @@ def _list_mismatches(
 ) -> Iterator[str]:
     """Yield the mode in which the drive would run, and then the objects that the drive lacks.
 
-    Raises DriverError if the drive does not support the mode.
+    Raises DriverError if the drive does not support the mode, or lacks the object that receives the
+    setpoints in this mode.
     """
     if axis is None:
         return

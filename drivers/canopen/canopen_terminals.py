@@ -53,7 +53,8 @@ class Cia401Module:
     def read_terminal_counts(self, required_terminals: Iterable[CanTerminal]) -> None:
         """Read the number of terminals from the module.
 
-        Raises DriverError if a required terminal does not exist.
+        Raises DriverError if the node does not respond or is not a CiA 401 module, or if a required
+        terminal does not exist.
         """
         self.setup.enter_pre_operational()
         self.setup.require_profile(401)
@@ -75,7 +76,7 @@ class Cia401Module:
         """Configure the PDO mapping, and the output states that apply if this computer fails.
 
         ``safe_values`` contains the states as bits; the outputs in ``retained_bits`` must not change.
-        Raises DriverError if the module rejects a value.
+        Raises DriverError if the module does not respond, rejects a value, or lacks the heartbeat objects.
         """
         inputs, outputs, words = self.terminal_counts.values()
         for i in range(outputs):
@@ -197,7 +198,8 @@ class CanopenIO:
     def connect(self) -> None:
         """Configure every module, including the safe states of its outputs.
 
-        Raises DriverError if a module or drive does not match the machine file.
+        Raises DriverError if a module does not respond, or if a module or drive does not match the machine
+        file.
         """
         for where in self._required_terminals():
             drive = self._drives.get(where.node_name)

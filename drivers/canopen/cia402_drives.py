@@ -122,7 +122,7 @@ class Cia402Drive:
     def connect(self, setup_data: DriveSetupData) -> None:
         """Check and configure the drive and map its PDOs while it is in the state PRE-OPERATIONAL.
 
-        Raises DriverError if the drive does not match the machine file.
+        Raises DriverError if the drive does not respond or does not match the machine file.
         """
         setup, records = self.setup, setup_data.record_object
         setup.enter_pre_operational()

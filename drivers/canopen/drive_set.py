@@ -60,7 +60,8 @@ def unpack_epos2_record(data: bytes) -> tuple[int, int, int]:
 def pack_copley_segment(segment_number: int, duration_ms: int, velocity: float, position: float) -> bytes:
     """Pack one Copley segment of format 0: number, time, position, and velocity in 0.1 counts/s.
 
-    Raises ValueError if the position or velocity does not fit in 24 bits, or if the time exceeds 255 ms.
+    ``velocity`` is in counts/s, and ``position`` in counts. Raises ValueError if the position or the packed
+    velocity does not fit in 24 bits, or if the time is not between 0 and 255 ms.
     """
     speed, place = round(_COPLEY_VELOCITY_SCALE * velocity), round(position)
     if abs(speed) > _MAX_SIGNED_24_BIT or abs(place) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
@@ -103,7 +104,7 @@ class RecordQueue:
         """Send one record.
 
         ``position`` is in mm or degrees, and ``velocity`` in mm/s or degrees/s. Raises ValueError if a
-        value does not fit into a record.
+        value does not fit into a record, and DriverError if the bus has failed.
         """
         config = self._config
         place = position / config.count
@@ -205,7 +206,7 @@ class DriveSet:
     def configure_drives(self) -> None:
         """Configure every drive before the nodes are started by NMT.
 
-        Raises DriverError if a drive does not match the machine file.
+        Raises DriverError if a drive does not respond or does not match the machine file.
         """
         for axis in self.axes:
             self._connect(axis)
@@ -283,9 +284,10 @@ class DriveSet:
         self._bus.wait_until(lambda: not any(axis.drive.is_enabled for axis in self.poll_axes()), 0.3)
 
     def reset_faults(self) -> None:
-        """Reset all faults, and configure the drives that have restarted.
+        """Reset all faults, and configure the drives that have restarted or did not reply to the last SYNC.
 
-        Afterward, all drives are without power. Raises DriverError if a fault remains active.
+        Afterward, all drives are without power. Raises DriverError if a drive cannot be configured, or if a
+        fault remains active.
         """
         for axis in self.axes:
             if axis.drive.has_restarted or axis.drive.missing_reply_count:

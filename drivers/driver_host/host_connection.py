@@ -200,7 +200,8 @@ class HostConnection:
     def read_properties(self) -> Mapping[str, object]:
         """Return the properties of the driver host.
 
-        Raises DriverError if the driver host uses another version of the protocol.
+        Raises DriverError if the driver host is lost or does not reply, or uses another version of the
+        protocol.
         """
         hello = self.send_request(Message({"do": "hello"}, NO_NUMBERS)).header
         if hello.get("version") != PROTOCOL_VERSION:

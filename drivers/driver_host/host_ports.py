@@ -314,7 +314,7 @@ class HostTripMonitor(_HostPort):
 def create_host_ports(connection: HostConnection) -> MachinePorts:
     """Return the ports of the driver host.
 
-    Raises DriverError if the driver host does not reply.
+    Raises DriverError if the driver host does not reply, or uses another version of the protocol.
     """
     hello, spindle = connection.read_properties(), HostSpindle(connection)
     return MachinePorts(

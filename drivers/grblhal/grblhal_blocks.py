@@ -107,7 +107,8 @@ class GrblBlocks:
         """Send one block and return its ticket, or None while the buffer of the controller is full.
 
         A thread is sent only after the reported overrides are 100 %, because a feed override would change
-        the lead. Raises DriverError if the controller is not ready.
+        the lead. Until then, None is returned as well. Raises DriverError if the controller is not ready or
+        motion is not permitted.
         """
         c = self._c
         self._demand_ready()
@@ -176,7 +177,8 @@ class GrblBlocks:
     ) -> bool:
         """Start or renew a jog, and return False if the axis is at the end of its travel.
 
-        Raises DriverError if the controller is not ready.
+        When a jog is started, raises DriverError if the controller is not ready or motion is not permitted.
+        Renewing an active jog does not check this.
         """
         if not self._jogs.is_active:
             self._demand_ready()
@@ -188,7 +190,7 @@ class GrblBlocks:
     def move_by_step(self, axis: str, target: float, speed: float) -> None:
         """Jog the axis to ``target`` in one step.
 
-        Raises DriverError if the controller is not ready.
+        Raises DriverError if the controller is not ready or motion is not permitted.
         """
         self._demand_ready()
         place = self.last_block_end or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))

@@ -353,9 +353,10 @@ def _past(c: GrblController, t: float) -> Callable[[], bool]:
 
 
 def verify_modes(controller: GrblController) -> Script:
-    """Send and verify the modes, and check that X is a radius and no offset is active.
+    """Send and verify the modes, clear active offsets, and check that X is a radius and no offset remains.
 
-    Raises ScriptError if the check fails.
+    Raises ScriptError if a check fails, or if the controller rejects a line or is in another state than
+    Idle or Jog.
     """
     yield from synchronize_controller(controller)
     yield from send_modes(controller)

@@ -101,9 +101,9 @@ class GrblSpindle:
     def set_speed(self, rpm: float) -> None:
         """Turn the spindle at the signed speed ``rpm``, or stop the spindle if ``rpm`` is 0.
 
-        The speed is limited to the maximum of the machine. Raises DriverError if the controller does not
-        accept lines, or if the speed exceeds the controller's limit, because the controller would reduce
-        the speed without a message.
+        The speed is limited to the maximum of the machine. If ``rpm`` is not 0, raises DriverError if the
+        controller does not accept lines. Also raises DriverError if the speed exceeds the controller's
+        limit, because the controller would reduce the speed without a message. A stop raises no error.
         """
         if rpm:
             require_spindle_ready(self._blocks.describe_start_refusal())

@@ -221,7 +221,9 @@ class HalAxes:
     def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
-        Raises DriverError if the setpoints are invalid or exceed axis limits.
+        Raises DriverError if a fault is active, the power is off or an axis is homing. Also raises
+        DriverError if the setpoints are invalid or exceed axis limits, or if the bridge does not accept
+        them.
         """
         self._need_power()
         require_no_homing(self.active_homing.name if self.active_homing is not None else "")
@@ -230,7 +232,12 @@ class HalAxes:
         self._send("splice", convert_segments(segments, len(self.axes)))
 
     def mesh(self, cam: Cam) -> None:
-        """Make the axes follow the spindle. Raises DriverError without an encoder or for an invalid cam."""
+        """Make the axes follow the spindle.
+
+        Raises DriverError if a fault is active, the power is off, an axis is moving, or HAL has not
+        reported the spindle position. Also raises DriverError if the cam is invalid or exceeds axis limits,
+        if the spindle does not turn in the direction of the cam, or if the bridge does not accept it.
+        """
         self._need_power()
         if self.spindle_sample is None:
             raise DriverError(
@@ -277,9 +284,10 @@ class HalAxes:
         )
 
     def enable(self, is_on: bool) -> None:
-        """Switch the power on or off, and wait until it has changed.
+        """Switch the power on and wait until the drives have power, or switch it off without waiting.
 
-        Raises DriverError if the E-stop chain does not close.
+        When switching on, raises DriverError if a fault is active, if the bridge does not accept the
+        command, or if the E-stop chain does not close within 1.5 s.
         """
         if not is_on:
             self._forget()
@@ -333,8 +341,9 @@ class HalAxes:
         """Clear the fault without switching on the drives.
 
         HAL is loaded again if the bridge has ended, the servo thread has stopped or the board is not
-        reachable. hm2_eth reconnects to a card only when it is loaded. Raises DriverError if the fault
-        cannot be cleared.
+        reachable. hm2_eth reconnects to a card only when it is loaded. Raises DriverError if HAL cannot be
+        loaded or the bridge does not accept the command. A fault that HAL still reports afterward is set
+        again in the next cycle.
         """
         if self._link.last_report.get("stands") is True or self._link.are_inputs_stale:
             self._link.end_session()
@@ -356,7 +365,7 @@ class HalAxes:
         """Release the axis ``axis_index`` to the spindle, or engage C if ``axis_index`` is None.
 
         The count does not change when C is released. When C is engaged, ``hal_position`` is its position in
-        HAL and ``count`` is its position in the control.
+        HAL and ``control_position`` is its position in the control.
         """
         held, self._lent = self._lent, axis_index
         # HAL continues to play this setpoint, independent of the feedback.
@@ -394,7 +403,7 @@ class HalAxes:
     def splice_homing(self, segments: MotionSegments) -> None:
         """Splice the setpoints of a homing move into the queue.
 
-        Raises DriverError if the bridge does not accept them.
+        Raises DriverError if they do not continue the queue, or if the bridge does not accept them.
         """
         self.queue.splice_segments(segments, self._now())
         self._send("splice", convert_segments(segments, len(self.axes)))

@@ -56,7 +56,8 @@ class HalLink:
     def connect(self) -> None:
         """Start HAL, and wait for the first report of the bridge.
 
-        Raises DriverError if HAL does not start.
+        Raises DriverError if the previous HAL session is still shutting down, if HAL does not start, or if
+        the bridge sends no report within 3 s.
         """
         if self._link is not None and not self._wait_for_shutdown(self._link):
             raise DriverError("HAL is still shutting down; press Reset again in a few seconds", "hal-bridge")

@@ -54,7 +54,13 @@ class HalTerminals:
         return found
 
     def write(self, name: str, is_on: bool) -> None:
-        """Switch one output. Raises DriverError if the bridge is silent or the E-stop chain is open."""
+        """Switch one output.
+
+        Raises DriverError if the machine file does not define the output, or if the output is to be
+        switched on while the bridge is silent. While the E-stop chain is open, an output with a safe state
+        can only be switched to this state, unless it is a lamp; otherwise raises DriverError. Also raises
+        DriverError if the bridge has ended.
+        """
         output = find_output(name, self._config.outputs)
         require_output_allowed(name, is_on, self._link.failure_reason)
         chained = output.safe_state is not None and not output.is_lamp

@@ -161,7 +161,10 @@ class BridgeLink(Protocol):
         ...
 
     def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
-        """Yield the received packets. Raises DriverError if the bridge has ended."""
+        """Yield the received packets.
+
+        Raises DriverError if the bridge has ended, and ValueError or struct.error for an invalid packet.
+        """
         ...
 
     @property
@@ -372,7 +375,10 @@ class HalSession:
             ) from error
 
     def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
-        """Yield all received packets. Raises DriverError if the bridge has ended."""
+        """Yield all received packets.
+
+        Raises DriverError if the bridge has ended, and ValueError or struct.error for an invalid packet.
+        """
         assert self._socket is not None
         while True:
             try:

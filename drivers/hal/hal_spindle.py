@@ -1,7 +1,7 @@
 """The spindle on HAL: speed, index, orientation, and C on the spindle drive.
 
-An angle is sent to the pins of LinuxCNC's component ``should_orient``. The HAL file alone defines how the
-spindle turns to this angle and when ``is_oriented`` turns on.
+An angle is sent to the pins of LinuxCNC's component ``orient``. The HAL file alone defines how the spindle
+turns to this angle and when ``is_oriented`` turns on.
 
 The drive changes to position mode at standstill. ``hal.spindle.position_mode`` requests C, and
 ``in_position_mode`` reports C if the machine file names this pin. While C is released, its count does not
@@ -24,7 +24,7 @@ from drivers.setpoint_queue import plan_axis_move
 
 _MODES = {0: 0, 1: 1, -1: 2}
 _ANGLE_SETTLING_S = (
-    0.05  # Seconds from the rise of ``should_orient`` until ``is_oriented`` refers to the new angle.
+    0.05  # Seconds from the rise of the pin ``orient`` until ``is_oriented`` refers to the new angle.
 )
 _STANDSTILL_RPM = 2.0  # rpm
 
@@ -43,7 +43,8 @@ class HalOrientation:
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Orient the spindle to an angle in degrees.
 
-        Raises DriverError while the spindle turns, and with a fault or an open chain.
+        Raises DriverError with a fault or an open chain, and while the spindle turns, except while an
+        orientation is already active.
         """
         self._spindle.require_ready()
         if self._order is None and _is_turning(self._spindle):

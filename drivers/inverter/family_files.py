@@ -66,8 +66,9 @@ def load_family(name: str, folder: Path) -> FamilyTable:
 def read_family_file(path: Path) -> FamilyTable:
     """Return the family that a TOML file describes.
 
-    Raises DriverError with the reason ``bad-family``. Its message contains the file, line, key and remedy
-    of each finding.
+    Raises DriverError with the reason ``bad-family`` if the file cannot be read, is not valid TOML, or has
+    errors in its keys, values or rules. For such errors, the message contains the file, line, key and
+    remedy of each finding.
     """
     try:
         text = read_input_text(path, BYTES_PER_MB)

@@ -123,7 +123,8 @@ class HuanyangInverter:
     def _send_request(self, function: int, data: bytes, begins: bytes) -> bytes:
         """Send a request, and return the data of the response, which must begin with ``begins``.
 
-        Raises NoResponseError without a valid response.
+        Raises NoResponseError without a valid response. Raises RequestWithheldError if the frame could
+        start the motor and a stop is pending, and SerialLineError if the line has failed.
         """
         for left in reversed(range(_MAX_TRIES)):
             answer = self._once(function, data, begins)

@@ -35,10 +35,10 @@ class InverterState:
 class InverterFamily(Protocol):
     """An inverter on its line.
 
-    Methods that communicate raise NoResponseError, RequestRejectedError or WireError. ``is_stop_pending``
-    returns whether a stop is pending. It is called between requests, so that a stop cancels the remaining
-    requests. It is also called directly before each frame that can start the motor. If a stop is pending,
-    the frame is not sent and RequestWithheldError is raised.
+    Methods that communicate raise NoResponseError, RequestRejectedError or SerialLineError.
+    ``is_stop_pending`` returns whether a stop is pending. It is called between requests, so that a stop
+    cancels the remaining requests. It is also called directly before each frame that can start the motor.
+    If a stop is pending, the frame is not sent and RequestWithheldError is raised.
     """
 
     required_response_count: int  # Consecutive valid responses before the inverter is trusted.
@@ -71,7 +71,8 @@ class InverterFamily(Protocol):
     def iter_poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter, yielding None between requests and the state at the end.
 
-        Raises RequestWithheldError if a stop is pending.
+        Raises RequestWithheldError if a stop is pending and the poll would repeat a run command. Families
+        that only read registers never raise it here.
         """
         ...
 
@@ -134,7 +135,9 @@ def write_and_check(
 ) -> list[str]:
     """Write the parameters that may be written, and return a message for each wrong parameter.
 
-    ``comm_timeout_s`` is in seconds, ``max_hz`` in Hz. Raises NoResponseError or WireError on failure.
+    ``comm_timeout_s`` is in seconds, ``max_hz`` in Hz. A rejected request results in a message. Raises
+    NoResponseError if the inverter does not respond to a read request, and SerialLineError if the line has
+    failed.
     """
     known = (
         [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_timeout_s)]

@@ -213,9 +213,9 @@ def create_inverter_control(
 ) -> InverterControl:
     """Create the control of an inverter without opening its line.
 
-    ``open_wire`` opens the line, or raises WireError if this fails. ``family_folder`` contains the file of
-    a family that is not shipped with TurnDesk. Raises DriverError if the family cannot be read or does not
-    fit the machine.
+    ``open_wire`` opens the line, or raises SerialLineError if this fails. ``family_folder`` contains the
+    file of a family that is not shipped with TurnDesk. Raises DriverError if the family cannot be read or
+    does not fit the machine.
     """
     table = load_family(config.family, family_folder)
     highest = config.rpm_max * config.hz_per_rpm

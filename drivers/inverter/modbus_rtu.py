@@ -127,7 +127,7 @@ class ModbusMaster:
     """A Modbus RTU master.
 
     ``is_stop_pending`` returns whether a stop is pending; a pending stop ends the retries of a read. A
-    write with ``yields_to_stop`` is then not sent or repeated, and raises RequestWithheldError.
+    write with ``is_canceled_by_stop`` is then not sent or repeated, and raises RequestWithheldError.
     """
 
     def __init__(
@@ -150,7 +150,7 @@ class ModbusMaster:
     def read_registers(self, address: int, count: int = 1) -> list[int]:
         """Read holding registers (03).
 
-        All methods raise NoResponseError, RequestRejectedError or WireError if the exchange fails.
+        All methods raise NoResponseError, RequestRejectedError or SerialLineError if the exchange fails.
         """
         frame = self._send_read(encode_read(READ_REGISTERS, address, count), 2 * count)
         return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]

@@ -57,7 +57,8 @@ class SimAxes(_PlantPort):
     def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
-        Raises DriverError if the setpoints are invalid or the drives cannot follow them.
+        Raises DriverError if a fault is active, the power is off or an axis is homing. Also raises
+        DriverError if the setpoints are invalid or the drives cannot follow them.
         """
         self._plant.splice_segments(segments)
 
@@ -116,7 +117,12 @@ class SimGear(_PlantPort):
     """The ``core.ports.SpindleGear`` of the simulated machine."""
 
     def mesh(self, cam: Cam) -> None:
-        """Make the axes follow the spindle. Raises DriverError if the cam is invalid or too fast."""
+        """Make the axes follow the spindle.
+
+        Raises DriverError if a fault is active, the power is off, an axis is homing or moving, or the
+        spindle is not turning in the direction of the cam. Also raises DriverError if the cam is invalid or
+        too fast.
+        """
         self._plant.engage_cam(cam)
 
     def geared(self) -> GearState | None:

@@ -148,7 +148,8 @@ class SimulatedPlant:
     def splice_segments(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
-        Raises DriverError if the drives cannot follow the setpoints.
+        Raises DriverError if a fault is active, the power is off or an axis is homing. Also raises
+        DriverError if the setpoints are invalid or the drives cannot follow them.
         """
         with self.lock:
             now = self.advance()
@@ -159,7 +160,9 @@ class SimulatedPlant:
     def engage_cam(self, cam: Cam) -> None:
         """Make the axes follow the spindle along ``cam``.
 
-        Raises DriverError if the drives cannot follow the cam.
+        Raises DriverError if a fault is active, the power is off, an axis is homing or moving, or the
+        spindle is not turning in the direction of the cam. Also raises DriverError if the cam is invalid or
+        the drives cannot follow it.
         """
         with self.lock:
             now = self.advance()
@@ -204,7 +207,7 @@ class SimulatedPlant:
     def home_axis(self, name: str) -> None:
         """Start to home one axis; nothing happens if the axis has an absolute encoder.
 
-        Raises DriverError without power, during another homing, or while an axis moves.
+        Raises DriverError without power, with a fault, during another homing, or while an axis moves.
         """
         with self.lock:
             now = self.advance()

@@ -224,7 +224,8 @@ _SLIP_SPEED_FACTOR = 1.1  # Factor of an axis' speed: above it a cam is rejected
 def check_drive_limits(segments: MotionSegments, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check setpoints against the limits of the drives.
 
-    Raises DriverError if a speed or position is out of range, or if C moves while the spindle is turning.
+    Raises DriverError if a speed is too high, or if a position of a homed axis is out of range. Also raises
+    DriverError if C moves on the spindle drive while the spindle is turning; C with its own drive may move.
     """
     axes = [servo.axis for servo in servos]
     check_limits(segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos])
@@ -245,7 +246,8 @@ def check_drive_limits(segments: MotionSegments, servos: Sequence[SimulatedServo
 def check_cam_limits(cam: Cam, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check a cam against the limits of the drives at a spindle speed of ``rpm``.
 
-    Raises DriverError in the same cases as ``check_drive_limits``.
+    Raises DriverError in the same cases as ``check_drive_limits``. The speeds on the cam may be up to 10 %
+    above the limit, because the gear then slips.
     """
     by_time = cam.segments.velocities * (abs(rpm) / 60.0 / _SLIP_SPEED_FACTOR)
     check_drive_limits(cam.segments._replace(velocities=by_time), servos, rpm)
@@ -315,7 +317,7 @@ FloatOrArray = TypeVar("FloatOrArray", float, FloatArray)
 class SetpointPolynomial(NamedTuple):
     """Setpoints of one axis on the time grid of the model, as a polynomial of second order.
 
-    At grid point k, the setpoint is position + linear_term · k + quadratic_term · k².
+    At grid point k, the setpoint is constant_term + linear_term · k + quadratic_term · k².
     """
 
     constant_term: float
@@ -343,7 +345,8 @@ class ServoLoop:
     """Difference equation of a position loop with damping 1.
 
     ``stiffness`` is the natural frequency times the step. ``feed_forward`` is the fraction of the velocity
-    that is sent to the drive. Raises ValueError if the loop would oscillate (stiffness of 0.5 or more).
+    that is sent to the drive. Raises ValueError if the stiffness is not positive, or if the loop would
+    oscillate (stiffness of 0.5 or more).
     """
 
     def __init__(self, stiffness: float, feed_forward: float) -> None:

@@ -172,7 +172,8 @@ class ProgramParser:
     def add_characters(self, received: bytes) -> None:
         """Add received characters.
 
-        Raises IncompleteError at the first invalid character.
+        Raises IncompleteError at the first parity error within the program, at an end code of the sender
+        before the final %, and after more than 50 MB. ``build_program`` detects invalid control characters.
         """
         self.character_count += len(received)
         if self.character_count > MAX_PROGRAM_BYTES:
@@ -189,7 +190,8 @@ class ProgramParser:
     def handle_silence(self) -> None:
         """Finish the program at the end of the input.
 
-        A final % needs no line end. Raises IncompleteError if the final % is missing.
+        A final % needs no line end. Raises IncompleteError if the program has not begun or the final % is
+        missing. Without a delimiter, no final % is required.
         """
         if self.phase is ReceptionPhase.COMPLETE:
             return
@@ -198,7 +200,11 @@ class ProgramParser:
         self.phase = ReceptionPhase.COMPLETE
 
     def build_program(self) -> ReceivedText:
-        """Return the complete program. Raises IncompleteError if its text is invalid or empty."""
+        """Return the complete program.
+
+        Raises IncompleteError if its text is empty, contains an invalid control character, or contains more
+        than one program.
+        """
         raw = bytes(self._raw)
         seven = self._parity is not None or (not self._wrap and _has_even_parity(raw))
         text = bytes(character & _SEVEN_BIT_MASK for character in raw) if seven else raw
@@ -365,7 +371,8 @@ _PARITY_BIT = 0x80
 def encode_program(text: bytes, settings: TransferSettings) -> bytes:
     """Return the bytes that must be sent for a program.
 
-    Raises DriverError if the program is empty or contains characters that cannot be transferred.
+    Raises DriverError if the program is empty, if a line begins with the delimiter, or if it contains
+    characters that cannot be transferred.
     """
     eol, wrap = settings.line_end.encode("ascii"), settings.delimiter.encode("ascii")
     lines = _LINE_END.split(text.rstrip(b"\x1a\r\n"))

@@ -100,7 +100,9 @@ class SendTransfer(_Transfer):
     def send_program(self) -> int:
         """Send the program, and return the number of bytes.
 
-        Raises CancelledError, WireError or DriverError if the program is not sent completely.
+        Raises TransferCanceledError, SerialLineError or another DriverError if the program is not sent
+        completely. Bytes after the final % need not be accepted by the other side, but are included in the
+        number.
         """
         try:
             if self._settings.needs_dc1:
@@ -188,7 +190,7 @@ class ReceiveTransfer(_Transfer):
     def receive_program(self) -> ReceivedText:
         """Receive a program and return it.
 
-        Raises CancelledError, IncompleteError or WireError; nothing is then saved.
+        Raises TransferCanceledError, IncompleteError or SerialLineError; nothing is then saved.
         """
         try:
             return self._receive()

@@ -329,8 +329,10 @@ class ProgramSharing:
         """Copy a version into the program folder and return the file name.
 
         The previous text remains stored as a version. If both sides have changed the program, the new
-        version follows both versions, so that other machines detect the resolved conflict. If the copy
-        fails, VersionCopyError, SharingError or StoreError is raised and the program is unchanged.
+        version follows both versions, so that other machines detect the resolved conflict. Raises
+        VersionCopyError, SharingError or StoreError if the copy fails. The program is then unchanged,
+        unless the error occurs after the file was replaced: for example, the store may fail to record the
+        new local version. The next synchronization then recognizes the new text.
         """
         text = self.read_text(version)
         with self._lock:
@@ -365,7 +367,9 @@ class ProgramSharing:
     def resolve_with_local(self, program_key: str) -> None:
         """Resolve a conflict in favor of the local version.
 
-        Raises VersionCopyError if there is no conflict, and StoreError if the store fails.
+        A version that is only newer on another machine is resolved in the same manner. Raises
+        VersionCopyError if this machine has no version, if it already has all newest versions, or if the
+        text of the local version cannot be read from the store. Raises StoreError if the store fails.
         """
         with self._lock:
             store = self._store()

@@ -33,7 +33,8 @@ MACHINE_ID_FILE = "sharing-id"
 def make_sharing(machine: Machine, get_store: Callable[[], Store]) -> ProgramSharing | None:
     """Return the program sharing of a machine, or None if the machine file has no [sharing] table.
 
-    Raises CommandError if the machine id cannot be stored.
+    Raises CommandError if the machine id cannot be read or stored, and DataFolderError if the user has no
+    data folder.
     """
     table = machine.hardware.find_driver_table(SharingTable)
     if table is None:

@@ -184,7 +184,8 @@ def _answer(question: str) -> bool:
 def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], who: str) -> None:
     """Save the plans as one step of the offset history.
 
-    Raises CommandError if the user does not confirm a suspicious change.
+    Raises CommandError if a value exceeds the travel of the machine, or if the user does not confirm a
+    suspicious change. Raises StoreError if the store rejects the change.
     """
     changes = collect_changes(plans)
     confirm_changes(store, args, changes)

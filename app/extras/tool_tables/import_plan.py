@@ -78,7 +78,7 @@ class StoredTools:
     def make_plans(self, table: ToolTable, *, imports_positions: bool) -> tuple[ToolPlan, ...]:
         """Return one plan for each tool of an imported table.
 
-        If ``positions`` is False, X and Z are not imported.
+        If ``imports_positions`` is False, X and Z are not imported.
         """
         return tuple(self._plan(entry, positions=imports_positions) for entry in table.tools.values())
 

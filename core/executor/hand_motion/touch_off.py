@@ -347,9 +347,10 @@ class Homing:
         self._context.ports.axes.stop(StopMode.RAMP_HOLD)
 
     def home_next_axis(self) -> bool:
-        """Start homing the next axis when the previous one is homed; return whether all axes are homed.
+        """Start homing the next axis when the previous one is homed; return whether homing is complete.
 
-        The function is called every tick. Raises DriverError if a drive rejects homing.
+        Homing is complete when all axes are homed and at rest. The function is called every tick. Raises
+        DriverError if a drive rejects homing.
         """
         context = self._context
         homed = dict(zip(context.ports.axes.axes, context.axis_sample.homed, strict=True))

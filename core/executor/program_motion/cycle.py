@@ -111,7 +111,8 @@ class HoldController:
         """Return whether the axes are at rest.
 
         The function is called every tick while the axes stop. Raises AlarmError("thread-lost") when the
-        tool has left a thread that lost synchronization.
+        tool has left a thread that lost synchronization. Raises AlarmError, MotionError or DriverError if
+        the queue or the retract fails.
         """
         self._motion.extend_queue()
         if self._motion.is_moving:

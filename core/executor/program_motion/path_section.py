@@ -250,7 +250,8 @@ class PlanQueue:
         """Make a plan that starts at a time that can still be changed, and splice it into the queue.
 
         If the plan is too late, another attempt is made with a later time. If ``as_soon_as_possible`` is
-        False, the plan starts after the queued motion. Raises MotionError or DriverError.
+        False, the plan starts at the end of the queued motion, or 0.4 s before the end of the current plan
+        if this is earlier. Raises MotionError or DriverError.
         """
         for attempt in range(_MAX_ATTEMPTS):
             began = self._axes.now()

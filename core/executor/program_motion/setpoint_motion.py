@@ -107,8 +107,8 @@ class SetpointMotion:
     def start_section(self, blocks: list[Block]) -> None:
         """Start a new path section, or a thread pass that follows the spindle, from rest.
 
-        Raises AlarmError if the spindle does not turn, MotionError if a block cannot be planned, and
-        DriverError if a driver fails.
+        Raises AlarmError if the spindle does not turn or is not measured before a thread pass, MotionError
+        if a block cannot be planned, and DriverError if a driver fails.
         """
         self._single_from = None
         if blocks[0].kind is BlockKind.THREAD:

@@ -54,7 +54,11 @@ class StandstillWait:
     timeout_alarm: AlarmCode = "internal"
 
     def is_over(self, now: float) -> bool:
-        """Return whether the wait is over. Raises AlarmError if its time limit has passed."""
+        """Return whether the wait is over.
+
+        Raises AlarmError if the time limit has passed. Errors of the condition are also raised: the
+        condition may operate the collet or a drive, and then raises DriverError or AlarmError.
+        """
         if self.is_condition_met(now - self.start_time_s):
             return True
         if now - self.start_time_s > self.timeout_s:
@@ -279,7 +283,8 @@ class StandstillSequencer:
     def determine_next_action(self) -> NextAction:
         """Return the next action of the cycle.
 
-        Raises AlarmError if a wait takes too long or a block is invalid.
+        Raises AlarmError if a wait takes too long or a block is invalid. Raises DriverError if a driver
+        rejects an action of the wait, such as moving the collet or engaging the C axis.
         """
         feed = self._feed
         if self._wait is not None:

@@ -88,8 +88,9 @@ class SpindlePass:
 class ThreadPass(SpindlePass):
     """A thread pass that is executed by setpoints.
 
-    The thread is followed by its pull-out or by a straight rapid in X. Raises AlarmError if the spindle
-    does not turn or has no encoder.
+    The thread is followed by its pull-out or by a straight rapid in X. The methods that plan the pass, such
+    as ``start_pass``, raise AlarmError if the spindle does not turn or has no encoder, and DriverError if
+    the moves cannot be queued in time.
     """
 
     def __init__(
@@ -291,7 +292,8 @@ class GearedThreadPass(SpindlePass):
 
     The axis is in step if s = lead · revolutions, counted from an index pulse that is selected when the
     pass starts. Run-up, pull-out and stop are on the cam too. They depend on the spindle speed only because
-    they must stay within the axis limits. Raises AlarmError if the spindle does not turn or has no encoder.
+    they must stay within the axis limits. ``start_pass`` and ``restart_pass`` raise AlarmError if the
+    spindle does not turn or has no encoder, and DriverError if the moves cannot be queued in time.
     """
 
     def __init__(

@@ -244,14 +244,20 @@ class Supervisor:
             self._open_since = None
 
     def _check_data(self, *, is_powered: bool) -> None:
-        """Raise AlarmError if the axes send no data and the driver reports no fault."""
+        """Raise AlarmError if the axes send no data for more than 0.25 s and the driver reports no fault.
+
+        The alarm is raised only in a state with powered drives.
+        """
         now = self._context.now
         since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
         if is_powered and now - since > _NO_DATA_TIMEOUT_S:
             raise AlarmError("drive-silent", "no data from the axes")
 
     def _check_numbers(self, sample: AxisSample) -> None:
-        """Raise AlarmError if a position is NaN, because comparisons with NaN detect nothing."""
+        """Raise AlarmError if a setpoint, a position or a following error is NaN or infinite.
+
+        Comparisons with NaN detect nothing.
+        """
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
         )

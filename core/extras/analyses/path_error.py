@@ -240,10 +240,10 @@ def calculate_path_error(
 ) -> PathError:
     """Return the deviations of measured positions (m, k) from a polyline (n, k) of 2 or 3 axes.
 
-    ``lines`` (n,) are the source lines of the points of ``programmed``. ``due`` (m,) is the index of the
-    point that each sample should have reached. The nearest point is searched within ``search_point_count``
-    points of this index, so that a sample is not assigned to the wrong branch where the path crosses
-    itself. Raises AnalysisError if the samples are unusable.
+    ``lines`` (n,) are the source lines of the points of ``programmed``. ``expected_point_indices`` (m,) is
+    the index of the point that each sample should have reached. The nearest point is searched within
+    ``search_point_count`` points of this index, so that a sample is not assigned to the wrong branch where
+    the path crosses itself. Raises AnalysisError if the samples are unusable.
     """
     _check(programmed, lines, measured, expected_point_indices)
     n = len(programmed)

@@ -250,11 +250,13 @@ _NEAR = 1e-6  # mm
 
 
 def _write_thread(writer: OmniTurnWriter, step: PathStep, after: Sequence[PathStep]) -> int:
-    """Write one thread pass; return its number of steps, which are thread, pull-out and return.
+    """Write one thread pass; return how many of the steps thread, pull-out and return it includes.
 
-    The tool must already be at the start of the thread, and a rapid straight out in X must follow. The
-    cycle needs a start point outside the thread; its retract is then the X of the pull-out. Raises
-    ProgramError if the pass does not have this form.
+    The tool must already be at the start of the thread, and a rapid out in X must follow. If this rapid
+    also moves Z, a warning is added and only the thread step is included. The cycle needs a start point
+    outside the thread; its retract is then the X of the pull-out. Raises ProgramError if the position
+    before the pass is unknown, if no such rapid follows, or if the pull-out does not end far enough outside
+    the start of the thread.
     """
     assert step.x is not None
     assert step.z is not None

@@ -205,7 +205,11 @@ class SourceReader:
             state.append_step(PathStep(StepKind.TOOL, statement.line_number, number=offset))
 
     def _spindle(self, statement: SourceStatement) -> None:
-        """Execute G96, G97, S, M03 and M04. Raises ProgramError if the speed is invalid or missing."""
+        """Execute G96, G97, S, M03 and M04.
+
+        A speed in rpm above the maximum of the options is limited with a warning. Without a speed, no
+        spindle step is appended.
+        """
         state = self.state
         spindle = state.spindle
         limit = statement.has_g(50) or (

@@ -42,7 +42,11 @@ The second argument is the maximum deviation of the arcs from a curve.
 
 
 def read_dxf(path: Path, data: bytes) -> Drawing:
-    """Return the drawing of a DXF file. Raises DrawingError or an ezdxf error if it is invalid."""
+    """Return the drawing of a DXF file.
+
+    Raises DrawingError if the drawing is rejected. Raises OSError, ValueError or an ezdxf error if the file
+    cannot be read or is invalid.
+    """
     document = _document(path, data)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()

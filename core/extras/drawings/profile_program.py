@@ -78,8 +78,11 @@ def make_profile_program(
     """Make the shapes for a profile, to be appended to ``lines``.
 
     If ``lines`` is empty, the program begins with a head. ``entered_values`` contains fields of HEAD, FACE,
-    TURN and GROOVE by name: T and BLADE (the tools), STOCK, FROM, HOLE, ROUGH, LEAVE, FEED, RFEED, RPM,
-    SURF, COMP, WIDE, MATERIAL. ``settings`` specifies the program language. Raises DrawingError.
+    TURN and GROOVE by name: UNIT, BAR and MATERIAL (the head), T and BLADE (the tools), STOCK, FROM, HOLE,
+    ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE. PAST is the distance by which the contour extends past
+    the part, in the program's unit; without it, the nose radius determines the distance. ``settings``
+    specifies the program language. Raises DrawingError if the tool has a nose radius but no tip quadrant,
+    if nothing remains to be turned, or if a shoulder is too steep for the tool.
     """
     writer = _Writer(list(lines), settings)
     if not lines:

@@ -59,8 +59,8 @@ _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 def read_svg(name: str, data: bytes) -> Drawing:
     """Return the drawing of an SVG text.
 
-    The size of the drawing unit is known only if the width in the file has a unit. Raises DrawingError, or
-    an error of svgelements, if the text is invalid.
+    The size of the drawing unit is known only if the width in the file has a unit. Raises DrawingError,
+    ParseError or an error of svgelements if the text is invalid.
     """
     left_out: Counter[str] = Counter()
     shapes = _shapes(name, data)

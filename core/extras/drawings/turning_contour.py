@@ -100,7 +100,8 @@ def _straight(points: Sequence[Point]) -> float | None:
 def make_turning_contour(profile: ContourProfile, reach: ToolReach) -> TurningContour:
     """Return the part of a profile that a tool with this reach can turn.
 
-    Raises DrawingError if nothing remains to be turned.
+    Raises DrawingError if nothing remains to be turned, or if the tool's leading edge would cut into a
+    shoulder.
     """
     inside = profile.side is ContourSide.INSIDE
     elements = list(mirror_elements(profile.elements)) if inside else list(profile.elements)

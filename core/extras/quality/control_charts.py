@@ -55,7 +55,8 @@ def calculate_capability(
     """Calculate the capability from values in the order of the parts, in samples of ``sample_size``.
 
     Raises QualityError if there are fewer than 10 values, if there are no limits, or if the limits are in
-    the wrong order.
+    the wrong order. Also raises QualityError as ``make_charts`` does, for example if there are fewer than 2
+    complete samples.
     """
     if lower is None and upper is None:
         raise QualityError(
@@ -173,7 +174,8 @@ def make_charts(values: Sequence[float], sample_size: int) -> ControlChartPair:
     """Return the control charts of values in the order of the parts.
 
     If ``sample_size`` is 1, the charts are for individuals, otherwise X-bar/R. An incomplete last sample is
-    omitted. Raises QualityError if the sample size is not supported or there are too few values.
+    omitted. Raises QualityError if the sample size is not supported, if a value is not a number, or if
+    there are fewer than 2 values or 2 complete samples.
     """
     if sample_size == 1:
         return make_individuals_charts(values)
@@ -192,7 +194,11 @@ def make_charts(values: Sequence[float], sample_size: int) -> ControlChartPair:
 
 
 def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
-    """Return X-bar/R charts, one sample per row. Raises QualityError if the samples are unsuitable."""
+    """Return X-bar/R charts, one sample per row.
+
+    Raises QualityError if a sample does not have 2 to 10 values, if a value is not finite, or if there are
+    fewer than 2 samples.
+    """
     table = np.asarray(samples, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
         raise QualityError(
@@ -221,7 +227,8 @@ def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
 def make_individuals_charts(values: Sequence[float]) -> ControlChartPair:
     """Return the charts of individuals and of moving ranges of two values.
 
-    The individuals' limits are at 2.660 (3/d2) mean ranges. Raises QualityError for fewer than 2 values.
+    The individuals' limits are at 2.660 (3/d2) mean ranges. Raises QualityError for fewer than 2 values, or
+    if a value is not finite.
     """
     points = np.asarray(values, dtype=np.float64)
     _demand_finite(points)

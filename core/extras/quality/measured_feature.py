@@ -186,7 +186,8 @@ class CorrectionRule:
 class CorrectionProposal:
     """A proposed correction of a feature.
 
-    ``change_mm`` is the change of the size in mm (for a diameter: of the diameter), or 0 for none.
+    ``change_mm`` is the change of the offset in mm, X as a diameter, or 0 if no correction is needed. The
+    size changes by ``change_mm`` times ``grows``.
     """
 
     feature: MeasuredFeature
@@ -203,8 +204,8 @@ def propose_correction(
 ) -> CorrectionProposal:
     """Propose a correction from the newest readings since the last correction.
 
-    The change is a multiple of ``resolution`` in mm. Raises QualityError if there are no readings, or if
-    wear cannot explain a reading or the change.
+    The change is a multiple of ``resolution`` in mm; X changes as a diameter. Raises QualityError if there
+    are no readings, if a reading is not finite, or if wear cannot explain a reading or the change.
     """
     rule = rule or CorrectionRule()
     if not readings:

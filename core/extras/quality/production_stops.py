@@ -97,8 +97,8 @@ class Availability(NamedTuple):
 def calculate_availability(shift: TimeSpan, cycle_spans: Iterable[TimeSpan]) -> Availability:
     """Return the availability of a shift from the periods in which a cycle ran.
 
-    Overlapping periods count once, and time outside the shift does not count. Raises QualityError for a
-    shift without duration, and for a period that ends before it begins.
+    Overlapping periods count once, and time outside the shift does not count. Raises QualityError if the
+    shift does not end after its start, or if a cycle ends before its start.
     """
     if shift.end_s <= shift.start_s:
         raise QualityError(

@@ -48,7 +48,8 @@ _VERIFIED = {"verify-ca", "verify-full"}
 def parse_conninfo(connection_string: str) -> dict[str, str]:
     """Return the parameters of a connection string.
 
-    Raises SharingError if the string is invalid; the message does not contain the parameters.
+    Raises SharingError if the string is invalid or psycopg is not installed; the message does not contain
+    the parameters.
     """
     if importlib.util.find_spec("psycopg") is None:
         raise SharingErrorCause.NO_PSYCOPG.make_error("")

@@ -167,7 +167,11 @@ class SharedFolder:
         return tuple(found), strays
 
     def _demand(self) -> None:
-        """Raise SharingError if the folder is not set up for shared programs or has a newer format."""
+        """Raise an error unless the folder is set up for shared programs in this format.
+
+        Raises SharingError if the marker file is missing or damaged, or if its format differs from
+        ``FORMAT_VERSION``. Raises OSError if the folder or the marker file cannot be read.
+        """
         os.stat(self._folder)
         try:
             data = read_input_bytes(self.marker_path, MAX_RECORD_BYTES)

@@ -106,7 +106,10 @@ class PublishedMachineState:
 
 
 def decode_state(machine_id: str, data: bytes) -> PublishedMachineState:
-    """Return the state that a machine has published. Raises RecordError if it is invalid."""
+    """Return the state that a machine has published.
+
+    Raises RecordError if the record or the machine id is invalid.
+    """
     values = _object(data)
     desk, at, has = values.get("desk"), values.get("at"), values.get("has")
     if (

@@ -50,7 +50,11 @@ def find_format(name: str) -> str:
 
 
 def read_table(path: Path, format_name: str, options: ReadingOptions) -> ToolTable:
-    """Return the tools of a file in format ``format_name``. Raises ToolTableError if it has mistakes."""
+    """Return the tools of a file in format ``format_name``.
+
+    Raises ToolTableError if the file is unreadable, is too large or is not UTF-8 text, if the table has
+    mistakes, or if it has no tools.
+    """
     table = TableReader(path.name, options)
     FORMATS[format_name].read_text(table, _text(path.name, _bytes(path), format_name))
     return table.make_table()

@@ -56,9 +56,9 @@ class ReadingOptions(NamedTuple):
     """Options for reading a table, for values that the file itself does not specify.
 
     ``unit`` is a key of ``MM_PER_UNIT``, and ``x_meaning`` is "radius" or "diameter". ``columns`` contains
-    the column names of a CSV file by field. ``number`` is the tool number for a file that contains one tool
-    without a number. Only the tools in ``selected_tool_numbers`` are read, or all tools if
-    ``selected_tool_numbers`` is empty.
+    the column names of a CSV file by field. ``default_tool_number`` is the tool number for a file that
+    contains one tool without a number. Only the tools in ``selected_tool_numbers`` are read, or all tools
+    if ``selected_tool_numbers`` is empty.
     """
 
     unit: str = ""
@@ -88,7 +88,7 @@ class ToolTable(NamedTuple):
 
 @dataclass(slots=True)
 class TableReader:
-    """Collector of the tools in a file, and of the mistakes that it reports under ``name``."""
+    """Collector of the tools in a file, and of the mistakes that it reports under ``file_name``."""
 
     file_name: str
     options: ReadingOptions

@@ -229,7 +229,8 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def _shift(self, node: nodes.DatumShift) -> None:
         """Execute a datum shift, and select the datum table if the block names one.
 
-        Raises ProgramError for a missing table or row.
+        Raises ProgramError for a missing table or row, for an invalid value, and for a shift of a rotary
+        axis.
         """
         if node.table_name:
             self._select(nodes.Selection("TABLE", node.table_name, node.column))

@@ -136,7 +136,11 @@ _MOTIONS = frozenset({ActionKind.MOTION, ActionKind.CYCLE, ActionKind.CONTOUR})
 
 
 def make_statement(line: LexedLine) -> Statement:
-    """Return the statement of a line. Raises ProgramError if words of the line exclude each other."""
+    """Return the statement of a line.
+
+    Raises ProgramError for an unknown G code, if words of the line exclude each other, if a word is
+    missing, or if no code on the line uses a word.
+    """
     if line.errors:
         return make_unreadable_statement(line)
     statement = Statement(

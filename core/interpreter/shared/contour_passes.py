@@ -92,7 +92,7 @@ class RoughingPlanner:
     def add_finishing_pass(self, *, is_reversed: bool) -> None:
         """Add a cut along the contour and the return to the start.
 
-        Raises StartTooCloseError if the approach or the retract would come too close to the contour.
+        Raises ContourClearanceError if the approach or the retract would come too close to the contour.
         """
         path = self._area.path
         if is_reversed:

@@ -156,7 +156,9 @@ def change_row(
     """Set the fields in ``new_values``, leave the other fields unchanged, and return the new row.
 
     If a tool becomes the master tool, the previous master tool is cleared. Raises StoreError for an unknown
-    number and for a value that the store does not accept.
+    number or field and for a value that the store does not accept. Also raises StoreError for an additional
+    cutting edge whose tool has no offset yet or that would become the master tool, for a master tool
+    without an offset, and for a tool shape without a tool type.
     """
     check_row_number(kind, number)
     rows = read_current_rows(connection, kind)
@@ -189,9 +191,10 @@ def change_rows(
 ) -> int:
     """Set the fields of several rows as one step, and return the number of changed rows.
 
-    ``new_values`` contains the new values by table and number. Raises StoreError, and changes nothing, for an
-    unknown number and for a value that the store does not accept. The master tool cannot be changed with
-    this function.
+    ``new_values`` contains the new values by table and number. Raises StoreError, and changes nothing, for
+    an unknown number or field and for a value that the store does not accept. The function does not clear
+    the previous master tool, so ``new_values`` must not make a tool the master tool. It does not check that
+    the tool of an additional cutting edge has an offset, or that a tool shape has a tool type.
     """
     pairs: dict[OffsetKind, ChangesByNumber] = {}
     for kind, values in new_values.items():
@@ -210,7 +213,7 @@ def change_rows(
 def _check_edge(
     kind: OffsetKind, number: int, rows: Mapping[int, OffsetRow], new_values: Mapping[str, FieldValue]
 ) -> None:
-    """Raise StoreError if a cutting edge has no tool yet, or if it would become the master tool."""
+    """Raise StoreError if an additional cutting edge has no tool yet, or would become the master tool."""
     if kind is not OffsetKind.TOOL or get_tool_number(number) == number:
         return
     if get_tool_number(number) not in rows:
@@ -282,7 +285,7 @@ def apply_field_changes(
 ) -> OffsetRow:
     """Return the row with the fields in ``new_values`` replaced.
 
-    Raises StoreError if a value is out of range.
+    Raises StoreError if a field does not exist or a value is out of range.
     """
     fields, table = FIELDS_BY_KIND[kind], OFFSET_TABLES[kind]
     for name, value in new_values.items():
@@ -330,7 +333,7 @@ def _plain(field: RowField, value: FieldValue | None) -> FieldValue:
 def remove_row(connection: sqlite3.Connection, kind: OffsetKind, number: int, reason: ChangeReason) -> bool:
     """Remove one offset or shape as one step, and return whether it was set.
 
-    Raises StoreError if the tool still has other cutting edges.
+    Raises StoreError for an unknown number, or if the tool still has other cutting edges.
     """
     check_row_number(kind, number)
     rows = read_current_rows(connection, kind)

@@ -37,8 +37,9 @@ def store_touch_off(
     """Store a touched-off position and set the wear of the touched-off axes to zero.
 
     The new geometry already includes the wear. Touching off the master tool moves all other tools by the
-    same distance, as one step of the history. Raises StoreError, and leaves the store unchanged, if a value
-    is out of range or if only one axis of a new tool was touched off.
+    same distance, as one step of the history, unless ``touch.moves_only_this_tool`` is True. Raises
+    StoreError, and leaves the store unchanged, if the number is unknown, if a value is out of range, or if
+    not both axes of a new tool were touched off.
     """
     offset_tables.check_row_number(OffsetKind.TOOL, number)
     rows = offset_tables.read_tool_offsets(connection)

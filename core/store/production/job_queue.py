@@ -134,7 +134,7 @@ def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, no
 def change_job(connection: sqlite3.Connection, job_id: int, parts_to_make: int, note: str) -> None:
     """Change the number of parts and the note of a job.
 
-    Raises StoreError if the number or the note is invalid.
+    Raises StoreError if the number of parts or the note is invalid, or if the job is unknown.
     """
     _check(parts_to_make, note)
     _demand(connection, job_id)

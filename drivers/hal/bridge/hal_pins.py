@@ -49,7 +49,8 @@ class HalSignal:
 def run_halcmd(*words: str) -> str:
     """Run halcmd and return its output.
 
-    Raises RuntimeError with the error text of halcmd.
+    Raises RuntimeError with the error text of halcmd if halcmd fails. Raises OSError if halcmd cannot be
+    started, and ``subprocess.TimeoutExpired`` if it takes longer than 20 s.
     """
     done = subprocess.run(["halcmd", *words], capture_output=True, text=True, timeout=20, check=False)
     if done.returncode:

@@ -385,7 +385,8 @@ def run_contour_cycle(
 ) -> Iterator[Block]:
     """Yield the blocks of one of the ``CONTOUR_CYCLES`` for the given contours.
 
-    Raises ProgramError for invalid cycle data.
+    Raises ProgramError for invalid cycle data, and for contours that do not enclose an area or that cannot
+    be milled with the tool.
     """
     if number == CONTOUR_TRAIN_CYCLE:
         yield from run_contour_train(tool, contours)

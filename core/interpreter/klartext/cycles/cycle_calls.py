@@ -105,9 +105,12 @@ class ActiveCycle:
         self._points = [(row.get("X", 0.0), row.get("Y", 0.0), row.get("Z", 0.0)) for row in rows.values()]
 
     def define_cycle(self, node: CycleDefinition) -> Iterator[Block]:
-        """Yield the blocks of a CYCL DEF for a cycle numbered 200 or higher.
+        """Yield the blocks of a CYCL DEF for a cycle with Q parameters.
 
-        Only pattern cycles are executed immediately. Raises ProgramError for an unsupported cycle.
+        These are the contour cycles (20 to 29 and 39) and the cycles numbered 200 or higher. Cycle 20
+        (contour data), cycles 220 and 221 (patterns) and cycle 247 (preset) are executed immediately; only
+        a pattern yields blocks. Any other cycle becomes the active cycle. Raises ProgramError for an
+        unsupported cycle or invalid values.
         """
         state = self._state
         known = node.cycle_number in _MACHINING.keys() | CONTOUR_CYCLES | _IMMEDIATE_CYCLES
@@ -153,8 +156,10 @@ class ActiveCycle:
     def _preset(self, column: int) -> None:
         """Execute cycle 247, which activates a preset with its zero and its basic rotation.
 
-        If no preset table exists, the zero of the machine file remains active and a warning is logged.
-        Raises ProgramError for an undefined preset.
+        The cycle also resets datum shift, mirroring, rotation and scaling. If no preset table exists, the
+        zero of the machine file remains active, and a warning is logged for a number other than 0. Raises
+        ProgramError for an undefined preset, and for a preset that changes the basic rotation while a
+        tilted plane is active.
         """
         state, number = self._state, self._state.q_values.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
@@ -185,7 +190,7 @@ class ActiveCycle:
         """Yield the blocks of one line of a cycle numbered below 200.
 
         Cycles without machining are executed immediately. Raises ProgramError if the cycle is not
-        supported.
+        supported, but only at its first line, and for an invalid value of a cycle without machining.
         """
         if node.cycle_number in _TRANSFORMS and node.line_number == 0:
             return  # the next line has the values
@@ -210,7 +215,8 @@ class ActiveCycle:
         """Yield the blocks of the active cycle at the tool position.
 
         ``contours`` are the contours that were read from the subprograms of the active cycle. Raises
-        ProgramError if no cycle is defined.
+        ProgramError if no cycle is defined, if M136 is active, if a line or a contour of the cycle is
+        missing, or if the data of the cycle are invalid.
         """
         text = "No machining cycle is defined."
         self._state.check_condition(
@@ -273,7 +279,7 @@ class ActiveCycle:
     def _angle(self, node: CycleLine) -> float:
         """Return the spindle angle that cycle 13 defines for M19, in degrees.
 
-        Raises ProgramError if the angle is missing.
+        Raises ProgramError if the angle is missing or is not from -360 to 360 degrees.
         """
         hint = "Write ANGLE with a value in degrees."
         self._state.check_condition(
@@ -291,7 +297,7 @@ class ActiveCycle:
     def _name_contours(self, node: CycleLine) -> None:
         """Add the contour labels of one line of cycle 14.
 
-        Raises ProgramError if there are too many labels.
+        Raises ProgramError if the line has no label, or if the cycle has more than 128 labels.
         """
         if node.line_number == 0:
             self._contours = ()
@@ -423,7 +429,7 @@ class ActiveCycle:
         """Yield the blocks of the active cycle at each point of a pattern.
 
         The pattern is a circle (cycle 220) or a grid (cycle 221). Raises ProgramError if no machining cycle
-        is active.
+        is active, or if a parameter is missing or invalid.
         """
         tool = self._tool(node.cycle_number, node.column)
         if self._number not in _MACHINING:

@@ -121,7 +121,10 @@ class CycleTool:
         return None if found >= MAX_FEED_VALUE else found
 
     def read_cutting_feed(self, q: int) -> float:
-        """Return a cutting feed as programmed. Raises ProgramError for a rapid."""
+        """Return a cutting feed as programmed, per minute.
+
+        Raises ProgramError for a rapid, and for a feed that is missing or not above 0.
+        """
         found = self.read_feed(q)
         if found is None:
             text = "{parameter} is set to rapid, but this is a cutting move."
@@ -169,7 +172,7 @@ class CycleTool:
     def point_angle_deg(self) -> float:
         """Return the point angle of the tool in degrees.
 
-        Raises ProgramError if the tool table does not contain a point angle.
+        Raises ProgramError if the tool table does not contain a point angle between 0 and 180 degrees.
         """
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point_angle_deg < 180.0:

@@ -236,7 +236,8 @@ def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
 def _thread(tool: CycleTool) -> tuple[float, float]:
     """Return the lead in mm/rev and the signed spindle speed in rpm for cutting the thread.
 
-    Raises ProgramError if the pitch is missing.
+    A warning is logged because Z is not synchronized with the spindle angle. Raises ProgramError if the
+    pitch Q239 is missing or 0, or if S is not programmed.
     """
     tool.warn_about_unsynchronized_z()
     pitch = tool.read_length_mm(239)
@@ -346,7 +347,7 @@ def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
 def read_heights(tool: CycleTool) -> tuple[float, float, float]:
     """Return the heights of the surface, the set-up clearance and the bottom in mm.
 
-    Raises ProgramError for a positive depth.
+    Raises ProgramError for a positive depth Q201, or if Q200 or Q201 is missing.
     """
     surface, depth = tool.read_length_mm(203, 0.0), tool.read_length_mm(201)
     text = "Depth Q201={depth} mm is positive (upward)."

@@ -69,7 +69,10 @@ class OlderCycleData:
         return word_values.evaluate_feed(self._state, line.feed if line else None, self._column)
 
     def read_cutting_feed(self, line_number: int) -> float:
-        """Return the feed of a line as programmed. Raises ProgramError for a rapid."""
+        """Return the feed of a line per minute, or the active feed if the line has no F.
+
+        Raises ProgramError for a rapid, or if there is no valid feed.
+        """
         found = self.read_feed(line_number)
         if found is None:
             text = "A pocket cannot be milled at rapid."

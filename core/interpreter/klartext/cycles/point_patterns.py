@@ -20,7 +20,7 @@ _LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
 def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
     """Return X, Y and the height above Q203 for each point, in mm.
 
-    Raises ProgramError if the pattern has too many points.
+    Raises ProgramError if a number is invalid or the pattern has too many points.
     """
     found: list[Vector] = []
     for part in node.parts:

@@ -74,7 +74,8 @@ class ContourCollector(PathRunner):
     def add_path_function(self, node: PathFunction) -> None:
         """Add the element of a path function.
 
-        Raises ProgramError if a contour cannot contain this function.
+        Raises ProgramError if a contour cannot contain this function, or if the element or its corner is
+        invalid.
         """
         if node.function_name.startswith(("APPR", "DEP")):
             raise make_unsupported_error(
@@ -124,7 +125,8 @@ def copy_state(state: State) -> State:
 def find_area_boundary(state: State, contours: Sequence[SlContour], column: int) -> list[ElementLoop]:
     """Return the boundary of the area to clear.
 
-    Raises ProgramError if the contours do not enclose an area.
+    Raises ProgramError if a contour is empty or open or has no machining side, if the contours cannot be
+    combined, or if they do not enclose an area.
     """
     pockets: list[ElementLoop] = []
     islands: list[ElementLoop] = []
@@ -157,7 +159,10 @@ def _compute_boundary(
 
 
 def _make_loop(state: State, contour: SlContour, column: int) -> ElementLoop:
-    """Return the contour as a closed loop. Raises ProgramError if the contour is open."""
+    """Return the contour as a closed loop.
+
+    Raises ProgramError if the contour has no elements, or if its end is more than 0.016 mm from its start.
+    """
     text = "Contour {figure} does not contain any elements."
     hint = "Add path functions to the contour."
     state.check_condition(contour.elements, column, CYCLE_MISSING, text, hint, figure=contour.label)

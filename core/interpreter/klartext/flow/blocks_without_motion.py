@@ -31,7 +31,7 @@ def execute_flow_block(
 ) -> None:
     """Execute a label, a call or a jump.
 
-    Raises ProgramError for an invalid repeat count or condition.
+    Raises ProgramError for an invalid repeat count or condition, or if calls are nested too deeply.
     """
     if isinstance(node, nodes.Label):
         flow.execute_label(node)
@@ -135,7 +135,10 @@ _DEFAULT_RADIUS_VALUE = 99_999.9999  # value of the default R, which means the t
 
 
 def execute_system_read(state: State, node: SystemRead) -> None:
-    """Execute FN 18, which reads a system value. Raises ProgramError for values that this control lacks."""
+    """Execute FN 18, which reads a system value.
+
+    Raises ProgramError for values that this control lacks, and for a tool that is not in the tool table.
+    """
     group, number = int(value(state, node.group)), int(value(state, node.number))
     index = int(value(state, node.index)) if node.index is not None else 0
     if group == _TOOL_TABLE:

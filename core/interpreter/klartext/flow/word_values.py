@@ -117,7 +117,8 @@ def number(
 ) -> float:
     """Return the number of a word, or the value of its Q parameter.
 
-    Raises ProgramError if the value is outside ±``maximum`` or below ``minimum``.
+    Raises ProgramError if the value is not from ``minimum`` to ``maximum``, or if the Q parameter has no
+    value. Without ``minimum``, the lower limit is -``maximum``.
     """
     found = value.number
     if value.parameter_number is not None:
@@ -152,10 +153,12 @@ def evaluate_length_mm(state: State, value: Value | None, description: str) -> f
 
 
 def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | None:
-    """Return F per minute in the program's unit, or None for a rapid.
+    """Return F per minute in mm, or in tenths of an inch in an INCH program, or None for a rapid.
 
-    Without an F word, the active feed is returned. Raises ProgramError if no feed is active, if the feed is
-    not above 0, or if it is a feed per revolution and the spindle is stopped.
+    Without an F word, the active feed is returned. Raises ProgramError if no feed is active, if FAUTO is
+    programmed but the last TOOL CALL has no F, or if the feed is not above 0. Also raises ProgramError if a
+    feed per revolution or per tooth cannot be converted because the spindle is stopped, the number of teeth
+    is unknown, or the result is too high.
     """
     found = read_programmed_feed(state, feed, column)
     return (

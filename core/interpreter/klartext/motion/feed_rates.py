@@ -24,8 +24,9 @@ def execute_feed_codes(state: State, codes: Sequence[MFunction]) -> None:
     """Execute M136, M137 and M103.
 
     M136 selects a feed per revolution, M137 selects a feed per minute, and M103 sets the plunging factor in
-    percent. M136 and M137 cancel the active feed, because its number has another unit. Raises ProgramError
-    for an invalid factor.
+    percent. A change between M136 and M137 cancels the active feed, because its number has another unit.
+    Raises ProgramError for M136 in an INCH program, for M103 with a Q parameter, and for a factor that is
+    not above 0 and at most 100 percent.
     """
     for code in codes:
         if code.number in {136, 137}:

@@ -18,7 +18,10 @@ def check_axes(state: State, node: PathFunction) -> None:
 
 
 def check_surface_normal(state: State, node: PathFunction, *, is_compensated: bool) -> None:
-    """Raise ProgramError for LN with a tool vector or with compensation along the normal."""
+    """Raise ProgramError for LN with a tool vector, with a tool delta or with radius compensation.
+
+    The deltas are DL, DR and DR2 of TOOL CALL and of the tool table.
+    """
     if any(word.axis[0] == "T" for word in node.words):
         raise make_unsupported_error(
             state.line_number, node.column, "LN with a tool direction vector (TX TY TZ)"

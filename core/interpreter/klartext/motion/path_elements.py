@@ -219,7 +219,11 @@ def _polar(state: State, node: PathFunction, start: Vector) -> tuple[float, floa
 
 
 def _arc_about_pole(state: State, node: PathFunction, start: Point, end: Point, _: Point | None) -> Arc:
-    """Return the arc of C about the pole. Raises ProgramError if the end point is not on the circle."""
+    """Return the arc of C about the pole.
+
+    Raises ProgramError if no pole or no direction DR is defined, if the start point is on the pole, or if
+    the end point is not on the circle.
+    """
     centre = read_pole(state, node)
     _demand_radius(state, node, math.dist(start, centre))
     _demand_on_circle(state, node, math.dist(start, centre), math.dist(end, centre))
@@ -263,7 +267,8 @@ def _tangential(
 ) -> Arc | None:
     """Return the arc of CT or CTP, which is tangent to the previous element.
 
-    Returns None if the path is a straight line. Raises ProgramError if no move precedes the arc.
+    Returns None if the path is a straight line. Raises ProgramError if no move precedes the arc, or if the
+    path would have to reverse its direction.
     """
     if previous_direction is None:
         text = "No move precedes {form}, so its starting direction is not defined."
@@ -331,7 +336,7 @@ def _turns_about_pole(state: State, node: PathFunction, made: PathElement) -> It
 def _sweep(state: State, node: PathFunction, first: float) -> float:
     """Return the angle of CP in degrees, which is positive for counterclockwise rotation.
 
-    Raises ProgramError if IPA and DR conflict.
+    Raises ProgramError if IPA is 0, or if IPA and DR conflict.
     """
     word = node.find_word("PA")
     if word is None:

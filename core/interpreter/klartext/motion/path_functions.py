@@ -74,8 +74,8 @@ _CORNER_HINT = "Put RND or CHF between two contour elements."
 class PathRunner:
     """Generator of the blocks of path functions.
 
-    The argument ``datum`` of ``execute_move`` contains the machine positions to which M91 and M92 refer, or
-    is None if the block has neither M91 nor M92.
+    The argument ``machine_datum`` of ``execute_move`` contains the machine positions to which M91 and M92
+    refer, or is None if the block has neither M91 nor M92.
     """
 
     def __init__(self, state: State) -> None:
@@ -116,7 +116,11 @@ class PathRunner:
         self._state.pole = first, second
 
     def add_corner(self, node: CornerBlock) -> None:
-        """Add RND or CHF to the buffered element. Raises ProgramError if no element is buffered."""
+        """Add RND or CHF to the buffered element.
+
+        Raises ProgramError if no element is buffered, if the element does not move in the working plane, or
+        if the previous block is also RND or CHF.
+        """
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.planar_element is None or self._corner is not None:
             text = "{form} must follow a path in the working plane."
@@ -138,7 +142,8 @@ class PathRunner:
     def flush_before(self, column: int, next_function: str) -> Iterator[Block]:
         """Yield all buffered blocks before ``next_function`` is executed.
 
-        Raises ProgramError if compensation is active.
+        Raises ProgramError if compensation is active, or if the element after a buffered corner is still
+        missing.
         """
         text = "{what} is not allowed while radius compensation is active."
         hint = "End the contour with R0 or DEP before this block."

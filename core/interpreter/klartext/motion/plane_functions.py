@@ -304,7 +304,10 @@ def _demand_possible(state: State, node: PlaneBlock) -> None:
 
 
 def _check_tool_axis(state: State, node: PlaneBlock) -> None:
-    """Raise ProgramError if the plane is tilted but no tool axis is defined."""
+    """Raise ProgramError if no TOOL CALL has defined a tool axis.
+
+    Call this function only for a tilted plane, which needs a tool axis.
+    """
     if not state.tool_axis:
         text = "No TOOL CALL has defined a tool axis."
         raise state.make_error(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before this block.")

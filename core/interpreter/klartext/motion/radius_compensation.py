@@ -197,7 +197,8 @@ def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
 
     The side is 1 if the arc center is on the left, or -1 if it is on the right. With a positive R, the arc
     is on the side of the tool. With a negative R, the arc is on the side of the workpiece. Without
-    compensation, the arc center is on the left. Raises ProgramError if the tool radius is too large for R.
+    compensation, the arc center is on the left for a positive R and on the right for a negative R. Raises
+    ProgramError if R is 0, or if a positive R is not larger than the tool radius.
     """
     word = entry.node.find_word("R")
     assert word is not None

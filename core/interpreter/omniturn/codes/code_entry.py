@@ -188,10 +188,10 @@ class CodeEntry:
     ``example`` contains the program lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``; ``subroutine``
     contains the lines after the program end. ``allowed_words`` are the permitted words other than G and M.
     ``word_rules`` limit the numbers of these words, and ``required_words`` and ``exclusive_words`` specify
-    which words are required or exclude each other. ``reject_conditions`` lists the conditions that reject the
-    code, in the order of the checks. ``other_diagnostic_codes`` are the diagnostic codes of checks that
+    which words are required or exclude each other. ``reject_conditions`` lists the conditions that reject
+    the code, in the order of the checks. ``other_diagnostic_codes`` are the diagnostic codes of checks that
     need geometry, other lines or the program structure. Raises CodeEntryError if words, rules and the
-    meaning of F contradict each other.
+    meaning of F contradict each other, or if a mode has no group.
     """
 
     name: str

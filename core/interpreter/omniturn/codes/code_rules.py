@@ -52,7 +52,9 @@ def refused(
 def number(state: State, statement: Statement, letter: str, code: CodeEntry | None = None) -> float | None:
     """Return the number of a word as written, or None if the line lacks the word.
 
-    Raises ProgramError if the rule of the line's code rejects the number.
+    For a letter without a number, the ``bare_value`` of the rule is returned if it exists. The rule is that
+    of ``code``, or of the line's code if ``code`` is None. Raises ProgramError if the rule rejects the
+    number, or if the rule requires a word or number that the line lacks.
     """
     code = code or statement.code_entry
     rule, word = code.word_rules[letter], statement.words.get(letter)
@@ -70,10 +72,12 @@ def check_value(
     *,
     extra_remedy: str = "",
 ) -> float | None:
-    """Check a converted number by the rule of the line's code, and return the number.
+    """Check a converted number by the rule of a code, and return the number.
 
-    The number may have been converted to mm, rounded, or stripped of its sign. ``extra_remedy`` is another
-    remedy for a number above the limit. Raises ProgramError if the rule rejects the number.
+    The rule is that of ``code``, or of the line's code if ``code`` is None. The number may have been
+    converted to mm, rounded, or stripped of its sign. ``extra_remedy`` is another remedy for a number above
+    the limit. Raises ProgramError if the rule rejects the number, or if the rule requires a word or number
+    that the line lacks.
     """
     code = code or statement.code_entry
     rule, word = code.word_rules[letter], statement.words.get(letter)

@@ -37,9 +37,9 @@ def check_cycle_start(state: State, statement: Statement) -> None:
 
 
 def read_length_mm(state: State, statement: Statement, letter: str) -> float:
-    """Return a length word in mm, or 0 if the line lacks the word.
+    """Return a length word in mm, or 0 if the line lacks an optional word.
 
-    Raises ProgramError if the rule of the word rejects its number.
+    Raises ProgramError if the rule of the word rejects its number, or if a required word is missing.
     """
     return check_value(state, statement, letter, round_to_resolution(state, statement, letter)) or 0.0
 

@@ -58,7 +58,8 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
     """Return the contour from its first point, in mm.
 
     The coordinates are in the frame of ``statement``, the line of the cycle. The active state does not
-    change. Raises ProgramError for a line that is not allowed in a contour.
+    change. Raises ProgramError for a line that is not allowed in a contour, for an invalid arc or corner,
+    and for a contour without a line or an arc.
     """
     reader = _Reader(state, statement)
     for each in lines:
@@ -189,9 +190,11 @@ _SAME = 1e-6  # mm
 
 
 def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[Statement]) -> list[CycleMove]:
-    """Return the motions of G75 or G78 along the contour in ``lines``, from the start point and back to it.
+    """Return the motions of G75 or G78 along the contour in ``lines``.
 
-    Raises ProgramError if a word is missing or the contour cannot be cut from the start point.
+    The motions begin and end at the start point. Raises ProgramError if a word is missing or invalid, if
+    the contour is invalid, if the contour or the number of passes is too large, or if the contour cannot be
+    cut from the start point.
     """
     number(state, statement, "P")
     cut = read_length_mm(state, statement, "I") if statement.one_shot_code == 75 else None

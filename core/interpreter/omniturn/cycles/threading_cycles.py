@@ -162,7 +162,10 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
 
 
 def _count(statement: Statement, depth: float, first_infeed: float, lead: float) -> int:
-    """Return the number of passes. Raises ProgramError if I does not match the lead."""
+    """Return the number of passes.
+
+    Raises ProgramError if I is greater than the lead, or if more than 1000 passes are needed.
+    """
     text = "{text}: the first pass would be deeper than the lead."
     hint = "Correct I (the depth of the first pass) or K."
     statement.check_condition(
@@ -264,9 +267,10 @@ class _ThreadBlockGenerator:
 
 
 def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
-    """Log a single warning for a cut with a wrong table position or with the spindle stopped.
+    """Log a warning for a thread with many passes or with a short run-up.
 
-    The table position is wrong if it is not the position of the active plane.
+    Many passes are more than ``PASS_COUNT_WARNING_LIMIT``. The run-up is short if Z cannot reach the
+    threading feed within it.
     """
     if thread.pass_count > PASS_COUNT_WARNING_LIMIT:
         text = "The thread takes {passes} passes."

@@ -25,7 +25,12 @@ _ROUNDING_TOLERANCE = 0.01  # radians; tolerance for rounded end points and cent
 
 
 def make_arc_block(state: State, statement: Statement) -> Block:
-    """Return the block of an arc. Raises ProgramError if its words do not define an arc."""
+    """Return the block of an arc.
+
+    Raises ProgramError if its words do not define an arc, if the arc is not allowed in the active modes or
+    as the first move after T, or if its feed is missing or invalid. The position of the state is the end
+    point even after an error.
+    """
     x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
     start, programmed = (state.x, state.z), (state.px, state.pz)
     set_position(

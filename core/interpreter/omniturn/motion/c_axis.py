@@ -74,7 +74,7 @@ def _entry(state: State, statement: Statement) -> CodeEntry:
 def read_c_rpm(state: State, statement: Statement, code: CodeEntry) -> float | None:
     """Return S of the line in rpm without its sign, or None if the line has no S.
 
-    Raises ProgramError if S exceeds the limit of C.
+    Raises ProgramError if S is 0 or exceeds the limit of C.
     """
     speed = statement.get_value("S")
     return None if speed is None else check_value(state, statement, "S", abs(speed), code)
@@ -174,7 +174,8 @@ def _target(state: State, statement: Statement, word: Word) -> float:
 def _check_turns(state: State, statement: Statement, word: Word, path_mm: float, c_travel_deg: float) -> None:
     """Raise ProgramError for an invalid move with a feed per revolution of C.
 
-    C must rotate far enough for the move, and the speed of C must be programmed.
+    C must rotate far enough for the move, the speed of C must be programmed, and the feed of the move must
+    not exceed the machine's maximum feed.
     """
     modal, limits = state.modal, state.setup.limits
     feed = modal.feed or 0.0

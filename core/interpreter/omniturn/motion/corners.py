@@ -45,7 +45,8 @@ Each action ends the program, changes the reference point, or waits until all ea
 def read_corner(state: State, statement: Statement) -> None:
     """Store the corner of a line after its straight move.
 
-    A C word is a corner unless C is an axis. Raises ProgramError for an invalid size.
+    A C word is a corner unless C is an axis. Raises ProgramError for an invalid size, or if the line has
+    both C and R as corners.
     """
     chamfers = None if state.modal.c_locked else statement.words.get("C")
     word = statement.words.get("R") or chamfers
@@ -65,7 +66,10 @@ def read_corner_size_mm(state: State, statement: Statement, word: Word) -> float
 
 
 def check_radius_word(state: State, statement: Statement) -> None:
-    """Raise ProgramError for R on a line that is not a straight move of only X and Z."""
+    """Raise ProgramError if a line without a straight move of only X and Z has an R word.
+
+    Call this function only for such a line.
+    """
     word = statement.words.get("R")
     if word is not None:
         check_conditions(state, statement, LETTER_ENTRIES["R"], word=word)
@@ -82,10 +86,10 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
         self._log = log
 
     def check_line(self, statement: Statement) -> None:
-        """Check that a line completes a pending corner.
+        """Check that a line may follow a move with a corner.
 
-        Raises ProgramError if a corner needs a following move and the line does not start with a plain
-        move.
+        Raises ProgramError if a corner needs a following move and the line has a one-shot code that is not
+        allowed after a corner.
         """
         held = self._held
         if (

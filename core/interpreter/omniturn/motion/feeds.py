@@ -201,7 +201,9 @@ def check_move_feed(state: State, line: int, x0: float, x: float, length: float)
     """Check the feed of a straight move or arc from radius ``x0`` to ``x``, with ``length`` in mm.
 
     Raises ProgramError with the code ``feed-missing``, ``spindle-stopped``, ``surface-speed-missing`` or
-    ``feed-over-speed``.
+    ``feed-over-speed``. ``feed-missing`` and ``spindle-stopped`` are raised once until the feed or the
+    spindle is programmed again, and ``surface-speed-missing`` is raised only once. A slow move causes a
+    warning.
     """
     if state.turning is not None:
         warn_about_short_dwell(state)

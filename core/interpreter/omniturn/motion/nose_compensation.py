@@ -317,7 +317,10 @@ def check_compensated_line(state: State, statement: Statement) -> None:
 
 
 def check_approach_move(state: State, block: Block) -> None:
-    """Raise ProgramError unless the first move after G41 or G42 is a straight line with D."""
+    """Raise ProgramError unless the first move after G41 or G42 is a straight line with D.
+
+    The nose radius of D must not be negative. If it is 0, a warning is logged.
+    """
     line, state.contour.approach_line = state.contour.approach_line, 0
     if not line:
         return

@@ -101,7 +101,8 @@ class CycleCall:
         """Raise ProgramError if the cycle is not allowed in the current state.
 
         A cycle is not allowed in a rotated, scaled or mirrored frame, or with nose compensation. With
-        TRANSMIT, only drilling cycles are allowed.
+        TRANSMIT, only drilling cycles and hole patterns are allowed. No cycle is allowed with a
+        transformation whose depth is not along Z.
         """
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
@@ -131,7 +132,7 @@ class CycleCall:
     def read_number(self, name: str, default: float = 0.0) -> float:
         """Return a number as programmed, or ``default`` if the parameter is omitted.
 
-        Raises ProgramError for a string.
+        Raises ProgramError for a string, or if the formula has no value.
         """
         argument = self._arguments.get(name)
         if argument is None:
@@ -213,7 +214,8 @@ class CycleCall:
     def read_machining_type(self, name: str, allowed_types: range) -> int:
         """Return the machining type VARI.
 
-        Raises ProgramError with the alarm of the control for an invalid type.
+        Raises ProgramError if the number is not whole. For a whole number that is not an allowed type, the
+        error has the alarm of the control (61002).
         """
         value = self.read_number(name)
         self._demand_whole(name, value)

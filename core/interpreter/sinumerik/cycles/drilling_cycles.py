@@ -60,7 +60,10 @@ class HolePositions(NamedTuple):
 
 
 def read_hole(cycle: CycleCall) -> HolePositions:
-    """Return the hole of a cycle call. Raises ProgramError, naming the parameter, if one is invalid."""
+    """Return the hole of a cycle call.
+
+    Raises ProgramError if G17 is not active, or, naming the parameter, if a parameter is invalid.
+    """
     if cycle.state.plane != 17:
         text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
         hint = "Write G17 before this block and G18 after it."
@@ -218,7 +221,7 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
 def _turning(cycle: CycleCall) -> list[CycleStep]:
     """Return the step that starts the spindle in the direction SDIR, if necessary.
 
-    Raises ProgramError if no speed is programmed.
+    Raises ProgramError if SDIR is not 3 or 4, if no speed is programmed, or if G96 is active.
     """
     direction = cycle.read_number("SDIR")
     if direction not in {3.0, 4.0}:
@@ -307,7 +310,7 @@ def make_missing_cycle_error(line: LexedBlock) -> ProgramError:
 def generate_pattern_moves(state: State, line: LexedBlock) -> Iterator[Block]:
     """Yield a rapid to each hole of a pattern in X and Y of the face.
 
-    Raises ProgramError for invalid parameters.
+    Raises ProgramError if TRANSMIT is not active, or for invalid parameters.
     """
     cycle = CycleCall(state, line)
     plane = state.transformation

@@ -93,9 +93,10 @@ def _flank_extent(cycle: CycleCall, name: str, depth: float) -> float:
 def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
     """Return the width of the tool in mm, and whether the active edge is its lower corner.
 
-    For a tool that is not in the table, the width is at most ``max_width`` and a warning is logged; a
-    program with this warning cannot start. Raises ProgramError if the table contains only one of the two
-    edges.
+    For a tool that is not in the table, the width is 3 mm, or ``max_width`` if this is smaller, and a
+    warning is logged; a program with this warning cannot start. Raises ProgramError if no tool with an
+    offset is active, if the table contains only one of the two edges, if both edges are at the same
+    position, or if _DN is invalid.
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
