@@ -69,7 +69,7 @@ class CurveArea(QWidget):
     The chart in this area only draws.
     """
 
-    part_name = "CHART"
+    accessible_name = "CHART"
 
     def __init__(self, theme: ScreenTheme, scope: ScopeModel, parent: QWidget) -> None:
         super().__init__(parent)

@@ -53,7 +53,7 @@ def announce_text(widget: QWidget, text: str) -> None:
 class AccessiblePart(QAccessibleWidget):
     """A page or another widget that contains panels.
 
-    A part without a ``part_name`` uses the name of its parent widget.
+    A part without an ``accessible_name`` uses the name of its parent widget.
     """
 
     def __init__(self, widget: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
@@ -64,7 +64,7 @@ class AccessiblePart(QAccessibleWidget):
         """Return the name in the operator's language."""
         part: QWidget | None = self._part if kind is Text.Name else None
         while part is not None:
-            name: str = getattr(part, "part_name", "") or part.accessibleName() or part.windowTitle()
+            name: str = getattr(part, "accessible_name", "") or part.accessibleName() or part.windowTitle()
             if name:
                 return tr(name)
             part = part.parentWidget()

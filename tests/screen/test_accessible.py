@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.desk.pages.table_content import TableContent, TableRow
+from app.desk.translation import tr
 from app.screen import accessible, page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.page_table import list_pages
@@ -75,6 +76,20 @@ def test_every_lathe_page_element_has_accessible_name(
 
 def test_every_mill_page_element_has_accessible_name(mill: Mill) -> None:
     assert without_name(mill.window) == []
+
+
+def test_each_open_page_reports_its_own_name(
+    qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    with begun(qtbot, "bore.nc", "G90G94F10\nX.5Z.5\nM30\n") as day:
+        frame = day.window.frame
+        assert frame is not None
+        for entry in list_pages(frame.desk.machine.program_language):
+            frame.open_page(entry.name)
+            day.window.refresh()
+            page = frame.current_page
+            assert QAccessible.queryAccessibleInterface(page).text(NAME) == tr(page.NAME)
 
 
 def test_pages_open_by_accessible_names_of_keys(hands: Hands) -> None:
