@@ -55,7 +55,9 @@ def add_consent_options(parser: argparse.ArgumentParser) -> None:
 def get_change_author(store: Store, args: argparse.Namespace, *acts: ProtectedChange) -> str:
     """Return the user name for the change history.
 
-    Raises CommandError if access levels are on and the user's level is too low or the PIN is wrong.
+    At least one act is required. Raises CommandError if access levels are on and the user is unknown, the
+    user's level is too low, or the PIN is missing, wrong or cannot be checked. Raises StoreError if the
+    store cannot be read or written.
     """
     people, act = store.people.read_users(), max(acts, key=get_required_level)
     if not people.is_access_restricted:
@@ -110,7 +112,10 @@ def _access_remedy(people: UserList, needed: AccessLevel) -> str:
 
 
 def _require_pin(store: Store, row: UserRow) -> None:
-    """Ask for the user's PIN. Raises CommandError if it is wrong or this installation cannot check PINs."""
+    """Ask for the user's PIN.
+
+    Raises CommandError if no PIN is stored, if the PIN is wrong, or if this installation cannot check PINs.
+    """
     from app.compose.optional_features import extras
 
     remedy = _access_remedy(store.people.read_users(), AccessLevel.SERVICE)
@@ -133,9 +138,10 @@ def get_permitted_user(open_store: OpenStore, args: argparse.Namespace, *acts: P
     """Return the user who may perform an action outside the store.
 
     The name is empty if access levels are off and no user was named. Raises CommandError like
-    ``get_change_author``. Without access levels the function also works while TurnDesk is running, because
-    only a PIN check writes to the store. If the store cannot be read, its access levels are unknown. Only a
-    restore is then permitted, after a service reset at the machine's own keyboard.
+    ``get_change_author``, and if the access levels cannot be read. Without access levels and without a
+    named user, the function also works while TurnDesk is running, because the store is then only read. If
+    the store cannot be read, its access levels are unknown. Only a restore is then permitted, after a
+    service reset at the machine's own keyboard.
     """
     from app.desk.data_folder import find_data_folder
     from core.store.store import Store
@@ -160,7 +166,8 @@ RESET = "RESET"
 def _confirm_reset(error: StoreError, actions: Collection[ProtectedChange]) -> str:
     """Return the user name for the log after the user confirms a restore at the machine.
 
-    Raises CommandError if the user does not confirm the restore.
+    Raises CommandError if ``actions`` does not include a restore, or if the user does not confirm the
+    restore on a terminal of this machine.
     """
     if ProtectedChange.RESTORE not in actions:
         raise CommandError(

@@ -240,7 +240,9 @@ def move_demo_first(argv: Sequence[str]) -> Sequence[str]:
 def assign_screen_options(args: argparse.Namespace) -> argparse.Namespace:
     """Copy the options written before a command to the command's arguments, and return the arguments.
 
-    Raises CommandError if the command does not have such an option.
+    Raises CommandError if the command does not have such an option, or if the option is specified both
+    before and after the command. CommandError is also raised if --version is combined with other options or
+    a command, or --kiosk with a command.
     """
     command = args.command
     if args.version and (

@@ -54,9 +54,11 @@ def add_hal_parser(actions: SubParsers) -> None:
 
 
 def write_hal_file(args: argparse.Namespace) -> int:
-    """Write the HAL file, and return 2 if the machine file is invalid.
+    """Write the HAL file, and return 2 if the names in the machine file do not fit the board.
 
-    Raises CommandError if a file already exists or cannot be written.
+    Without --out, the HAL file is written to stdout. Raises CommandError if the machine file is invalid or
+    has no [hal] or [board] table, if its backend is not hal, or if an output file already exists or cannot
+    be written.
     """
     from app.compose.backends.hal_file_writer import generate_hal
     from app.compose.machine.machine_setup import read_machine
@@ -281,7 +283,9 @@ def list_changes(machine: Machine) -> tuple[KeyChange, ...]:
 def require_accepted(machine: Machine) -> None:
     """Print the changes of the machine file before a run.
 
-    Raises CommandError if the file of a real machine has changed since it was last accepted.
+    Raises CommandError if the file of a real machine has changed since it was last accepted, or if the
+    store cannot be read. For a simulated machine, the changes are only printed, and a store error is
+    ignored.
     """
     from app.compose.backends.connection import needs_real_time
 
@@ -322,7 +326,8 @@ def require_accepted(machine: Machine) -> None:
 def accept(file: str, args: argparse.Namespace) -> int:
     """Print the changes of the machine file and accept the file.
 
-    Raises CommandError if the file is invalid or the user may not accept it.
+    Raises CommandError if the file is invalid, if the user may not accept it, or if the store cannot be
+    written.
     """
     from app.cli.store_command import open_store
     from app.compose.machine.accepted_machine import create_record, get_settings_key, list_differences

@@ -54,7 +54,10 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
 
 
 def read_part_settings(args: argparse.Namespace, context: CommandContext) -> PartSettings:
-    """Return the part settings from the options. Raises CommandError if an option is invalid."""
+    """Return the part settings from the options.
+
+    Raises CommandError if an option is invalid, or if the stored tool shapes cannot be read or are invalid.
+    """
     from app.compose.part_data import read_known_part
 
     stick_out = _read_stickout(args, context.machine)
@@ -72,7 +75,7 @@ def apply_stored_stock(part_settings: PartSettings, program: str, args: argparse
     """Return the part settings with the stored stock, unless --stock specifies a stock.
 
     With --keep-stock, the specified stock is also saved. Raises CommandError if the stock is invalid or
-    cannot be saved.
+    cannot be saved, or if the user may not save it.
     """
     from app.compose.part_data import read_stored_part, save_stock
 
@@ -98,7 +101,7 @@ def apply_stored_part(
 ) -> PartSettings:
     """Return the part settings, completed with stored values that no option specifies.
 
-    Raises CommandError if a stored value is invalid.
+    Raises CommandError if the stored stock or an option is invalid.
     """
     from app.compose.part_data import apply_stored_clamping
 

@@ -60,7 +60,10 @@ class CommandContext:
 
 
 def read_context(args: argparse.Namespace) -> CommandContext:
-    """Return the machine and setup that the options specify. Raises CommandError if an option is invalid."""
+    """Return the machine and setup that the options specify.
+
+    Raises CommandError if an option is invalid, or if the stored offsets cannot be read.
+    """
     from app.compose.machine.machine_setup import read_machine
     from app.compose.stored_offsets import create_setup_with_offsets, make_offsets_reader
 
@@ -88,9 +91,10 @@ def read_input_states(path: str | None, known_names: Collection[str] = ()) -> di
 
 
 def read_source(path: Path, args: argparse.Namespace) -> ProgramSource:
-    """Return the program text from ``path``, or from stdin for ``-``.
+    """Return the program text from ``path``, or from stdin for ``-``, with the programs that it calls.
 
-    Raises CommandError if it cannot be read.
+    Raises CommandError if the text cannot be read, or if --strict or --inputs is used for a program that is
+    not in the OmniTurn language.
     """
     from core.language.source import SourceError, decode_source, load_source
 

@@ -36,7 +36,8 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the report, ask for confirmation, and write the report to a new file.
 
-    Raises CommandError if the file exists or cannot be written.
+    Raises CommandError if the file exists or cannot be written, or if a named program or machine file
+    cannot be read.
     """
     from app.cli.bug_report.bug_report import generate_bug_report
 

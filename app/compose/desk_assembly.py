@@ -71,7 +71,7 @@ def create_desk_parts(
 
     ``records_folder`` is the folder of the scope records, or None if no records are written to files.
     Without a ``journal``, interruptions are not saved. Raises CommandError if the machine cannot be
-    connected.
+    connected, or if ``read_offsets`` reads an offsets file that has errors.
     """
     connected = _connected(machine, clock)
     recorder = ScopeRecorder(list_recorded_signals(machine, connected.ports), records_folder)

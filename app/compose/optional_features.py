@@ -160,7 +160,8 @@ class OptionalFeature:
     def require_pin(self, store: Store, user_row: UserRow, remedy: str) -> bool:
         """Ask for the PIN of this user on the command line, and return whether this feature supports PINs.
 
-        ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.
+        ``remedy`` is the instruction for a user without a PIN. Raises CommandError if no PIN is stored or
+        the PIN is wrong.
         """
         return False
 

@@ -35,7 +35,7 @@ def read_known_part(
 ) -> PartSettings:
     """Return the part settings without a stock.
 
-    ``stick_out`` is the stick-out of the job in mm, or None for the stick-out in the machine file.
+    ``stick_out_mm`` is the stick-out of the job in mm, or None for the stick-out in the machine file.
     """
     return PartSettings(
         shapes=shapes,
@@ -114,8 +114,8 @@ def read_stored_parts(programs: Iterable[str]) -> dict[str, StoredPart]:
 def save_stock(program: str, text: str, stick_out_mm: float | None) -> None:
     """Save the stock text and the stick-out of a program.
 
-    ``stick_out`` is in mm. If it is None, the stored stick-out does not change. Raises CommandError if the
-    store cannot be written.
+    If ``stick_out_mm`` is None, the stored stick-out does not change. Raises CommandError if the store
+    cannot be read or written.
     """
     from core.store.store import Store, StoreError
 

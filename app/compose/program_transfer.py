@@ -87,7 +87,11 @@ class FileSendTransfer(_LineTransfer):
         self._settings, self._path, self._clock = settings, path, clock
 
     def run_transfer(self) -> int:
-        """Read and send the file. Raises FileOperationError or DriverError if this fails."""
+        """Read and send the file, and return the number of bytes sent, including markers and codes.
+
+        Raises FileOperationError if the file cannot be read, or DriverError if its text cannot be sent or
+        the transfer fails or is canceled.
+        """
         try:
             text = read_input_bytes(self._path, MAX_FILE_BYTES)
         except OSError as error:
@@ -113,7 +117,9 @@ class ProgramReceiveTransfer(_LineTransfer):
     def run_transfer(self) -> ReceivedProgram:
         """Receive a program and prove it.
 
-        Raises FileOperationError or DriverError if the transfer fails. Nothing is then saved.
+        Raises DriverError if the transfer fails or is canceled, or if the received data is not a program.
+        Errors of ``check_program``, such as CommandError for stored offsets that cannot be read, are passed
+        on. This method saves nothing.
         """
         inner = ReceiveTransfer(
             open_serial_port(self._settings.receiving_settings, count_damaged=True),

@@ -50,8 +50,8 @@ def build_desk(
     """Return the operator screen's model for a machine file, and start its control.
 
     Close the model with ``Desk.close``. ``begun_control`` is the result of ``find_or_start_control`` for
-    this file. If it is None, the control is started now. Raises CommandError if the machine file is invalid
-    or the machine does not respond.
+    this file. If it is None, the control is started now. Raises CommandError if the machine file or the
+    offsets file is invalid, if the machine does not respond, or if a running control cannot be used.
     """
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     machine, control = begun_control or find_or_start_control(machine_file)

@@ -47,7 +47,12 @@ class StockContext(NamedTuple):
 
 
 def read_stock(text: str, context: StockContext) -> Stock | StockSpec:
-    """Return the stock that the text specifies. Raises StockError if the text is invalid."""
+    """Return the stock that the text specifies.
+
+    Raises StockError if the text is invalid, if the profile file cannot be read or is invalid, or if the
+    preceding program does not produce a part. Exceptions of ``context.read_source`` and
+    ``context.read_stored_part`` are passed on.
+    """
     spec = parse_specification(text)
     if spec.after:
         return _stock_from_program(Path(spec.after), context, spec)

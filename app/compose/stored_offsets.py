@@ -162,8 +162,8 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
 def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
     """Return the offsets for the screen.
 
-    They are the offsets of the journal's store, or the read-only offsets of a file. Raises CommandError if
-    the file has errors.
+    They are the offsets of the journal's store, or else the read-only offsets that ``load_offsets``
+    returns, such as those of a file. Raises CommandError if ``load_offsets`` finds errors.
     """
     if journal is not None and load_offsets is read_stored_offsets:
         return journal.book()

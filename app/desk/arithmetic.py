@@ -19,7 +19,9 @@ class EntryError(ValueError):
 def evaluate_expression(entry: str) -> float:
     """Return the value of an arithmetic expression.
 
-    Raises EntryError, with the invalid character, its position and the reason, if it is invalid.
+    Raises EntryError with the reason if the expression is empty, invalid or longer than ``MAX_LENGTH``,
+    divides by zero, or has a value that is too large. For an unexpected number or operator, the text
+    contains its position.
     """
     if not entry.strip():
         raise EntryError("no value entered; type a number")

@@ -22,7 +22,8 @@ class DataFolderError(CodedError):
 def check_data_folder() -> None:
     """Raise DataFolderError if TURNDESK_HOME is a file or is inside a file.
 
-    A folder that does not exist is accepted.
+    DataFolderError is also raised if TURNDESK_HOME begins with ~ and the home folder is unknown. A folder
+    that does not exist is accepted.
     """
     named = os.environ.get(HOME_VARIABLE, "")
     if not named:
@@ -43,7 +44,7 @@ def find_data_folder() -> Path:
     """Return the folder of the store, logs and settings.
 
     This is ``TURNDESK_HOME`` if it is set, and otherwise the platform's data folder. Raises DataFolderError
-    if the variable is not set and the user has no home folder, as in a container.
+    if the user has no home folder, as in a container, and the variable is not set or begins with ~.
     """
     named = os.environ.get(HOME_VARIABLE, "")
     try:

@@ -21,15 +21,15 @@ class PostedValues:
     def toggle_value(self, name: str, displayed_state: bool) -> bool:
         """Return the opposite state of a switch. The caller must post this state immediately.
 
-        ``displayed`` is the state in the snapshot.
+        ``displayed_state`` is the state in the snapshot.
         """
         return bool(self.change_value(name, displayed_state, lambda now: not now))
 
     def change_value(self, name: str, displayed_value: float, change: Callable[[float], float]) -> float:
         """Return the value after adding ``change``. The caller must post this value immediately.
 
-        The change applies to the value that was posted last, or to ``displayed`` if no value was posted in
-        the last 0.3 s.
+        The change applies to the value that was posted last, or to ``displayed_value`` if no value was
+        posted in the last 0.3 s.
         """
         now = self.read_time_s()
         value, at = self._posted.get(name, (displayed_value, float("-inf")))

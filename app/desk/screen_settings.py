@@ -80,9 +80,10 @@ class SettingsStore:
         )
 
     def choose(self, name: str, value: object) -> None:
-        """Apply a setting and save it.
+        """Apply a setting and save it, without waiting for the disk.
 
-        Raises ValueError if the value is invalid, or StoreError if saving fails.
+        Raises ValueError if the value is invalid, or StoreError if the setting cannot be queued for saving.
+        A later write error is not raised.
         """
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")

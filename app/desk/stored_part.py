@@ -18,8 +18,9 @@ ReadSetting = Callable[[str], object]
 class StoredPart:
     """Stored part settings of one program.
 
-    ``stock`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out`` is in mm, or
-    None if it was not entered. ``silenced_checks`` maps each silenced check to the reason for silencing it.
+    ``stock_text`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out_mm`` is in
+    mm, or None if it was not entered. ``silenced_checks`` maps each silenced check to the reason for
+    silencing it.
     """
 
     stock_text: str = ""

@@ -52,7 +52,9 @@ def _with_nought(found: re.Match[str]) -> str:
 def _read_bytes(path: Path) -> bytes:
     """Return the bytes of a file, or of standard input for ``-``.
 
-    Raises CommandError or TooLargeError if the input is too large, and OSError if reading fails.
+    If the input is too large, raises TooLargeError for a file and CommandError for standard input.
+    CommandError is also raised if standard input is closed or already in use. Raises OSError if reading
+    fails.
     """
     if str(path) == STDIN_ARGUMENT:
         data = read_standard_input("TOML")

@@ -30,7 +30,7 @@ class _ActiveTranslation:
 def set_translator(translate: Translate | None, language_code: str = ENGLISH_CODE) -> None:
     """Set the translator for all texts. With None, the texts remain in English.
 
-    ``language`` is the ISO 639-1 code of the translator's language.
+    ``language_code`` is the ISO 639-1 code of the translator's language.
     """
     _ActiveTranslation.translate_text = None if translate is None else lru_cache(8192)(translate)
     _ActiveTranslation.language = language_code

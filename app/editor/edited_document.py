@@ -65,7 +65,8 @@ def end_last_line(text: str) -> str:
 def open_document(path: Path, samples_folder: Path) -> Document:
     """Open a file as a document.
 
-    Raises SourceError if the file is not a program text, and TooLongError if the text is too long.
+    Raises SourceError if the file cannot be read or is not a program text, and TooLongError if the text is
+    too long.
     """
     text = _read_text(path)
     if text.count("\n") >= MAX_LINES:
@@ -143,8 +144,9 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
     """Write ``text`` to the file of ``document`` and archive it as a version.
 
     Returns an empty string on success, or the reason why no version was archived. If another program has
-    changed the file and ``may_overwrite`` is False, nothing is written and the result is
-    ``CHANGED_EXTERNALLY``. Raises FileOperationError if the file cannot be written.
+    changed the file, nothing is written and the result is ``CHANGED_EXTERNALLY`` in two cases: if
+    ``may_overwrite`` is False, or if the changed content cannot be archived. Raises FileOperationError if
+    the file cannot be read or written.
     """
     there = read_if_exists(document.path)
     foreign = there is not None and not _matches_opened(document, there)

@@ -252,7 +252,7 @@ class HeldJog:
     ) -> None:
         """Handle a press on a direction.
 
-        ``source`` identifies the key or touch. ``button_name`` is the input name of a button on the
+        ``key_source`` identifies the key or touch. ``button_name`` is the input name of a button on the
         machine, or an empty string for other keys.
         """
         others, self._ended = self.pressed_keys - {key_source}, ""

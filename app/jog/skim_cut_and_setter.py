@@ -298,7 +298,7 @@ def find_zero_position(
 ) -> float:
     """Return the machine position in mm at which the tool tip is at part zero.
 
-    ``touch_position`` is the machine position in mm at which the tip touched the tool setter.
+    ``touch_position_mm`` is the machine position in mm at which the tip touched the tool setter.
     """
     axis, sign = direction
     before = sign * tool_row.nose_radius if tool_row is not None and tool_row.quadrant == CENTER_TIP else 0.0

@@ -40,8 +40,9 @@ class TouchOff:
     """Touch-off of one axis.
 
     ``touch_position_mm`` is the machine position in mm at the touch. ``measured_position_mm`` is the
-    machine position in mm with the tool tip at part zero, as measured with the tool setter, and ``reason``
-    describes the measurement. After such a measurement, no entry is necessary and the axis may move.
+    machine position in mm with the tool tip at part zero, as measured with the tool setter, and
+    ``change_reason`` describes the measurement. After such a measurement, no entry is necessary and the
+    axis may move.
     """
 
     measured_quantity: str = ""

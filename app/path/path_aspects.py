@@ -86,7 +86,7 @@ def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[Aspec
     """Return the views through which the view key steps.
 
     The first views show the path next to a face or side that is machined with the C axis. After them, the
-    face and the side are shown alone. If ``part`` is set, the views of the part come last.
+    face and the side are shown alone. If ``has_part`` is set, the views of the part come last.
     """
     more = [
         aspect

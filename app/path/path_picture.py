@@ -255,7 +255,7 @@ class ProgramPicture(Polyline):
     def time_left(self, block_number: int, remaining_mm: float) -> float:
         """Return the remaining program time in seconds at 100 % override.
 
-        ``remaining_mm`` is the distance in mm that remains in block number ``block``.
+        ``remaining_mm`` is the distance in mm that remains in block number ``block_number``.
         """
         total = float(self.ends[-1])
         if not 1 <= block_number <= self.blocks:

@@ -39,9 +39,9 @@ class Polyline:
     Block n ends with point ``first[n] - 1``. ``z`` is to the right and ``x`` is down, in mm. Seen from
     above, they are Z and X. On the face they are face X and minus face Y. On the unrolled side they are Z
     and minus the circumferential length. ``first`` has the shape (blocks + 1,). ``bounds`` is (minimum z,
-    maximum z, minimum x, maximum x) of all cuts, or of all points if there are no cuts. ``centers`` (arcs,
-    2) contains z and x of arc centers. ``mm_per_degree`` is the length of ``x`` in mm per degree of C, or 0
-    if ``x`` is not a circumferential length.
+    maximum z, minimum x, maximum x) of all cuts, or of all points if there are no cuts. ``arc_centers``
+    (arcs, 2) contains z and x of arc centers. ``mm_per_degree`` is the length of ``x`` in mm per degree of
+    C, or 0 if ``x`` is not a circumferential length.
     """
 
     z: FloatArray

@@ -16,7 +16,7 @@ MIN_SAMPLES_PER_COLUMN = 2.0  # number of samples per column above which columns
 class CurvePoints:
     """Points of a curve.
 
-    ``times`` are in seconds of the record's clock. If ``has_line_pairs`` is set, each pair of points is one
+    ``times_s`` are in seconds of the record's clock. If ``has_line_pairs`` is set, each pair of points is one
     line. Otherwise ``is_joined_to_next`` marks the points that are connected to the next point.
     """
 

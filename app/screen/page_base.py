@@ -309,7 +309,7 @@ class EditorPanel(QWidget):
         """Open the panel for this text.
 
         Return the reason if this is not possible. ``line_number`` is the line of the cursor, from 1.
-        ``key`` is the name of the pressed key, or an empty string if a program is created from a file.
+        ``key_name`` is the name of the pressed key, or an empty string if a program is created from a file.
         """
         return ""
 

@@ -60,7 +60,7 @@ class BackupFunction(SpecialFunction):
     ) -> None:
         """Create the function.
 
-        ``daily_folder`` is the folder of the daily backups, if they are not stored in ``folder``.
+        ``daily_folder`` is the folder of the daily backups, if they are not stored in ``csv_folder``.
         """
         super().__init__(desk)
         self.persistence, self.worker, self.backup_folder, self.list_media = (

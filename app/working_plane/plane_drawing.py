@@ -218,7 +218,7 @@ _FACE_TOLERANCE = 1e-9
 class DrawnFace:
     """Filled polygon with the corners ``points`` (n, 2).
 
-    ``role`` is table, table-under, blank, blank-top, plane or tool.
+    ``color_role`` is table, table-under, blank, blank-top, plane or tool.
     """
 
     color_role: str
@@ -229,7 +229,7 @@ class DrawnFace:
 class DrawnStroke:
     """Line through the points ``points`` (n, 2).
 
-    ``role`` is rapid, cut, done, x, y, z, axis or edge. ``name`` is the label at its end.
+    ``color_role`` is rapid, cut, done, x, y, z, axis or edge. ``name`` is the label at its end.
     """
 
     color_role: str

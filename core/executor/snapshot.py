@@ -149,10 +149,10 @@ class Alarm:
 class DriveTestState(NamedTuple):
     """State of the drive tests.
 
-    ``barred`` is the reason why this machine cannot run drive tests. ``axis`` is the axis under test, or
-    empty if no test runs. ``number`` is the number of tests that were started. The last test started at
-    ``start_time_s`` on the clock of the samples. ``completed_test_count`` is the number of completed tests.
-    ``sample_rate_hz`` is the number of samples per second.
+    ``barred`` is the reason why this machine cannot run drive tests. ``tested_axis`` is the axis under
+    test, or empty if no test runs. ``number`` is the number of tests that were started. The last test
+    started at ``start_time_s`` on the clock of the samples. ``completed_test_count`` is the number of
+    completed tests. ``sample_rate_hz`` is the number of samples per second.
     """
 
     barred: str = ""

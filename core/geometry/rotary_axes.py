@@ -48,10 +48,10 @@ class LinearAxis:
 class RotaryAxis:
     """A rotary axis of a mill.
 
-    ``direction`` (unit vector) and ``point`` (mm) define its line when all axes are at 0. The point of a
-    table is in machine coordinates. The point of a head is measured from the spindle nose. If ``is_modulo``
-    is True, the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``travel_min`` and
-    ``travel_max`` limit the axis, both inclusive.
+    ``direction`` (unit vector) and ``point_on_axis`` (mm) define its line when all axes are at 0. The point
+    of a table is in machine coordinates. The point of a head is measured from the spindle nose. If
+    ``is_modulo`` is True, the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``travel_min``
+    and ``travel_max`` limit the axis, both inclusive.
     """
 
     name: str

@@ -32,7 +32,7 @@ def list_driver_tables(drivers: Sequence[DriverDeclaration]) -> tuple[DriverTabl
 
 
 def list_driver_subtables(drivers: Sequence[DriverDeclaration], table_path: str) -> tuple[str, ...]:
-    """Return the names of the tables that drivers add to the table ``path`` of the control."""
+    """Return the names of the tables that drivers add to the table ``table_path`` of the control."""
     parted = (table.path.rpartition(".") for table in list_driver_tables(drivers))
     return tuple(name for parent, _, name in parted if parent == table_path)
 

@@ -68,7 +68,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
     """Return the joints (m,) moved toward the mean of their neighbors.
 
     ``distances`` contains the distances of the joints along the path. Each joint moves by at most
-    ``allowed`` along each axis. Every run of joints where ``free`` (m,) is True is smoothed separately, so
+    ``allowed`` along each axis. Every run of joints where ``is_free`` (m,) is True is smoothed separately, so
     that smoothing never crosses a corner.
     """
     window = _Window.create(np.minimum(_clear(is_free), MAX_NEIGHBOR_COUNT))

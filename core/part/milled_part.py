@@ -82,9 +82,9 @@ class MilledPart:
     ) -> RemovedMaterial:
         """Mill along ``path`` (m, 3) with the tool parallel to Z.
 
-        The path contains x and y of the tool axis and z of the tool end, in the part's frame. ``length`` is
-        the cutting length from the end, and ``point`` is the height of the cone at the end, 0 for a flat
-        end. A straight line is exact, even if its z changes.
+        The path contains x and y of the tool axis and z of the tool end, in the part's frame.
+        ``cutting_length`` is the cutting length from the end, and ``cone_height`` is the height of the cone
+        at the end, 0 for a flat end. A straight line is exact, even if its z changes.
         """
         path = _path_lines(path)
         met = NO_MATERIAL
@@ -151,10 +151,11 @@ class MilledPart:
     ) -> RemovedMaterial:
         """Mill along ``path`` (m, 3) with the tool on a radius of the part.
 
-        The path contains r of the tool end, z, and the polar angle in degrees. ``height`` is the offset of
-        the tool's axis from the part's axis, positive toward increasing angles. ``length`` and ``point``
-        are described in ``mill_axial``. Moves only in r, only in Z or, with the tool axis through the part
-        axis, only in the angle are exact. Other moves are divided into steps that leave 0.001 mm.
+        The path contains r of the tool end, z, and the polar angle in degrees. ``axis_offset`` is the
+        offset of the tool's axis from the part's axis, positive toward increasing angles.
+        ``cutting_length`` and ``cone_height`` are described in ``mill_axial``. Moves only in r, only in Z
+        or, with the tool axis through the part axis, only in the angle are exact. Other moves are divided
+        into steps that leave 0.001 mm.
         """
         met = NO_MATERIAL
         runs = list(self._group_strokes(path, radius, axis_offset))

@@ -285,8 +285,8 @@ def make_field_from_section(
     """Return the polar field of a half section with fine columns.
 
     ``inner_radii`` and ``outer_radii`` (layers, n) are the radii of the n fine columns between
-    ``column_edges`` (n + 1,). Fine columns are combined into at most ``columns`` columns, which are divided
-    at shoulders. Each column retains its volume.
+    ``column_edges`` (n + 1,). Fine columns are combined into at most ``max_columns`` columns, which are
+    divided at shoulders. Each column retains its volume.
     """
     inner_radii, outer_radii = sort_intervals(inner_radii, outer_radii)
     metal = np.flatnonzero((outer_radii > inner_radii + _TOUCH).any(axis=0))

@@ -119,8 +119,8 @@ def find_radial_mill_intervals(
     """Return the intervals of r (columns, rays) that a mill on a radius of the part covers.
 
     ``ray_angles_rad`` (rays,) is the angle from the tool's axis to each ray in radians. ``half_widths``
-    (columns,) is half the width of the mill at each column, or 0. The mill extends from ``end`` outward by
-    ``length``. ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
+    (columns,) is half the width of the mill at each column, or 0. The mill extends from ``end_radius``
+    outward by ``length``. ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
     """
     low, high = clip_interval(np.cos(ray_angles_rad), end_radius, end_radius + length)
     if axis_offset:

@@ -49,7 +49,7 @@ _FACING_AWAY = -2  # used instead of a color
 class _PointGroup(NamedTuple):
     """A group of points that are drawn together: a wall, a patch or a cut face.
 
-    ``first`` is the number of the first point.
+    ``first_point_index`` is the number of the first point.
     """
 
     first_point_index: int

@@ -24,7 +24,7 @@ class Stock:
     """The stock, given by its outside profile and its bore profile.
 
     Profiles contain Z and r in mm, with Z not decreasing. An empty ``bore_profile`` means solid stock.
-    ``specification`` is the text that the user entered, or an empty string without stock.
+    ``specification_text`` is the text that the user entered, or an empty string without stock.
     """
 
     specification_text: str

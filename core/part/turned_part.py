@@ -183,7 +183,7 @@ class TurnedPart:
         return math.pi * self.columns.step_mm * float(np.sum(high * high - low * low))
 
     def enters_material(self, points: Sequence[Point], min_depth: float) -> bool:
-        """Return whether any point of a path is more than ``depth`` inside the material.
+        """Return whether any point of a path is more than ``min_depth`` inside the material.
 
         The path consists of Z and r in mm.
         """

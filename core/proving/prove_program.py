@@ -84,7 +84,7 @@ def prove(
     its parsed form.
 
     The values apply to the inputs and the block delete of ``setup``. Other inputs and the other position of
-    block delete are also proved; their faults are in the diagnostics of the report. If ``ideal`` is True,
+    block delete are also proved; their faults are in the diagnostics of the report. If ``is_ideal`` is True,
     times depend only on feeds and speed limits, without accelerations and waits. ``on_span`` receives each
     span of the timeline, so that a caller that draws the program needs no second pass.
     """

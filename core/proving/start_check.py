@@ -69,7 +69,7 @@ class FirstMove:
 
     ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``part_zero`` is the machine
     X and Z at which the displayed tip is at part zero. It belongs to the tool that hits a body, or
-    otherwise to the tool at the end of the move. ``hit_body`` is the body that ``tool`` hits at
+    otherwise to the tool at the end of the move. ``hit_body`` is the body that ``tool_number`` hits at
     ``hit_z_mm`` (part's frame). If ``is_inside_at_start`` is True, the tool is inside the body before it
     moves. ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or an empty string if no
     direction is certain to be safe.

@@ -219,7 +219,7 @@ def calculate_buffer_size(capacity: int, width: int) -> int:
 def select_valid_rows(rows: FloatArray, first_number: int) -> FloatArray:
     """Return the valid rows without their numbers.
 
-    Valid rows are numbered from ``first`` on and have ascending times.
+    Valid rows are numbered from ``first_number`` on and have ascending times.
     """
     if not len(rows):
         return rows[:, :-1]

@@ -126,7 +126,7 @@ def check_is_file(path: Path) -> None:
 def check_file(path: Path, *, is_thorough: bool) -> int:
     """Return the version of the store in ``path``, without writing to the file.
 
-    If ``thorough`` is True, every page is checked. Raises StoreError if the file is not a TurnDesk store,
+    If ``is_thorough`` is True, every page is checked. Raises StoreError if the file is not a TurnDesk store,
     has a newer version or is damaged.
     """
     return _checked(path, thorough=is_thorough)[0]

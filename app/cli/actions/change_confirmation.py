@@ -35,7 +35,9 @@ OffsetChanges = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 def confirm_changes(store: Store, args: argparse.Namespace, changes: OffsetChanges) -> None:
     """Raise CommandError if a value exceeds the travel, or if a suspicious change is not confirmed.
 
-    The store itself rejects values that are out of range.
+    CommandError is also raised if the machine file with the travel is invalid. The option --yes confirms
+    suspicious changes, but does not permit a value beyond the travel. The store itself rejects values that
+    are out of range.
     """
     travel = _machine_travel(store, args)
     tables = {kind: store.offsets.get_table(kind).read_rows() for kind in changes}

@@ -74,7 +74,8 @@ def _quote_word(word: str) -> str:
 def install_entries(*, autostart: bool) -> list[Path]:
     """Write the entries and return their paths.
 
-    The autostart entry is written only with ``autostart``. Raises CommandError if a file cannot be written.
+    The autostart entry is written only with ``autostart``. Raises CommandError if a file cannot be written,
+    or if the user has no home folder and an XDG variable is not set.
     """
     entry, icon, types, start = _entry_paths()
     shipped = files("resources") / "desktop"
@@ -108,7 +109,11 @@ def _update_databases(applications: Path, mime: Path) -> None:
 
 
 def remove_entries() -> list[Path]:
-    """Remove the existing entries and return their paths. Raises CommandError if a file cannot be removed."""
+    """Remove the existing entries and return their paths.
+
+    Raises CommandError if a file cannot be removed, or if the user has no home folder and an XDG variable
+    is not set.
+    """
     there = [path for path in _entry_paths() if path.exists()]
     for path in there:
         try:

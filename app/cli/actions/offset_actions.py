@@ -193,7 +193,11 @@ def _set_all(
 def _check_shape(
     store: Store, number: int, shape: dict[str, FieldValue], offset: dict[str, FieldValue]
 ) -> None:
-    """Raise CommandError if the tool's shape is inconsistent or its kind is missing."""
+    """Raise CommandError if the tool's shape is inconsistent or its kind is missing.
+
+    CommandError is also raised if the tool has no stored offset yet and ``offset`` does not contain both X
+    and Z.
+    """
     from app.desk.stored_shapes import find_mistakes
 
     row = replace_fields(store.offsets.tool_shapes.read_rows().get(number, ShapeRow()), shape)

@@ -1,4 +1,4 @@
-"""The command ``turndesk prove_programs DIR``, which proves all programs of folders on all CPU cores."""
+"""The command ``turndesk prove DIR``, which proves all programs of folders on all CPU cores."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class ProgramFiles:
 def find_programs(names: Iterable[str]) -> ProgramFiles:
     """Return the programs among these files and folders. Files named explicitly may have any suffix.
 
-    Raises CommandError if a folder cannot be read or contains no program.
+    Raises CommandError if a folder cannot be read or contains no program, or if a name is empty.
     """
     found: set[Path] = set()
     others = 0

@@ -142,7 +142,11 @@ def open_report(args: argparse.Namespace) -> Iterator[ReportFile | None]:
 
 
 def _report_path(args: argparse.Namespace) -> Path:
-    """Return the path of the report. Raises CommandError if its suffix is not supported."""
+    """Return the path of the report.
+
+    Raises CommandError if its suffix is not supported, if --paper is used for an HTML report, or if the
+    path is a folder.
+    """
     path = Path(args.report)
     ending = path.suffix.lower()
     if ending not in _HTML | _PDF:

@@ -57,7 +57,7 @@ def connect_canopen_machine(
 def create_simulated_devices(machine: Machine, clock: Clock) -> CanopenDevices:
     """Return simulated drives and terminals for the bus of a machine file.
 
-    Raises DriverError if a library or the bus configuration is missing.
+    Raises DriverError if a library or the bus configuration is missing, or if the bus cannot be opened.
     """
     from app.compose.backends.simulated_backend import create_sim_config
 
@@ -87,7 +87,11 @@ def describe_missing_library(error: ImportError) -> str:
 
 
 def create_canopen_config(machine: Machine) -> CanopenConfig:
-    """Return the configuration of the bus. Raises DriverError if the machine file does not specify a bus."""
+    """Return the configuration of the bus.
+
+    Raises DriverError if the machine file does not specify a bus, or if a terminal is not a valid bus
+    address.
+    """
     can = machine.hardware.find_driver_table(CanopenTable)
     if can is None:
         raise DriverError("{source}: the [canopen] table is missing", source=machine.source)
@@ -256,9 +260,11 @@ BACKEND = Backend(
 
 
 def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
-    """Return every object that is written to each node at startup, by node name.
+    """Return the configuration objects that are written to each node at startup, by node name.
 
-    Raises DriverError if a library is missing or the configuration is invalid.
+    The result contains the axes, the spindle and the I/O modules, but not PDO mappings or a separate node
+    of the spindle encoder. Raises DriverError if a library is missing, if the configuration is invalid, or
+    if the EDS file of a drive cannot be used.
     """
     try:
         from drivers.canopen.canopen_objects import load_drive_dictionary

@@ -19,9 +19,10 @@ HAS_DRIVER_HOST = sys.platform != "win32"
 def connect_machine(machine: Machine, clock: Clock, lock_descriptor: int | None = None) -> ConnectedMachine:
     """Return the ports and functions that the executor needs.
 
-    Raises DriverError if a device does not respond.
+    Raises DriverError if no driver exists for the backend, or if a device does not respond.
 
-    ``lock`` is a file descriptor that a driver host process inherits and does not close before it ends.
+    ``lock_descriptor`` is a file descriptor that a driver host process inherits and does not close before
+    it ends.
     """
     connected = _connected(remove_feature_inputs(machine), clock, lock_descriptor)
     for extra in extras().values():

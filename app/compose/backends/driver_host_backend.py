@@ -22,9 +22,9 @@ def connect_driver_host(
 ) -> ConnectedMachine:
     """Start the driver host and return the connected machine.
 
-    Raises DriverError if the host does not respond.
+    Raises DriverError if the host does not respond or its drivers report an error.
 
-    ``lock`` is a file descriptor that the driver host process does not close before it ends.
+    ``lock_descriptor`` is a file descriptor that the driver host process does not close before it ends.
     """
     line, close = _open_connection(machine, clock, lock_descriptor)
     try:

@@ -44,7 +44,7 @@ from drivers.wakeups import ConnectionAttempt, ProcessWakeup, RealClock
 def create_host_drivers(machine: Machine, clock: Clock) -> DriverBundle:
     """Return the drivers of a machine's backend and spindle for the driver host.
 
-    Raises DriverError if the driver host does not support the backend.
+    Raises DriverError if the driver host does not support the backend, or if a device cannot be connected.
     """
     make = find_backend(machine).create_drivers
     if make is None:
@@ -99,7 +99,11 @@ class DriverHostProcess:
         return ConnectionAttempt(begun)
 
     def _start_process(self) -> HostLink:
-        """Start the process and return its link. Raises DriverError if its drivers report an error."""
+        """Start the process and return its link.
+
+        Raises DriverError if its drivers report an error, if the process ends or does not respond within 20
+        s, or if this object was closed in the meantime.
+        """
         machine, clock = self._machine, self._clock
         ours, theirs = socket.socketpair()
         with theirs:

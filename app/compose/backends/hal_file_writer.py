@@ -73,8 +73,9 @@ def generate_hal(machine: Machine) -> GeneratedHal:
 def build_hal_file(machine: Machine) -> HalFile:
     """Return the HAL file of a machine that uses LinuxCNC HAL.
 
-    Raises CommandError if the machine file has no [hal] or [board] table, or MachineFileError for names
-    that the board does not have.
+    Raises CommandError if the backend is not hal or the machine file has no [hal] or [board] table. Raises
+    MachineFileError for names that the board does not have, for terminals that are used twice, and for
+    required names that are missing.
     """
     hal, board = machine.hardware.find_driver_table(HalTable), machine.hardware.find_driver_table(BoardTable)
     if hal is None or machine.backend != "hal":

@@ -30,9 +30,10 @@ def add_inverter(
 ) -> tuple[MachinePorts, Callable[[], None]]:
     """Return the ports with the inverter as spindle, and a function that closes the devices.
 
-    The function closes the spindle and then calls ``close``, which closes the other devices. ``close`` is
-    also called if the inverter does not respond. ``encoder`` is an encoder that measures the spindle speed.
-    Raises DriverError if the inverter does not respond.
+    The function closes the spindle and then calls ``close_devices``, which closes the other devices.
+    ``close_devices`` is also called if the inverter cannot be connected. ``encoder`` is an encoder that
+    measures the spindle speed. Raises DriverError if the inverter does not respond or does not fit the
+    machine file, if its serial port cannot be opened, or if ``clock`` is a manual clock.
     """
     try:
         thread, joined = _attended(machine, ports, clock, encoder)

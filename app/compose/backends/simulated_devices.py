@@ -123,7 +123,7 @@ def simulate_devices(
     """Simulate the devices on the machine file's bus while ``should_continue`` returns True.
 
     ``print_line`` outputs messages, and ``read_lines`` returns typed lines. Raises DriverError if the bus
-    cannot be opened.
+    cannot be opened, or if its interface works only within one process.
     """
     can = machine.hardware.find_driver_table(CanopenTable)
     assert can is not None  # checked by a rule of the machine file

@@ -22,7 +22,8 @@ def find_or_start_control(machine_file: str | None) -> MachineAndControl:
     """Return the machine of the file and its control, without waiting until the control is ready.
 
     The control is None if it runs in a thread of the screen's process. Raises CommandError if the machine
-    file is invalid, or if a running control executes a program with a different machine file.
+    file is invalid, or if a running control executes a program with a different machine file, has a
+    different version or does not respond.
     """
     machine = read_machine(machine_file)
     if not USES_OWN_PROCESS:

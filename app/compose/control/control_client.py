@@ -95,8 +95,9 @@ class ControlClient:
     ) -> None:
         """Wait for the first message of the control.
 
-        The scope ``records`` of an earlier control continue with the data of this control. Raises
-        DriverError if the control reports an error, does not respond or has a different version.
+        The scope ``recordings`` of an earlier control continue with the data of this control. Raises
+        DriverError if the control reports an error, ends, does not respond or has a different version.
+        Raises OSError or EOFError if the connection ends after the first message.
         """
         self._connection, self.control_process = connection, process = started_control
         hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
@@ -324,7 +325,8 @@ def _not_taken(error: BaseException) -> None:
 def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
     """Return the first message of the control.
 
-    Raises DriverError if the control reports an error, does not respond or has a different version.
+    Raises DriverError if the control reports an error, ends, does not respond within ``timeout_s`` seconds
+    or has a different version.
     """
     try:
         message = connection.recv() if connection.poll(timeout_s) else None

@@ -29,7 +29,10 @@ class ProcessRight(NamedTuple):
 
 
 def acquire_rights() -> tuple[ProcessRight, ...]:
-    """Request all rights for this process, and return the result of each request. No exception is raised."""
+    """Request the rights for this process, and return the result of each request. No exception is raised.
+
+    The nice value is requested only if real-time priority is refused.
+    """
     scheduling = _scheduling()
     others = (_nice(), *_check_autogroup()) if scheduling.missing else ()
     return scheduling, _memory(), *others

@@ -88,7 +88,7 @@ class ScreenOutbox:
         self._ready.set()
 
     def send_messages(self, connection: Connection, screen_gone: threading.Event) -> None:
-        """Send waiting messages to a screen until ``screen_gone`` is set.
+        """Send waiting messages to a screen until ``screen_gone`` is set or the machine is closed.
 
         Raises OSError if the connection ends.
         """

@@ -136,7 +136,10 @@ def read_machine_file_in_use(settings: SettingsReader) -> str | None:
 
 
 def load_machine_in_use(settings: SettingsReader) -> Machine:
-    """Return the machine in use. Raises CommandError if its file cannot be read."""
+    """Return the machine in use. Raises CommandError if its file cannot be read or has errors.
+
+    Raises StoreError if the settings cannot be read.
+    """
     try:
         return read_machine(read_machine_file_in_use(settings))
     except CommandError as error:

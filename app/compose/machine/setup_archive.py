@@ -43,7 +43,7 @@ DISK_FULL_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 def unpack_archive(source: Path, folder: Path) -> list[str]:
     """Extract the checked members of the archive to ``folder`` and return their names.
 
-    Raises CommandError if the archive is invalid or too large.
+    Raises CommandError if the archive is invalid, too large or unreadable, or if the disk is full.
     """
     with (
         convert_exceptions(lambda error: _not_unpacked(source, folder, error)),
@@ -181,7 +181,11 @@ class _Extraction:
 
 
 def _check_directory(source: Path, raw: BinaryIO) -> None:
-    """Raise CommandError if the central directory is too large, before zipfile reads it."""
+    """Check the size of the central directory before zipfile reads it.
+
+    Raises CommandError if the directory is too large, lists too many files or has the ZIP64 format. Raises
+    BadZipFile if the end record of the archive is missing.
+    """
     size = raw.seek(0, 2)
     raw.seek(max(0, size - _END - _END_64))
     tail = raw.read()
@@ -267,7 +271,11 @@ def _check_store(source: Path, store: Path) -> None:
 
 
 def _check_program(path: Path) -> None:
-    """Raise SourceError if a file is neither a program text nor a drawing. Empty files are accepted."""
+    """Raise SourceError if a file is neither a program text nor a drawing. Empty files are accepted.
+
+    Raises OSError if the file cannot be read, and TooLargeError if it is larger than the limit for
+    programs.
+    """
     data = read_input_bytes(path, MAX_BYTES_BY_KIND[PROGRAMS])
     drawing = path.name.lower().endswith(list_drawing_suffixes())
     if data and not (drawing and b"\0" not in data):
@@ -275,7 +283,11 @@ def _check_program(path: Path) -> None:
 
 
 def _check_machine(path: Path) -> None:
-    """Raise CommandError if a machine file, HAL file or EtherCAT file is invalid."""
+    """Raise CommandError if a machine file, HAL file or EtherCAT file is invalid.
+
+    A machine file that cannot be read also causes CommandError. Raises OSError if another file cannot be
+    read, and TooLargeError if it is larger than the limit for machine files.
+    """
     if is_machine_file(path):
         read_machine(str(path))
         return

@@ -105,7 +105,7 @@ def _programs(folder: Path) -> list[str]:
 def _list_machine_members(named: str | None) -> dict[str, Path]:
     """Return the machine file and those files in its folder that have the same stem, by member name.
 
-    Raises CommandError if the machine file is invalid.
+    Raises CommandError if the machine file is invalid, or if ``named`` is the name of a shipped machine.
     """
     if named is None:
         return {}
@@ -121,7 +121,10 @@ def _list_machine_members(named: str | None) -> dict[str, Path]:
 
 
 def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, ...]:
-    """Write the archive and return the omitted programs. Raises CommandError if a file cannot be read."""
+    """Write the archive and return the omitted programs.
+
+    Raises CommandError if a file cannot be read, or if the disk is full.
+    """
     try:
         left_out = [
             each
@@ -157,7 +160,7 @@ def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, .
 
 
 def _check_loadable(path: Path, target: Path) -> None:
-    """Raise CommandError if the archive is too large for ``load_setup``."""
+    """Raise CommandError if ``load_setup`` would reject the archive, for example because it is too large."""
     try:
         with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
             unpack_archive(path, Path(name))
@@ -183,8 +186,9 @@ def check_setup(source: Path) -> SetupContents:
 def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
     """Load a complete setup, and return its contents and the path of the saved old store, or None.
 
-    All files are written to temporary paths before the store is changed, so that a write error changes
-    nothing. Raises CommandError if the file is damaged, or while TurnDesk is running on this computer.
+    All files are written to temporary paths before the store is changed, so that an error while they are
+    written changes nothing. Raises CommandError if the file is damaged, if a file cannot be written, or
+    while TurnDesk is running on this computer.
     """
     folder, stamp = find_data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as staged:

@@ -100,9 +100,10 @@ def run_headless(
 
     A machine that is not simulated runs in real time. ``discard_interrupted`` permits a start after an
     interrupted job. The scope record is saved in the folder of records and contains at least the last
-    ``duration_s`` seconds of samples. A run in real time counts tool life, parts and cycles as on the
-    screen, but a faster run counts nothing. Raises CommandError if the machine does not respond, if an
-    input does not exist or is wired, or if a job was interrupted.
+    ``duration_s`` seconds of samples; a value above ``RING_DURATION_S`` is reduced to it. A run in real
+    time counts tool life, parts and cycles as on the screen, but a faster run counts nothing. Raises
+    CommandError if the machine does not respond, if an input does not exist or is wired, if a job was
+    interrupted, or if ``discard_interrupted`` is used for a simulated machine.
     """
     paced = _is_real_time(machine, is_real_time)
     with (

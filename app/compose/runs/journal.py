@@ -327,7 +327,10 @@ class Journal(Persistence):
             return other.people.read_users()
 
     def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
-        """Return the latest events, with the newest event first. Raises StoreError without a store."""
+        """Return the latest events, with the newest event first.
+
+        The result has at most ``limit`` events. Raises StoreError if no store is open or it cannot be read.
+        """
         return self.require_store().events.read_events(search, limit, kinds)
 
     def read_last_run_tools(self, program: str) -> tuple[str, dict[int, ToolRow]]:
@@ -357,7 +360,11 @@ class Journal(Persistence):
         backup.back_up_store(self._folder, target)
 
     def check_backup(self, source: Path) -> BackupVerdict:
-        """Check a backup against the store, and return the result. Raises StoreError on failure."""
+        """Check a backup against the store, and return the result.
+
+        The result also reports a damaged or unreadable backup. Raises StoreError if no store is open or it
+        cannot be read.
+        """
         self.require_store()
         with closing(
             store_connection.connect_store(self._folder / STORE_FILE_NAME, is_read_only=True)
@@ -367,8 +374,9 @@ class Journal(Persistence):
     def restore(self, source: Path) -> Path | None:
         """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Raises StoreError if the restore fails. In both cases, a store is open afterward: the restored store
-        or the old store.
+        Raises StoreError if the restore fails, or if no store is open. After a restore and after a failed
+        restore, the store is opened again. If it cannot be opened, events are buffered, and ``write_error``
+        contains the reason.
         """
         with self._lock:
             store, self._store = self.require_store(), None

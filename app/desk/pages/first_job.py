@@ -67,7 +67,10 @@ class FirstJobCard:
         return cls(at, _saved=at) if isinstance(at, int) and 0 <= at <= len(FIRST_JOB_STEPS) else cls()
 
     def save_step(self, persistence: Persistence) -> None:
-        """Save the step if it has changed. Raises StoreError if saving fails."""
+        """Save the step if it has changed, without waiting for the disk.
+
+        Raises StoreError if the step cannot be queued for saving. A later write error is not raised.
+        """
         if self.step_index != self._saved:
             self._saved = self.step_index
             persistence.save_setting(STEP_SETTING, self.step_index)

@@ -52,7 +52,10 @@ class ProgramRuns:
         self.run_history.observe(snapshot, loaded)
 
     def update_first_job(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Advance the card of the first job and store its step. Raises StoreError if storing fails."""
+        """Advance the card of the first job and store its step, without waiting for the disk.
+
+        Raises StoreError if the step cannot be queued for saving. A later write error is not raised.
+        """
         self._first_job.advance(snapshot, loaded, self.part_counter.part_count)
         self._first_job.save_step(self._persistence)
 

@@ -111,7 +111,7 @@ def format_wall_time(utc_time: str, today_format: str = "%H:%M") -> str:
 def format_local_time(utc_time: str, *, with_seconds: bool = True) -> str:
     """Return a UTC time of the store (ISO 8601) as local date and time.
 
-    The text contains seconds if ``seconds`` is true.
+    The text contains seconds if ``with_seconds`` is true.
     """
     return (
         datetime.fromisoformat(utc_time)

@@ -60,8 +60,8 @@ def make_prompt(
 ) -> str:
     """Return the prompt for the current state.
 
-    ``start`` and ``release`` are the instructions for starting a cycle and for releasing the E-stop.
-    ``is_field_open`` is True if letters are text input.
+    ``start_instruction`` and ``release_instruction`` are the instructions for starting a cycle and for
+    releasing the E-stop. ``is_field_open`` is True if letters are text input.
     """
     go_on = Message("TO CONTINUE: {start}. R: CANCEL THE PROGRAM", start=start_instruction)
     standing = {

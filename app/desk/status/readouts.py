@@ -282,7 +282,7 @@ def make_position_readout(
 
     The second value is the distance to go, or the position if the first value is the distance to go.
 
-    ``metric`` selects mm instead of inches. ``has_c_axis`` includes the C axis of a lathe, which is named
+    ``is_metric`` selects mm instead of inches. ``has_c_axis`` includes the C axis of a lathe, which is named
     ``third_axis``.
     """
     diameter = snapshot.shows_diameter
@@ -377,7 +377,7 @@ class SpindleReadout:
 
 
 def make_feed_readout(snapshot: Snapshot, is_metric: bool) -> FeedReadout:
-    """Return the programmed and the measured feed. ``metric`` selects mm instead of inches."""
+    """Return the programmed and the measured feed. ``is_metric`` selects mm instead of inches."""
     modal = snapshot.modal
     per_rev = modal.per_rev and not snapshot.rapid
     turns = abs(snapshot.rpm_actual) / 60
@@ -415,7 +415,8 @@ def _directions(language: str) -> tuple[str, str, str]:
 def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: str) -> SpindleReadout:
     """Return the commanded and measured speed, and the surface speed in m/min or ft/min.
 
-    ``language`` is the machine's program language. OmniTurn writes M05, and the other languages write M5.
+    ``program_language`` is the machine's program language. OmniTurn writes M05, and the other languages
+    write M5.
     """
     modal = snapshot.modal
     if UnknownPart.SPINDLE in snapshot.unknown:

@@ -55,7 +55,8 @@ def make_tone_wav(frequencies_hz: Sequence[int], volume: int) -> bytes:
 def play_wav(wav_bytes: bytes) -> None:
     """Play a WAV file on the computer's loudspeaker.
 
-    Raises OSError or ValueError with the reason if no player works.
+    Raises OSError or ValueError with the reason if no player works. On Windows, RuntimeError is raised
+    instead.
     """
     if sys.platform == "win32":
         import winsound  # noqa: PLC0415 - other systems have none

@@ -47,7 +47,8 @@ class AccessExtra(OptionalFeature):
     def require_pin(self, store: Store, user_row: UserRow, remedy: str) -> bool:
         """Ask for the user's PIN on the command line. Return True because this feature supports PINs.
 
-        ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.
+        ``remedy`` is the instruction for a user without a PIN. Raises CommandError if no PIN is stored or
+        the PIN is wrong.
         """
         from app.extras.access.access_command import require_pin
 

@@ -78,7 +78,7 @@ class DrawingArea(QWidget):
     ) -> None:
         """Show a drawing in mm or inches, unless it is already shown.
 
-        ``drawing_id`` identifies the drawing. ``drawing`` is called to create it.
+        ``drawing_id`` identifies the drawing. ``make_drawing`` is called to create it.
         """
         if self.chart is None or drawing_id == self._shown:
             return

@@ -96,7 +96,8 @@ def make_motion(
 def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> AxisResponse:
     """Return the last move of one axis from rest to rest.
 
-    Raises AnalysisError if the record contains no complete move.
+    Rotary axes are ignored. Raises AnalysisError if the record contains no complete move, or if the move is
+    too small for the in-position tolerance.
     """
     found: tuple[int, int, str] | None = None
     for letter in linear_axes:

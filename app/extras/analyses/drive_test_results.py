@@ -84,7 +84,8 @@ def calculate_results(
 ) -> DriveTestResults:
     """Calculate the results from the record of a complete test.
 
-    Raises AnalysisError if the axis does not exist or the test was not completed.
+    Raises AnalysisError if the axis does not exist, if the test was not completed, or if its moves are too
+    small or too short to be evaluated.
     """
     name, axis = Message("{item} demand", item=path.axis), linear_axes.get(path.axis)
     if axis is None or name not in record.values_by_channel:

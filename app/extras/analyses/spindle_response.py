@@ -59,7 +59,9 @@ class SpindleResponse:
 def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0.
 
-    Raises AnalysisError if the record has no such change or no measured spindle speed.
+    Only a change of more than twice the at-speed tolerance of the new speed counts. Raises AnalysisError if
+    the machine has no spindle, if the record has no such change or no measured spindle speed, or if the
+    change is too small for one of ``TOLERANCE_RATIOS``.
     """
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")

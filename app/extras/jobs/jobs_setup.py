@@ -58,7 +58,9 @@ def _proved(
 ) -> ProvedJob:
     """Prove a program with the current offsets and tool shapes, and return its setup sheet.
 
-    This function runs on a worker. Raises ValueError if the program is not in the list.
+    The result also has the time and the tools of the last start. This function runs on a worker. Raises
+    ValueError if the program is not in the list or cannot be read, and CommandError if the offsets cannot
+    be read.
     """
     from app.special.setup_sheet import make_setup_sheet
     from core.proving.program_tools import PartSettings

@@ -44,7 +44,7 @@ HeaderList = list[tuple[str, str]]
 class OtherMachine:
     """Latest state of another machine.
 
-    ``status`` is None if the status is not known, and ``error_text`` is then the reason.
+    ``status_document`` is None if the status is not known, and ``error_text`` is then the reason.
     """
 
     address: str

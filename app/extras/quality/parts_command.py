@@ -32,7 +32,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the stored data.
 
-    Raises CommandError if the requested program has no data.
+    Raises CommandError if the requested program has no data, or if the store cannot be read.
     """
     from app.cli.store_command import open_store
 

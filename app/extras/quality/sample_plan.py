@@ -97,9 +97,9 @@ class SamplePlan:
         return self._waits[1]
 
     def toggle_waiting(self) -> None:
-        """Turn waiting for required measurements on or off.
+        """Turn waiting for required measurements on or off, without waiting for the disk.
 
-        Raises StoreError if the setting cannot be stored.
+        Raises StoreError if the setting cannot be queued for saving. A later write error is not raised.
         """
         on, program = not self.waits_for_measurements, self.parts_watch.program_name
         self._waits = program, on

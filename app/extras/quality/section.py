@@ -96,7 +96,7 @@ def make_control_plots(
 ) -> tuple[Plot, ...]:
     """Return the plots of location and spread over the part numbers.
 
-    Lengths are in units of ``unit`` mm. Each point is at the number of the last part of its sample. The
+    Lengths are in units of ``unit_mm`` mm. Each point is at the number of the last part of its sample. The
     upper plot shows size limits only for samples of one part, because the limits do not apply to averages.
     """
     location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit_mm)
@@ -119,7 +119,7 @@ def make_correction_plot(
 ) -> Plot:
     """Return the plot of sizes by part number, with the mean and the size after a correction.
 
-    Lengths are in units of ``unit`` mm. Repeated readings of a part are drawn next to each other.
+    Lengths are in units of ``unit_mm`` mm. Repeated readings of a part are drawn next to each other.
     """
     parts = np.asarray([part for part, _ in readings], dtype=np.float64)
     if (np.diff(parts) <= 0.0).any():

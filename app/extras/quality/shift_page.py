@@ -46,7 +46,7 @@ def make_title(results: ShiftResults, machine_name: str) -> str:
 def make_shift_html(results: ShiftResults, machine_name: str, created_at: str, *, is_metric: bool) -> str:
     """Return the HTML page of the shift report.
 
-    Lengths are in mm if ``metric`` is True, or else in inches. X of tools is a diameter.
+    Lengths are in mm if ``is_metric`` is True, or else in inches. X of tools is a diameter.
     """
     body = "".join(
         f"<h2>{escape(head)}</h2>{text}" if head else text

@@ -1,6 +1,6 @@
 """Results of a shift, calculated from stored data, and the start and end of a shift.
 
-The results use the same stored rows as the trends and ``turndesk part_count``, so all counts agree.
+The results use the same stored rows as the trends and ``turndesk parts``, so all counts agree.
 """
 
 from __future__ import annotations
@@ -110,7 +110,8 @@ def parse_local_time(text: str) -> float:
 def make_period(start: str, end: str) -> Shift:
     """Return the period between two typed times.
 
-    Raises ShiftTimesError if the end is not after the start or the period is too long.
+    Raises ShiftTimesError if a text is not a time, if the end is not after the start, or if the period is
+    longer than ``MAX_REPORT_DAYS`` days.
     """
     shift = Shift(parse_local_time(start), parse_local_time(end))
     if shift.end_s <= shift.start_s:
@@ -194,7 +195,7 @@ def parse_store_time(time_text: str) -> float:
 def make_cycle_span(row: CycleRow | CycleTime, now_s: float) -> TimeSpan | None:
     """Return the time span of a cycle, or None if the cycle has not ended.
 
-    The span has the start and the duration of the cycle, but does not extend beyond ``now``.
+    The span has the start and the duration of the cycle, but does not extend beyond ``now_s``.
     """
     start = parse_store_time(row.started)
     if row.ended is None or start > now_s:

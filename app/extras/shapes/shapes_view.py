@@ -45,7 +45,7 @@ _DRAWN = 12.0  # units: minimum useful height of the drawing
 class _Line:
     """Row for a shape, a piece of the program, a field, or a point with its ``point_cells``.
 
-    ``tone`` is the color of the value.
+    ``text_tone`` is the color of the value.
     """
 
     label: str

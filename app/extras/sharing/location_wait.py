@@ -27,7 +27,7 @@ _OPEN = (  # a pipe in its place is reported by its reader
 def wait_for_location(
     location: SharedLocation, run_work: Callable[[], T], report_after_s: float = _TOLD_AFTER
 ) -> T:
-    """Run ``work`` and return its result, or raise its exception.
+    """Run ``run_work`` and return its result, or raise its exception.
 
     A location that responds slowly is reported on stderr after ``report_after_s`` seconds. The work runs in
     a separate thread, because Ctrl+C cannot interrupt a blocked system call. A blocked thread ends with the

@@ -29,7 +29,7 @@ _SAME_POINT_TOLERANCE = 1e-9
 
 
 class ThreadCurve(NamedTuple):
-    """Positions of X and Z in machine coordinates at the knots ``s``, all in mm; the first knot is 0.
+    """Positions of X and Z in machine coordinates at the knots ``s_mm``, all in mm; the first knot is 0.
 
     The curve is linear between the knots and continues linearly after the last one.
     """

@@ -36,7 +36,7 @@ _INCH = 25.4  # mm
 class ThreadPath(NamedTuple):
     """The path of a thread pass in machine coordinates.
 
-    The thread starts at ``x z`` and has the ``length`` along Z in the direction ``z_direction`` (±1). X
+    The thread starts at ``x z`` and has the ``length_mm`` along Z in the direction ``z_direction`` (±1). X
     changes by ``x_slope`` per unit of s. Then X moves to ``retract_x_mm`` while Z continues in step with
     the spindle by ``exit_length_mm``. If ``exit_length_mm`` is 0, X moves at ``rapid_speed`` with Z at
     rest. ``acceleration`` applies along the thread; ``x_acceleration`` and ``z_acceleration`` are the

@@ -45,7 +45,7 @@ class UncutRange:
 class NoseOffset(NamedTuple):
     """Offset that G41 and G42 of the program use, in mm with X as a radius.
 
-    ``number`` is the number of a secondary offset, or of a cutting edge if ``quadrant`` is set.
+    ``offset_number`` is the number of a secondary offset, or of a cutting edge if ``quadrant`` is set.
     """
 
     offset_number: int

@@ -18,7 +18,7 @@ def detect_wrong_unit(
 ) -> tuple[str, str] | None:
     """Return the excessive size and the smaller unit in which the contour would fit, or None.
 
-    ``unit`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in
+    ``unit_mm`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in
     mm, or 0 if unknown. The result is None if the contour fits, or if it does not fit in a smaller unit
     either.
     """

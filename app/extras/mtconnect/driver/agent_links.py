@@ -31,7 +31,7 @@ ItemValue = str | float | None  # None: not known
 class ActiveCondition(NamedTuple):
     """Active MTConnect condition.
 
-    ``condition_level`` is WARNING or FAULT, and ``code`` identifies the condition.
+    ``condition_level`` is WARNING or FAULT, and ``native_code`` identifies the condition.
     """
 
     condition_level: str
@@ -266,7 +266,8 @@ class AgentLink:
     def read_data(self, now_s: float) -> None:
         """Read received data, reply to each PING, and count other lines.
 
-        Raises AgentLostError if the connection ends or a line is invalid.
+        Raises AgentLostError if the connection ends, if a line is longer than ``MAX_LINE_LENGTH`` bytes, or
+        if too much unsent data is already queued for the reply.
         """
         try:
             come = self.agent_socket.recv(READ_BYTES)
@@ -350,7 +351,7 @@ def open_listening_socket(bind_address: str, port: int) -> socket.socket:
 def accept_connection(listener: socket.socket) -> socket.socket:
     """Accept a connection without waiting, and return its socket.
 
-    Raises OSError if the peer has disconnected.
+    Raises BlockingIOError if no connection is waiting, or another OSError if the peer has disconnected.
     """
     wire, _ = listener.accept()
     try:

@@ -199,7 +199,7 @@ def _bits(words: str) -> Iterable[int]:
 def select_device_nodes(
     device: str, serial: str, required_controls: Mapping[str, PendantControl], entries: Sequence[DeviceEntry]
 ) -> tuple[DeviceEntry, ...]:
-    """Return the nodes of the only device that matches.
+    """Return the nodes of the only matching device that have a required control.
 
     Raises DriverError if no device or more than one device matches, if a required control is missing, or if
     the device uses Bluetooth.

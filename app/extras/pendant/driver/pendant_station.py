@@ -47,7 +47,7 @@ class PendantState:
 class PendantReader:
     """Reader of a pendant.
 
-    The ``open_device`` parameter opens the nodes of the device, or raises DriverError. The ``now``
+    The ``open_device`` parameter opens the nodes of the device, or raises DriverError. The ``read_clock``
     parameter reads the clock of the events. ``start`` reads the device in a separate thread. A test can
     call ``process_events`` without a thread.
     """
@@ -310,7 +310,7 @@ class PendantButtons:
     def apply_packet(self, packet: EventPacket, now_s: float) -> None:
         """Apply the events of a packet.
 
-        ``now`` is the current time in seconds on the clock of the events.
+        ``now_s`` is the current time in seconds on the clock of the events.
         """
         for event in packet.events:
             late = now_s - event.time_s > MAX_EVENT_AGE_S
