@@ -117,10 +117,11 @@ class AxisSink(Protocol):
         ...
 
     def splice(self, segments: MotionSegments) -> None:
-        """Replace all queued motion from ``segments.t[0]`` on.
+        """Replace all queued motion from ``segments.start_times_s[0]`` on.
 
         Raises DriverError unless the segments start at or after now() + commit, continue the position and
-        velocity of the remaining queue, and end at rest.
+        velocity of the remaining queue, and end at rest. Also raises DriverError if the drives have no
+        power, if an axis is homing, or if the segments exceed the limits of an axis.
         """
         ...
 
@@ -147,11 +148,17 @@ class AxisSink(Protocol):
         ...
 
     def home(self, axis: str) -> None:
-        """Start homing an axis; ``sample`` reports its end. Raises DriverError if the driver fails."""
+        """Start homing an axis; ``sample`` reports its end.
+
+        Raises DriverError if homing cannot start, for example without power or while an axis is moving.
+        """
         ...
 
     def clear_fault(self) -> None:
-        """Request that a fault is cleared, as ``sample`` reports. Raises DriverError if the driver fails."""
+        """Request that a fault is cleared, as ``sample`` reports.
+
+        Raises DriverError if the fault cannot be cleared or the driver fails.
+        """
         ...
 
 
@@ -186,8 +193,8 @@ class SpindleCAxis(Protocol):
         """Request C-axis mode or spindle mode; the position count of C is retained.
 
         If ``should_orient`` is True, the spindle turns by the shortest path until its count equals its
-        position from the index, apart from whole revolutions. Raises DriverError while the spindle turns or
-        has no power.
+        position from the index, apart from whole revolutions. A request for C-axis mode raises DriverError
+        while the spindle turns, has no power or has a fault of the C axis.
         """
         ...
 
@@ -259,12 +266,14 @@ class SpindleGear(Protocol):
     def mesh(self, cam: Cam) -> None:
         """Make the axes follow the spindle with a cam.
 
-        If a cam is already active, the call replaces all of it from ``cam.segments.t[0]`` on. Raises
-        DriverError unless the cam starts at or after the position that the spindle will reach within the
-        sink's commit time, continues the remaining motion, and ends at rest. The sink's ``demand_at`` and
-        ``horizon`` then predict from the current speed, up to the end of the cam. Its ``splice`` releases a
-        gear that has not moved an axis yet and is rejected otherwise. Its ``stop`` brakes from the current
-        position of the axes.
+        If a cam is already active, the call replaces all of it from ``cam.segments.start_times_s[0]`` on.
+        Raises DriverError unless the cam starts at or after the position that the spindle will reach within
+        the sink's commit time, continues the remaining motion, and ends at rest. Also raises DriverError if
+        the drives have no power, if the spindle does not turn in the direction of the cam, if the axes are
+        not at rest before a first cam, or if the cam exceeds the limits of an axis. The sink's
+        ``demand_at`` and ``horizon`` then predict from the current speed, up to the end of the cam. Its
+        ``splice`` releases a gear that has not moved an axis yet and is rejected otherwise. Its ``stop``
+        brakes from the current position of the axes.
         """
         ...
 
@@ -288,7 +297,11 @@ class DigitalIO(Protocol):
         ...
 
     def write(self, name: str, is_on: bool) -> None:
-        """Switch an output on or off. Raises DriverError if the driver fails."""
+        """Switch an output on or off.
+
+        Raises DriverError if the machine file does not define the output, or if the driver cannot switch
+        it.
+        """
         ...
 
     def switch_to_safe_state(self) -> None:
@@ -386,7 +399,7 @@ class Clock(Protocol):
         ...
 
     def sleep_until(self, time_s: float) -> None:
-        """Wait until ``t`` or slightly later; return immediately if ``t`` is in the past."""
+        """Wait until ``time_s`` or slightly later; return immediately if ``time_s`` is in the past."""
         ...
 
 

@@ -37,7 +37,8 @@ _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 def read_book(folder: Path) -> CodeBook:
     """Return the code book of a folder.
 
-    Raises ValueError with the file and the code if an entry is invalid.
+    Raises ValueError with the file and the code if an entry is invalid, and with the code if a code has
+    more than one entry.
     """
     frame = tomllib.loads((folder / "book.toml").read_text(encoding="utf-8"))
     chapters: dict[str, list[CodeBookEntry]] = {}

@@ -98,7 +98,8 @@ class SourceError(CodedError):
 def load_source(path: Path, specified_dialect: Dialect | None = None) -> ProgramSource:
     """Read a program file in UTF-8 or in an 8-bit character set of DOS or Windows.
 
-    Raises SourceError if the file cannot be read or is not text.
+    Raises SourceError if the file cannot be read, is larger than 64 MB, is empty, has a line of more than
+    8192 characters, or is not text. A UTF-16 file is also rejected.
     """
     try:
         data = read_input_bytes(path, MAX_FILE_BYTES)
@@ -117,7 +118,8 @@ def load_source(path: Path, specified_dialect: Dialect | None = None) -> Program
 def decode_source(name: str, data: bytes, specified_dialect: Dialect | None = None) -> ProgramSource:
     """Decode the bytes of a program file and return its source.
 
-    Raises SourceError if the bytes are not text.
+    Raises SourceError if the bytes are more than 64 MB, are empty, are UTF-16, contain a line of more than
+    8192 characters, or are not text.
     """
     if len(data) > MAX_FILE_BYTES:
         raise _too_large(name)

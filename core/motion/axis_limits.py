@@ -57,7 +57,8 @@ class MotionLimits:
     programmed words. Joints of short chords may be moved by this amount on each axis; 0 leaves every joint
     at its programmed position.
 
-    Raises MotionError if a value is not positive and finite.
+    Raises MotionError if a speed, an acceleration or the interval is not positive and finite, or if
+    ``grain`` is negative or not finite.
     """
 
     vmax: tuple[float, ...] = (127.0, 127.0, 1200.0)

@@ -137,8 +137,9 @@ class BlockTable:
 def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
     """Return the table of blocks that move.
 
-    ``rpm_max`` is the maximum spindle speed. Raises MotionError with the block number if the kind of a
-    block cannot be planned or a value is not a number.
+    ``rpm_max`` is the maximum spindle speed in rpm. Raises MotionError with the block number if the kind of
+    a block cannot be planned, a value is not a finite number, a surface speed is negative or not finite, or
+    only some of the blocks specify all axes.
     """
     width = len(_COLUMNS) + 4
     table = np.fromiter(chain.from_iterable(map(_read_columns, blocks)), np.float64).reshape(-1, width)

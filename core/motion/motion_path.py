@@ -72,8 +72,8 @@ def find_divided_blocks(table: BlockTable) -> BoolArray:
 def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, index: int) -> PathPieces:
     """Return the pieces into which the piece ``index`` is divided.
 
-    These are chords, or a move of X and Z followed by the remaining rotation of C. Raises MotionError if C
-    turns too little for the move of X and Z.
+    These are chords, or a move of X, Z and C followed by the remaining rotation of C alone. Raises
+    MotionError if C turns too little for the move of X and Z.
     """
     piece, move = pieces[index : index + 1], table.curved_moves[index]
     if move is None:

@@ -93,8 +93,8 @@ def concatenate_pieces(parts: Sequence[PathPieces]) -> PathPieces:
 def make_pieces(table: BlockTable, speeds: FloatArray) -> PathPieces:
     """Return one piece for each of m blocks, including blocks without length.
 
-    ``speeds`` (m,) are in mm/s. Raises MotionError if the start and the end of an arc are not on one
-    circle.
+    ``speeds`` (m,) are in mm/s. Raises MotionError if the radii at the start and the end of an arc differ
+    by more than RADIUS_TOLERANCE_MM.
     """
     delta = table.end - table.start
     length = np.hypot(delta[:, 0], delta[:, 1])
@@ -234,8 +234,8 @@ def extend_smoothed_pieces(
 ) -> PathPieces:
     """Return the last ``redo_count`` smoothed pieces and all ``new_pieces``, smoothed together.
 
-    ``programmed_pieces`` contains the last pieces of ``smoothed_pieces`` as programmed, at least SUPPORT
-    more than ``redo_count`` if so many exist.
+    ``programmed_pieces`` contains the last pieces of ``smoothed_pieces`` as programmed, at least
+    ``SUPPORT_PIECE_COUNT`` more than ``redo_count`` if so many exist.
     """
     both = concatenate_pieces([programmed_pieces, new_pieces])
     smooth = smooth_joints(both, limits)[len(programmed_pieces) - redo_count :]

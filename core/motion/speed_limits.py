@@ -276,8 +276,9 @@ def find_block_speeds(table: BlockTable) -> FloatArray:
     """Return the speed (m,) of each block in mm/s.
 
     For blocks with constant surface speed, this is the speed at the middle of their radii. Raises
-    MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, and for a
-    surface speed at the spindle centerline without an upper limit of the spindle speed.
+    MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, for a
+    surface speed at the spindle centerline without an upper limit of the spindle speed, and for a thread
+    that does not advance along Z.
     """
     _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
     surface = depends_on_radius(table)

@@ -337,7 +337,7 @@ def _level_fractions(path: FloatArray, levels: FloatArray, length: float) -> tup
 def _path_lines(path: FloatArray) -> FloatArray:
     """Return the path with at least two points.
 
-    Raises PartError if the path does not have three columns.
+    Raises PartError if the path is empty or does not have three columns.
     """
     if path.ndim != 2 or path.shape[1] != 3 or not len(path):
         raise PartError("A mill's path has three figures a point.", "points-not-xyz")

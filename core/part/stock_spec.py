@@ -48,8 +48,8 @@ class StockSpec:
     def stock(self, back_z_mm: float, unit_mm: float) -> Stock:
         """Return the bar, tube or profile that is specified.
 
-        ``back_z_mm`` is the least Z that is cut, in mm. ``unit_mm`` is the length unit of the program, in mm.
-        Raises StockError if the specification is invalid.
+        ``back_z_mm`` is the least Z that is cut, in mm. ``unit_mm`` is the length unit of the program, in
+        mm. Raises StockError if the text of a profile is invalid.
         """
         if self.points:
             return parse_profile(self.given, self.points, unit_mm, self.allowance)
@@ -62,7 +62,8 @@ class StockSpec:
 def parse_specification(text: str) -> StockSpec:
     """Return the parsed specification.
 
-    Raises StockError, whose message contains the fault and the permitted forms.
+    Raises StockError for an invalid specification. The message contains the fault and the permitted forms
+    or values.
     """
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:

@@ -128,8 +128,9 @@ class _OutlineDrawing:
 def make_outline(shape: ToolShape) -> ToolOutline:
     """Return the outline of a tool.
 
-    Raises InsertCodeError for an invalid code. Check the shape for other contradictions with
-    ``core.part.shape_rules`` first.
+    Raises InsertCodeError for an invalid code, and PartError for an outline of the holder or of a form tool
+    that crosses itself. Check the shape for these and other contradictions with ``core.part.shape_rules``
+    first.
     """
     drawing = _OutlineDrawing(shape)
     _DRAW[shape.kind](drawing)

@@ -154,7 +154,8 @@ def split_into_convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[Flo
     """Return a simple polygon as convex pieces.
 
     The pieces are the polygon itself if it is convex, or triangles by ear clipping. Raises PartError if the
-    outline crosses or touches itself.
+    outline crosses itself, or if it touches itself so that it cannot be divided. Other outlines that touch
+    themselves are divided without an error.
     """
     left = [(float(z), float(r)) for z, r in orient_counterclockwise(np.array(points, dtype=np.float64))]
     if _has_crossing_edges(left):

@@ -100,7 +100,11 @@ class ToolLife:
 
 
 def check_tool_life(life: ToolLife) -> None:
-    """Raise ToolLifeError if a limit of the tool life is not valid."""
+    """Raise ToolLifeError if a limit or the warning share of the tool life is not valid.
+
+    The limits are 0 to 1,000,000 parts and 0 to 100,000 min, where 0 means no limit. The warning share is
+    above 0 and at most 1.
+    """
     if not 0 <= life.limit_parts <= MAX_LIMIT_PARTS:
         raise ToolLifeError(
             Message(

@@ -47,7 +47,7 @@ class ScopeRecordings:
         """Return the record of an alarm by the file name in its log entry.
 
         Do not call this function in the thread of the operator screen. Raises RecordError while the record
-        is being written, and if the record has been deleted.
+        is being written, if the record has been deleted, and if its file cannot be read or is damaged.
         """
         if self.is_saving(name):
             raise RecordError("the record of this alarm is still being saved; try again in 2 s")

@@ -63,7 +63,8 @@ def _head(recorded: RingLayout, ring: ScopeRing) -> bytes:
 class RingFile:
     """The file of a ring on disk, created in full size and locked by the only process that writes it.
 
-    The constructor and ``write_rows`` raise RecordError if the file cannot be written.
+    The constructor and ``write_rows`` raise RecordError if the file cannot be written. The constructor also
+    raises RecordError if another process has locked the file.
     """
 
     def __init__(self, path: Path, ring: ScopeRing) -> None:
@@ -153,8 +154,8 @@ RUN_RING_NAME = "run.ring"  # file of the last run without the operator screen
 def create_ring_file(folder: Path, name: str, ring: ScopeRing) -> RingFile:
     """Create the ring file for this start of TurnDesk.
 
-    The previous file of the operator screen is renamed to LAST. Raises RecordError if the file cannot be
-    created.
+    The previous file of the operator screen is renamed to ``PREVIOUS_RING_NAME``, unless another process is
+    writing it. Raises RecordError if the file cannot be created or another process has locked it.
     """
     with suppress(OSError):
         if name == CURRENT_RING_NAME and _free(folder / CURRENT_RING_NAME):

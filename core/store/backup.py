@@ -46,7 +46,8 @@ def find_problems(path: Path) -> tuple[str, ...]:
     """Return the problems that are found in the store file ``path``, without writing to the file.
 
     The check includes database pages, references between tables, program texts and row checksums. Raises
-    StoreError if the file is not a TurnDesk store or has a newer version.
+    StoreError if the file cannot be opened, is not a TurnDesk store or has a newer version, or if its log
+    has lost changes.
     """
     return _looked_through(path, _found)
 
@@ -101,7 +102,8 @@ def back_up_store(folder: Path, target: Path) -> None:
 
     This is possible even while the store is being written. The copy contains the names and levels of the
     users, but no PINs, because anyone with the file could try all PINs. Raises StoreError if the folder has
-    no intact store, or if ``target`` exists and is not a backup of a store.
+    no intact store, if ``target`` is the store itself, if ``target`` exists and is not a backup of a store,
+    or if ``target`` cannot be written.
     """
     path = folder / STORE_FILE_NAME
     if not has_store(folder):
@@ -138,7 +140,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
     The result is None if the folder had no store. The backup is checked first. The users and PINs of this
     machine remain. A machine without a store gets the users of the backup. If the old store cannot be read,
     the restored store has no users, so the caller must require a service reset first. Raises StoreError if
-    the backup is damaged or the store is in use.
+    the backup is damaged or is the store itself, if the store is in use, or if a file cannot be written.
     """
     found = find_problems(source)
     if found:

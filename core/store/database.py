@@ -126,8 +126,9 @@ def check_is_file(path: Path) -> None:
 def check_file(path: Path, *, is_thorough: bool) -> int:
     """Return the version of the store in ``path``, without writing to the file.
 
-    If ``is_thorough`` is True, every page is checked. Raises StoreError if the file is not a TurnDesk store,
-    has a newer version or is damaged.
+    If ``is_thorough`` is True, every page is checked. Raises StoreError if the file cannot be opened, is
+    not a TurnDesk store, has a newer version or is damaged. Damage that opening the store repairs is not an
+    error.
     """
     return _checked(path, thorough=is_thorough)[0]
 
@@ -173,7 +174,8 @@ def _rebuild_indexes(
 ) -> tuple[str, ...]:
     """Rebuild the indexes if one does not match its table, and return a message about the repair.
 
-    Raises StoreError if the indexes cannot be rebuilt.
+    Raises StoreError if two rows have the same key, so that the indexes cannot be rebuilt. Raises
+    sqlite3.Error for any other failure.
     """
     if not any(_INDEX.search(text) for text in damage_messages):
         return ()
@@ -318,7 +320,8 @@ def open_read_only(folder: Path) -> OpenedStore:
 def open_for_writing(folder: Path) -> OpenedStore:
     """Lock the store and open it for writing, and create or upgrade it if necessary.
 
-    Raises StoreError if the store is in use, damaged or of a newer version.
+    Raises StoreError if the store is in use, damaged or of a newer version, if its file is missing but its
+    log exists, or if it cannot be created, upgraded or written.
     """
     path = folder / STORE_FILE_NAME
     create_store_folder(folder)
@@ -400,7 +403,7 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
 def _save_copy(connection: sqlite3.Connection, target: Path) -> None:
     """Save a copy of the store in its folder before the store is upgraded.
 
-    Raises OSError if the copy cannot be written.
+    Raises OSError or sqlite3.Error if the copy cannot be written.
     """
     with create_unfinished_file(target) as unfinished:
         with closing(sqlite3.connect(unfinished)) as copy:

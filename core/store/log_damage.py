@@ -177,7 +177,7 @@ def save_damaged_log(path: Path) -> tuple[str, ...]:
     """Save a copy of a log that has lost changes before the log is overwritten.
 
     The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError if
-    the copy cannot be saved.
+    the log cannot be examined or the copy cannot be saved.
     """
     log, _ = get_log_and_index_paths(path)
     with closing(connect_store(path, is_read_only=True)) as reader:

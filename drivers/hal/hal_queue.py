@@ -16,7 +16,7 @@ class HalQueue(GearedQueue):
         )
 
     def end_cam(self, time_s: float) -> None:
-        """End the cam at ``time_s``, when the time-based motion that follows it has started."""
+        """End the cam at time ``time_s``, when the time-based motion that follows it has started."""
         if self._gearing is not None:
             self._leave_gearing(time_s, self._gearing)
 

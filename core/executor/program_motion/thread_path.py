@@ -220,8 +220,8 @@ def _joints(phases: Phases) -> FloatArray:
 class _AxisMotion(NamedTuple):
     """The motion of one axis.
 
-    ``t``, ``p`` and ``v`` are the times, positions and speeds at n + 1 joints. ``a`` contains the n
-    accelerations between the joints.
+    ``times_s``, ``positions`` and ``velocities`` are the times, positions and speeds at n + 1 joints.
+    ``accelerations`` contains the n accelerations between the joints.
     """
 
     times_s: FloatArray

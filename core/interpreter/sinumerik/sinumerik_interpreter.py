@@ -265,7 +265,7 @@ class Interpreter(LinePass[LexedBlock]):
     def _pattern(self, line: LexedBlock) -> Iterator[Block]:
         """Yield the blocks of HOLES1 or HOLES2, which execute the MCALL cycle at each position.
 
-        Raises ProgramError for invalid parameters.
+        Raises ProgramError for invalid parameters, and if no MCALL of a cycle is active.
         """
         state, called = self._state, self._state.modal_call_line
         if (

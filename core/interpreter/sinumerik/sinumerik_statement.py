@@ -105,7 +105,11 @@ def _axis_name(word: Word) -> str:
 
 
 def make_statement(line: LexedBlock) -> Statement:
-    """Return the statement of a block. Raises ProgramError if its words exclude each other."""
+    """Return the statement of a block.
+
+    Raises ProgramError if its words exclude each other or are repeated, and for a function that this
+    control does not have.
+    """
     statement = Statement(line)
     for word in line.words:
         _sort(statement, word)

@@ -46,7 +46,7 @@ def read_cycle_definition(cursor: LineCursor, column: int) -> Node:
     """Read the block after ``CYCL DEF``.
 
     Whether TurnDesk supports the cycle is checked only when the cycle is called. Raises ProgramError for a
-    syntax error.
+    syntax error and for a string parameter (QS).
     """
     match = cursor.match_pattern(_NUMBER)
     if match is None:
@@ -264,7 +264,8 @@ _QC = re.compile(r"QC\s*[0-9]")
 def read_contour_definition(cursor: LineCursor, column: int) -> ContourDefinition:
     """Read the block after ``CONTOUR DEF``, such as ``P1 = LBL 1 I2 = "ISLE.H"``.
 
-    Raises ProgramError for a syntax error or for contours with separate depths.
+    Raises ProgramError for a syntax error, for a contour formula (QC), and for contours with separate
+    depths.
     """
     parts: list[ContourPart] = []
     while not cursor.is_at_end:

@@ -99,7 +99,8 @@ class LineCursor(LineReader):
     def read_value(self, description: str) -> Value:
         """Read a signed number or a Q parameter.
 
-        Raises ProgramError with ``description`` in the message if the value is missing.
+        Raises ProgramError with ``description`` in the message if the value is missing. Also raises
+        ProgramError for a Q parameter above Q1999.
         """
         column, match = self.column, self.match_pattern(_VALUE)
         if match is None:

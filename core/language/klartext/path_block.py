@@ -73,7 +73,10 @@ _KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|[NT][XYZ]|R)(?=\s*[+\-0-9.,Q])")
 
 
 def read_path_function(cursor: LineCursor, form: str, column: int) -> PathFunction:
-    """Read the words of a path function. Raises ProgramError for an unexpected or missing word."""
+    """Read the words of a path function.
+
+    Raises ProgramError for an unexpected, missing or repeated word.
+    """
     axes: tuple[AxisWord, ...] = ()
     words: dict[str, AxisWord] = {}
     compensation, turn, speed = "", "", None
@@ -184,7 +187,10 @@ def read_m_function_block(cursor: LineCursor) -> MFunctionBlock:
 
 
 def read_remaining_m_functions(cursor: LineCursor) -> tuple[MFunction, ...]:
-    """Read M functions up to the end of the line. Raises ProgramError for any other word."""
+    """Read M functions up to the end of the line.
+
+    Raises ProgramError for any other word, and for more than four M functions.
+    """
     codes: list[MFunction] = []
     while not cursor.is_at_end:
         code = read_m_function(cursor)

@@ -120,7 +120,10 @@ def read_full_formula(cursor: LineCursor, description: str) -> Formula:
 
 
 def read_assignment(cursor: LineCursor) -> Assignment:
-    """Read ``Q5 = …`` up to the end of the line. Raises ProgramError for string functions."""
+    """Read ``Q5 = …`` up to the end of the line.
+
+    Raises ProgramError for a syntax error and for string functions.
+    """
     column, (kind, number) = cursor.column, _target(cursor)
     if _TEXT_FUNCTIONS.match(cursor.uppercase_text, cursor.index):
         raise STRING_FUNCTIONS.make_error(cursor.line_number, cursor.column)
@@ -130,7 +133,10 @@ def read_assignment(cursor: LineCursor) -> Assignment:
 
 
 def read_fn_block(cursor: LineCursor, number: int, column: int) -> Node:
-    """Read the block after ``FN n:``. Raises ProgramError for functions that TurnDesk does not support."""
+    """Read the block after ``FN n:``.
+
+    Raises ProgramError for a syntax error and for functions that TurnDesk does not support.
+    """
     cursor.match_pattern(_COLON)
     if number in _IGNORED_FUNCTIONS:
         cursor.read_remaining_text()
@@ -156,7 +162,10 @@ def read_fn_block(cursor: LineCursor, number: int, column: int) -> Node:
 
 
 def read_parameter(cursor: LineCursor) -> tuple[str, int]:
-    """Read the kind and number of a parameter. Raises ProgramError if the number is too high."""
+    """Read the kind and number of a parameter.
+
+    Raises ProgramError if the cursor is not at a parameter or the number is too high.
+    """
     column, match = cursor.column, cursor.match_pattern(_TARGET)
     if match is None:
         raise cursor.make_expected_error("Expected a Q parameter")
@@ -232,7 +241,10 @@ def _jump(cursor: LineCursor, number: int, column: int) -> ConditionalJump:
 
 
 def _read_jump(cursor: LineCursor, condition: Formula) -> ConditionalJump:
-    """Read the label after GOTO. Raises ProgramError if the label is missing."""
+    """Read the label after GOTO.
+
+    Raises ProgramError if GOTO LBL or the label is missing, or if text follows the label.
+    """
     if not cursor.read_keyword("GOTO LBL"):
         raise cursor.make_expected_error("A jump needs GOTO LBL")
     at = cursor.column

@@ -353,7 +353,9 @@ def read_function_block(cursor: LineCursor, column: int) -> TcpmSwitch | Ignored
     """Read the block after ``FUNCTION``.
 
     The block is TCPM, DWELL, or a function without effect on this control. Raises ProgramError for AXIS
-    SPAT and PATHCTRL VECTOR, because the same words would then program a different motion.
+    SPAT, PATHCTRL VECTOR and a REFPNT other than TIP-TIP, because the same words would then program a
+    different motion. Also raises ProgramError for a syntax error and for any function that TurnDesk does
+    not support.
     """
     if cursor.read_keyword("TCPM"):
         while not cursor.is_at_end:

@@ -104,7 +104,7 @@ def _parameter(reader: BlockReader) -> ProcParameter:
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
     """Return the dimensions of an array parameter such as NAME[3] or NAME[,4].
 
-    Raises FormulaError for an invalid dimension.
+    Raises FormulaError for an invalid dimension, and for an array parameter without VAR.
     """
     if match[4] is None:
         return ()

@@ -24,7 +24,11 @@ class ParsedValue(NamedTuple):
 
 
 def parse_value(text: str, index: int) -> ParsedValue:
-    """Return the value that starts at this index. Raises FormulaError if no value starts there."""
+    """Return the value that starts at this index.
+
+    Raises FormulaError if no valid value starts there, or if a formula contains an R parameter that does
+    not exist.
+    """
     made, end = parse_formula(text, index)
     match made:
         case Number(value):

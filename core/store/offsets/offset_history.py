@@ -27,7 +27,8 @@ from core.tool_edges import format_edge_name, get_tool_number
 def undo(connection: sqlite3.Connection, reason: ChangeReason, kind: OffsetKind) -> tuple[OffsetChange, ...]:
     """Undo the latest step of a table that is not undone yet, and return the resulting changes.
 
-    Another call undoes the step before it. Raises StoreError if no step remains.
+    Another call undoes the step before it. Raises StoreError if no step remains, or if a history entry of
+    this step or of a later step is damaged.
     """
     return _undo(connection, reason, OFFSET_TABLES[kind].history_table, kind)
 
@@ -36,7 +37,7 @@ def undo_last_step_in_store(connection: sqlite3.Connection, reason: ChangeReason
     """Undo the latest step of all tables, and return the resulting changes.
 
     A step that changed several tables is undone in all of them. Another call undoes the step before it.
-    Raises StoreError if no step remains.
+    Raises StoreError if no step remains, or if a history entry of this step or of a later step is damaged.
     """
     last = {log: _last_step(connection, log, None) or 0 for log in HISTORY_TABLES}
     order = {log: step if isinstance(step, int) else MAX_STEP_NUMBER for log, step in last.items()}
@@ -132,7 +133,9 @@ def undo_given_step(
 ) -> tuple[OffsetChange, ...]:
     """Undo the step ``step`` and no other step, and return the resulting changes.
 
-    Raises StoreError if a later step has changed the row, or if another row of the step has changed since.
+    Raises StoreError if ``step`` is not the latest step that can be undone for the row ``number``, or for
+    the table if ``number`` is None. Also raises StoreError if a row of the step has changed since, if the
+    history is damaged, or if the table would have two master tools or a cutting edge without its tool.
     """
     rows, now = (
         find_undoable_changes(connection, kind, number),

@@ -44,7 +44,7 @@ class SpindlePredictor:
         self.speed_rev_per_s = (revolutions - seen[0][1]) / since if since > 0.0 else 0.0
 
     def predict_revolutions(self, time_s: float) -> float:
-        """Return the predicted revolutions at ``t``."""
+        """Return the predicted revolutions at ``time_s``."""
         if not self._seen:
             return 0.0
         then, turns = self._seen[-1]
@@ -111,7 +111,7 @@ class SetpointPlayer:
         )
 
     def brake_to_rest(self, time_s: float, deceleration: Sequence[float]) -> list[MotionPiece]:
-        """Brake straight to rest from ``t`` on, and return the pieces of the deceleration.
+        """Brake straight to rest from ``time_s`` on, and return the pieces of the deceleration.
 
         No pieces are returned at rest.
         """
@@ -136,7 +136,7 @@ class SetpointPlayer:
         return self.queue.get_end_time(time_s) if self.is_cam_inactive else INFINITY
 
     def get_motion_at(self, time_s: float) -> MotionState:
-        """Return the position and velocity at ``t``, predicted if a cam is active."""
+        """Return the position and velocity at ``time_s``, predicted if a cam is active."""
         if self.cam is None or (self.cam_end_time_s is not None and time_s >= self.cam_end_time_s):
             return self.queue.get_commanded_state(time_s)
         p, per_turn = self.cam.path_queue.get_commanded_state(self._cam_turns(self.cam, time_s))
@@ -144,7 +144,7 @@ class SetpointPlayer:
         return p, tuple([v * speed for v in per_turn])
 
     def get_row_at(self, time_s: float) -> SetpointRow:
-        """Return the row for HAL at ``t``.
+        """Return the row for HAL at ``time_s``.
 
         The row contains the position and the travel per revolution of each axis in sequence.
         """

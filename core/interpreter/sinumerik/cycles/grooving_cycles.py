@@ -304,7 +304,7 @@ def _feeds(cycle: CycleCall) -> tuple[float, float]:
 def _speed(cycle: CycleCall, initial_modal: ModalState) -> ModalState:
     """Return the modal state with the speed that applies down to _DIAG1.
 
-    Raises ProgramError if the spindle is stopped.
+    Raises ProgramError if the spindle is stopped, or if _SV1, _SV2 or _SDAC is invalid.
     """
     value, most = cycle.read_number("_SV1"), cycle.read_number("_SV2")
     direction = cycle.read_whole_number("_SDAC", 0, 0, 4)

@@ -52,7 +52,11 @@ def check_lead_nonzero(cycle: CycleCall, lead: float, name: str) -> None:
 
 
 def _read_lead(cycle: CycleCall) -> float:
-    """Return the lead from PIT or MPIT in mm. Raises ProgramError if the lead is not defined."""
+    """Return the lead from PIT or MPIT in mm.
+
+    Raises ProgramError if the lead is not defined or is negative, if PIT and MPIT do not match, or if
+    CYCLE99 uses a parameter that is not supported.
+    """
     for name in ("_PIT1", "_GST", "_MID", "_FDEP"):
         if cycle.line.called_name == "CYCLE99":
             cycle.check_zero(name, "CYCLE99 supports only the functions of CYCLE97")
@@ -127,7 +131,7 @@ def _kind(cycle: CycleCall) -> int:
 def _starts(cycle: CycleCall) -> tuple[float, int]:
     """Return the start angle of the first thread in degrees, and the number of starts.
 
-    Raises ProgramError for an invalid angle.
+    Raises ProgramError for an invalid angle or number of starts.
     """
     starts = (
         cycle.read_whole_number("NUMTH" if cycle.line.called_name == "CYCLE99" else "NUMT", 0, 0, 100) or 1
@@ -189,7 +193,11 @@ def _passes(cycle: CycleCall, kind: int) -> list[tuple[float, float]]:
 
 
 def _start_delays(cycle: CycleCall, leads: list[float]) -> list[float]:
-    """Return the delay along Z of each thread start, in mm. Raises ProgramError for invalid parameters."""
+    """Return the delay along Z of each thread start, in mm.
+
+    Raises ProgramError for invalid parameters, and if the spindle is stopped, is under G96, or is too fast
+    for one of the leads.
+    """
     first, starts = _starts(cycle)
     for lead in leads:
         check_thread_spindle(cycle.state, cycle.statement, lead)

@@ -175,9 +175,9 @@ _UNSUPPORTED_HINT = "program the undercut block by block"
 def run_undercut(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE940, which cuts an undercut.
 
-    Forms E and F are cut in one pass, and forms A and B are cut in passes of _MID. The first seven
-    parameters and the order of all parameters follow the manufacturer's programming manual. Raises
-    ProgramError before the first block.
+    Forms E and F are cut in one pass. Forms A and B are roughed in passes of at most _MID, finished, or
+    both, as _VARI specifies. The first seven parameters and the order of all parameters follow the
+    manufacturer's programming manual. Raises ProgramError before the first block.
     """
     form = cycle.read_text("FORM")
     text = "{name} is {form}, which is not supported"
@@ -257,7 +257,8 @@ def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, 
     """Return the sign of X away from the part, and the sign of Z away from the shoulder.
 
     ``position_number`` (1 to 4) determines the signs, or the tip quadrant if it is 0. Raises ProgramError
-    if no tool is active or its quadrant is invalid.
+    if no tool with an offset is active. Also raises ProgramError if the tip quadrant is not from 1 to 4,
+    unless ``position_number`` determines the signs and the nose radius is 0.
     """
     state = cycle.state
     text = "{call} needs an active tool with an offset."

@@ -193,7 +193,7 @@ def _execute_for(
 ) -> bool:
     """Set the variable of FOR, and return whether its value does not exceed the end value.
 
-    Raises ProgramError if the variable is not defined.
+    Raises ProgramError if the variable is not defined or the end value cannot be evaluated.
     """
     if not state.variables.set_value(begin.identifier, value):
         text = Message("the name {jump} is not defined with DEF.", jump=begin.identifier)

@@ -109,9 +109,11 @@ class _ArgumentTransfer:
         self.references: list[tuple[str, str]] = []
 
     def pass_value(self, parameter: ProcParameter, argument: CallArgument) -> None:
-        """Set a parameter to a number or a string; an omitted argument is 0 or an empty string.
+        """Set a parameter to a number or a string.
 
-        Raises ProgramError if the argument does not match the parameter.
+        An omitted argument is the default of the parameter or, without a default, 0 or an empty string. A
+        number for an INT parameter is rounded. A string is accepted for a parameter of any type. Raises
+        ProgramError if a VAR argument is not a variable or an argument cannot be evaluated.
         """
         given = argument if argument.is_specified else parameter.default
         name = parameter.name
@@ -168,7 +170,7 @@ class _ArgumentTransfer:
     def _variable_name(self, parameter: ProcParameter, argument: CallArgument) -> str:
         """Return the name of the caller's variable that receives the value of a VAR parameter.
 
-        Raises ProgramError if the argument is not a variable.
+        Raises ProgramError if the argument is not a variable or its index is invalid.
         """
         state, line, formula = self._state, self._line, argument.formula
         if not isinstance(formula, Variable):
@@ -313,7 +315,8 @@ class Flow(ControlFlow[_Call]):
     def call_subprogram(self, line: LexedBlock, *, is_modal: bool = False) -> None:
         """Enter the subprogram that the line calls.
 
-        Raises ProgramError if the subprogram does not exist or calls are nested too deeply.
+        Raises ProgramError if the subprogram does not exist, if calls are nested too deeply, or if the
+        arguments do not match the parameters.
         """
         routine = self._known.get(line.called_name)
         if routine is None:
@@ -345,7 +348,10 @@ class Flow(ControlFlow[_Call]):
     def execute_control_line(
         self, line: LexedBlock, control_statement: ControlStatement, state: State
     ) -> None:
-        """Execute a line with a control statement. Raises ProgramError for an invalid statement."""
+        """Execute a line with a control statement.
+
+        Raises ProgramError for an invalid statement, and for a jump that repeats forever.
+        """
         if control_statement.keyword in _REPEAT_KEYWORDS and control_statement.target:
             self._begin_repeat(line, control_statement, state)
             return

@@ -14,7 +14,11 @@ from core.message import Message
 
 
 def set_parameters(state: State, statement: Statement) -> None:
-    """Set the R parameters and variables of a block. Raises ProgramError for an undefined name."""
+    """Set the R parameters and variables of a block.
+
+    Raises ProgramError for an undefined name, an invalid index, an array that is too short, and a value
+    that cannot be evaluated.
+    """
     for word in statement.assignments:
         name = _variable_name(state, statement, word)
         if word.values is not None:
@@ -37,7 +41,7 @@ def _no_place(state: State, statement: Statement, word: Word, name: str) -> Prog
 def _execute_set(state: State, statement: Statement, word: Word, name: str) -> None:
     """Execute SET or REP, starting at an element of an array.
 
-    Raises ProgramError if the array is too short.
+    Raises ProgramError if the array element does not exist or the array is too short.
     """
     letters = "R" if word.name == "R0" else word.name
     if name not in state.variables.variable_scope.numbers and letters != "R":

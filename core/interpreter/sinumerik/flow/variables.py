@@ -62,7 +62,8 @@ class Variables:
     ) -> float:
         """Return the value of an R parameter or a variable.
 
-        Raises the error that ``make_error`` returns if the value is missing.
+        Raises the error that ``make_error`` returns if the value is missing, if an index is invalid, or if
+        the parameter is a system variable that TurnDesk cannot read.
         """
         if parameter.letters.startswith("$"):
             text = Message(
@@ -164,7 +165,8 @@ def format_variable_name(
 ) -> str:
     """Return the name of a variable or element, such as R7, LENGTH or TABLE[2].
 
-    Raises the error that ``make_error`` returns if an index is negative or not a whole number.
+    Raises the error that ``make_error`` returns if an index is negative or not a whole number, or if an R
+    parameter has more than one index.
     """
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"

@@ -17,7 +17,8 @@ _AXES = frozenset({"X", "Z", "X1", "Z1"})
 def make_home_move(state: State, statement: Statement) -> Block:
     """Return the rapid of G74 that moves the named axes (X1=0 Z1=0) to home.
 
-    Raises ProgramError for other words and for values other than 0.
+    Raises ProgramError for other words, for values other than 0, for a block without axes, and while G41 or
+    G42 is active.
     """
     named = _axis_words(state, statement, _AXES)
     for word in named:
@@ -32,8 +33,9 @@ def make_home_move(state: State, statement: Statement) -> Block:
 def make_fixed_point_move(state: State, statement: Statement) -> Block:
     """Return the rapid of G75 that moves the named axes to a fixed point (FP=1 to 4).
 
-    The values of the axis words have no effect. The machine file defines the points in machine coordinates.
-    Raises ProgramError if a point is not defined.
+    Without FP, the axes move to point 1. The values of the axis words have no effect. The machine file
+    defines the points in machine coordinates. Raises ProgramError if a point is not defined, for other
+    words, for a block without axes, and while G41 or G42 is active.
     """
     named = _axis_words(state, statement, _AXES | {"FP"})
     number = _number(state, statement)
@@ -50,7 +52,10 @@ def make_fixed_point_move(state: State, statement: Statement) -> Block:
 
 
 def _axis_words(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
-    """Return the axis words of the block. Raises ProgramError if the block contains other words."""
+    """Return the axis words of the block.
+
+    Raises ProgramError if the block contains other words or no axis word, and while G41 or G42 is active.
+    """
     word = statement.g_words[NON_MODAL_GROUP]
     named = [each for name, each in statement.words.items() if name in _AXES]
     others = statement.words.keys() - words or statement.m_words or statement.assignments

@@ -29,8 +29,9 @@ MIN_PATH_MM = 1e-6
 class AxisTravel(NamedTuple):
     """The start and end of a move in machine coordinates.
 
-    Positions are in mm with X as a radius, and C is in continuous degrees. ``offset_x``, ``offset_z``,
-    ``modal`` and ``frame`` are those of the block. Under G53, only the offset of the cutting edge applies.
+    Positions are in mm with X as a radius. C is in continuous degrees, or in mm for a linear third axis.
+    ``offset_x``, ``offset_z``, ``modal`` and ``frame`` are those of the block. Under G53, only the offset
+    of the cutting edge applies.
     """
 
     x0: float
@@ -51,7 +52,7 @@ class AxisTravel(NamedTuple):
 
     @property
     def c_travel_deg(self) -> float:
-        """Return the signed travel of C in degrees."""
+        """Return the signed travel of C in degrees, or in mm for a linear third axis."""
         return self.c - self.c0
 
     @property
@@ -75,7 +76,10 @@ class AxisTravel(NamedTuple):
 
 
 def compute_travel(state: State, statement: Statement) -> AxisTravel:
-    """Return the travel of a block. Raises ProgramError if a word is invalid."""
+    """Return the travel of a block.
+
+    Raises ProgramError if a word is invalid or the end point is outside the working area.
+    """
     check_c_word(state, statement)
     modal, frame = state.modal, state.programmed_frame
     dx, dz = modal.offset_x, modal.offset_z
@@ -214,7 +218,8 @@ def compute_c_travel(
 ) -> float:
     """Return the signed travel of C from ``start_angle`` to the target of a word.
 
-    Raises ProgramError if the target is not possible.
+    The travel and ``start_angle`` are in degrees, or in mm for a linear third axis. Raises ProgramError if
+    the target is not possible.
     """
     value = state.third(statement, word)
     limits = state.setup.limits
@@ -260,7 +265,10 @@ _HINTS = {
 
 
 def make_straight_block(state: State, statement: Statement) -> Block:
-    """Return the block of a G0 or G1 move. Raises ProgramError if its words are invalid."""
+    """Return the block of a G0 or G1 move.
+
+    Raises ProgramError if its words are invalid or, for G1, if no valid feed is active.
+    """
     for name in sorted(ARC_WORDS & statement.words.keys()):
         raise statement.make_error(
             statement.words[name],

@@ -260,7 +260,8 @@ class _Contour(ContourStage):
     def _path_to_end(self, end: _ContourEnd) -> list[Element]:
         """Return a straight path to the contour, or a path around its end if necessary.
 
-        A path around the end is possible only with KONT. Raises ProgramError if the path cuts the contour.
+        A path around the end is possible only with KONT. Raises ProgramError if the path cuts the contour,
+        or if a path around the end starts closer to the end than the nose radius.
         """
         radius, direct_line = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
         if not radius or not is_gouging(direct_line, end.contour, radius):

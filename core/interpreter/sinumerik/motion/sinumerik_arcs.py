@@ -29,7 +29,11 @@ _TOLERANCE = 0.01  # mm; permitted difference of the radii at both ends
 
 
 def make_arc_block(state: State, statement: Statement) -> Block:
-    """Return the block of an arc. Raises ProgramError if its words do not define an arc."""
+    """Return the block of an arc.
+
+    Raises ProgramError if its words do not define an arc, if G18 is not active, if SCALE has different
+    factors for X and Z, or if no valid feed is active.
+    """
     if state.plane != 18:
         text = "arcs in X and Z need G18."
         raise statement.make_error(

@@ -21,7 +21,8 @@ _LEAD_MOTIONS = frozenset({34, 35})
 def execute_feed_words(state: State, statement: Statement) -> None:
     """Execute the feed type, F, OVR, FRCM and RNDM of a block.
 
-    A change of the feed type deletes F. Raises ProgramError for an invalid value.
+    A change between feed per minute and feed per revolution deletes F. Raises ProgramError for an invalid
+    value.
     """
     per_rev = _PER_REV_BY_CODE.get(statement.get_g_code(FEED_TYPE_GROUP) or 0, state.modal.per_rev)
     if per_rev != state.modal.per_rev:
@@ -60,9 +61,11 @@ def check_block_feed(
 ) -> float:
     """Return the feed of a block from radius ``x0`` to ``x1``.
 
-    The feed is in mm (or degrees) per second or per revolution. A feed per revolution of the live tool is
-    converted to a feed per second, because the live tool has a constant speed. Raises ProgramError with
-    alarm 10860 if no feed is active, or with a TurnDesk code if the spindle has no speed under G95.
+    The feed is in mm (or degrees) per second or per revolution, and includes the factor of OVR. A feed per
+    revolution of the live tool is converted to a feed per second, because the live tool has a constant
+    speed. Raises ProgramError with alarm 10860 if no feed is active. Raises ProgramError with a TurnDesk
+    code if FB is not above 0, if G96 is active without a surface speed, or if the spindle or the live tool
+    that determines a feed per revolution is stopped.
     """
     modal = state.modal
     word = statement.words.get("FB")

@@ -86,7 +86,7 @@ def _growth(state: State, statement: Statement) -> float:
 def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: float) -> tuple[float, float]:
     """Return the mean lead and the lead at the end, in mm/rev.
 
-    Raises ProgramError if the lead decreases to 0.
+    Raises ProgramError if the lead decreases below 0.01 mm.
     """
     thread_length_mm = abs(travel.z - travel.z0)
     if not growth:

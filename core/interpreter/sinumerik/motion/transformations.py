@@ -110,7 +110,7 @@ def _frame(state: State, statement: Statement, word: Word) -> FacePlane | SidePl
     """Return the frame of the transformation for the current side of the tool.
 
     The frame is relative to the spindle axis. Raises ProgramError if the word selects groove walls or a
-    data set other than the first.
+    data set other than the first, or if TRACYL has no diameter above 0.
     """
     refuse = partial(statement.make_error, word)
     values = [

@@ -280,7 +280,10 @@ class ActiveTransformation:
         return made
 
     def _set_allowance(self, statement: Statement, word: Word) -> None:
-        """Set OFFN, the allowance of the contour. Raises ProgramError if a contour is active."""
+        """Set OFFN, the allowance of the contour.
+
+        Raises ProgramError if a contour is active, and for a value other than 0 in TRACYL.
+        """
         value = self._state.length(statement, word)
         if self._compensation.has_open_contour or (value and not self.has_z_depth):
             text = Message("{word} cannot change a contour that is not finished yet.", word=word.text)

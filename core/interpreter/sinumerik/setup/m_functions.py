@@ -30,7 +30,8 @@ def check_m_functions(
 
     Machine-builder functions that this machine lacks are added to ``missing_functions``. The original
     control passes an unknown code to the builder's PLC without an alarm. Raises ProgramError for a code
-    that the machine file does not enable.
+    that the machine file disables, for M98 and M99 of the ISO dialect, and for a code that opens the chuck
+    while the spindle turns.
     """
     limits = state.setup.limits
     for code, word in statement.m_words.items():
@@ -54,7 +55,11 @@ def check_m_functions(
 
 
 def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: bool) -> None:
-    """Raise ProgramError if a code opens the chuck while the spindle turns, as for M13 in OmniTurn."""
+    """Raise ProgramError if a code opens the chuck while the spindle turns, as for M13 in OmniTurn.
+
+    The code is allowed if M5 is in the same block, or if the machine file permits unclamping while the
+    spindle turns.
+    """
     turns = state.modal.spindle and 5 not in statement.m_words
     if name == COLLET_OUTPUT and not on and turns and not state.setup.limits.can_unclamp_while_turning:
         text = Message("{word} cannot open the chuck while the spindle turns.", word=word.text)

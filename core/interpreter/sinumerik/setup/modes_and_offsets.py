@@ -85,7 +85,7 @@ def check_c_word(state: State, statement: Statement) -> None:
 
 
 def check_y_word(state: State, statement: Statement) -> None:
-    """Raise ProgramError for a Y word outside TRANSMIT and TRACYL."""
+    """Raise ProgramError for a Y or J word outside TRANSMIT and TRACYL."""
     word = statement.words.get("Y") or statement.words.get("J")
     if word is None or state.transformation is not None:
         return

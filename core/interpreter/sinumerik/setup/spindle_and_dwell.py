@@ -310,7 +310,8 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
 def make_dwell_block(state: State, statement: Statement) -> Block:
     """Return the block of G4 with F in seconds or S in revolutions.
 
-    The active F and S do not change. Raises ProgramError for an invalid time or a stopped spindle.
+    The active F and S do not change. Raises ProgramError for a negative dwell or a dwell longer than 3600
+    s. For a dwell in revolutions, raises ProgramError if the spindle is stopped or is not controlled.
     """
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)
@@ -333,7 +334,7 @@ def make_dwell_block(state: State, statement: Statement) -> Block:
 def _turning(state: State, statement: Statement, word: Word) -> float:
     """Return the spindle speed in rpm for a dwell in revolutions.
 
-    Raises ProgramError if the spindle is stopped.
+    Raises ProgramError if the spindle is stopped, or if the machine has no controlled spindle.
     """
     _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
@@ -350,7 +351,7 @@ _TURNS = frozenset({3, 4, 5})
 def separate_live_tool_words(state: State, statement: Statement) -> None:
     """Move the words of the live tool to ``statement.live_tool_words``.
 
-    Raises ProgramError if the machine has no live tool.
+    Raises ProgramError if the block contains words of spindle 2 and the machine has no live tool.
     """
     for word in statement.live_tool_words:
         _demand(state, statement, word)

@@ -30,7 +30,9 @@ WRONG_EDGE_NUMBER = 17180
 def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
     """Yield the blocks of T and D.
 
-    T selects the tool with D1, and D0 cancels the offset. Raises ProgramError for an unknown tool or edge.
+    T without D selects the tool with D1, and D0 cancels the offset. Raises ProgramError for an invalid tool
+    number, for an invalid edge or an edge that the tool does not have, for D1 to D9 without an active tool,
+    and while G41 or G42 is active. A tool without an offset only causes a warning.
     """
     tool, edge = statement.words.get("T"), statement.words.get("D")
     if tool is None and edge is None:
@@ -100,7 +102,11 @@ def _activate_edge(state: State, statement: Statement, number: int, edge: int, u
 
 
 def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> ToolOffset:
-    """Return the offset of a cutting edge. Raises ProgramError if the tool does not have this edge."""
+    """Return the offset of a cutting edge.
+
+    Raises ProgramError if the tool has offsets but not for this edge. If the tool has no offset, a warning
+    is logged, and the offset is 0.
+    """
     tools = state.setup.tools
     if key not in tools and get_tool_number(key) in tools:
         name, word = format_edge_name(key), statement.words.get("D")
