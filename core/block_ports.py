@@ -1,4 +1,4 @@
-"""Interface of a controller with its own planner, and the block operations that it executes."""
+"""Interface of a motion controller with its own planner, and the operations that it executes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 
 class RapidOperation(NamedTuple):
-    """A straight rapid move to ``x z`` as fast as the active rapid rate allows."""
+    """A straight rapid move to ``x z``, at the active rapid rate."""
 
     x: float
     z: float
@@ -14,7 +14,7 @@ class RapidOperation(NamedTuple):
 
 
 class LineOperation(NamedTuple):
-    """A straight move to ``x z`` at a feed."""
+    """A straight move to ``x z`` at a feed rate."""
 
     x: float
     z: float
@@ -38,7 +38,7 @@ class ArcOperation(NamedTuple):
 
 
 class ThreadOperation(NamedTuple):
-    """One thread pass from ``start_x start_z`` to ``x z``, synchronized with the spindle's index pulse.
+    """One threading pass from ``start_x start_z`` to ``x z``, synchronized with the spindle index.
 
     ``lead_mm`` is the travel along Z per revolution, in millimeters.
     """
@@ -56,8 +56,8 @@ BlockOperation = RapidOperation | LineOperation | ArcOperation | ThreadOperation
 class BlockState(NamedTuple):
     """The state of a block controller and its block queue at one instant.
 
-    ``start_refusal`` is the reason why no motion can start, such as modes that are still being verified, or
-    an empty string if motion can start.
+    ``start_refusal`` is the reason why no motion can start, for example because modes are still being
+    verified. It is empty if motion can start.
     """
 
     last_done_ticket: int  # every ticket up to this one has been moved to its end
@@ -68,12 +68,12 @@ class BlockState(NamedTuple):
 
 
 class BlockController(Protocol):
-    """A motion controller with its own planner. None of its functions wait.
+    """A motion controller with its own planner.
 
-    ``capabilities`` contains the supported names from ``core.interpreter.shared.machine_requirements``. A
-    program that needs an unsupported function is rejected before the start. ``max_lead_s`` is the maximum
-    time of motion, in seconds, that may be queued after the active block. The controller continues this
-    motion on its own if it loses the host.
+    No method waits. ``capabilities`` contains the supported functions, as names from
+    ``core.interpreter.shared.machine_requirements``. A program that needs any other function is rejected
+    before it starts. ``max_lead_s`` is the longest motion in seconds that may be queued after the active
+    block. If the connection to TurnDesk is lost, the controller still executes this motion.
     """
 
     max_lead_s: float
@@ -82,11 +82,10 @@ class BlockController(Protocol):
     )
 
     def prepare_css(self, max_rpm: float) -> None:
-        """Announce the highest rpm that constant surface speed may require.
+        """Announce the highest spindle speed in rpm that constant surface speed (CSS) may require.
 
-        ``max_rpm`` is 0 for a constant spindle speed. Otherwise the spindle speed follows the radius up to
-        ``max_rpm``. The method is called before each speed command, so that a driver with speed ranges can
-        select the range.
+        The driver can then select a speed range. ``max_rpm`` is 0 if the spindle speed is constant. This
+        method is called before each speed command.
         """
         ...
 
@@ -103,7 +102,7 @@ class BlockController(Protocol):
         ...
 
     def submit_block(self, block: BlockOperation) -> int | None:
-        """Submit a block; return its ticket, or None if the controller cannot accept a block now.
+        """Submit a block; return its ticket number, or None if the block queue cannot accept it now.
 
         Raises DriverError if the driver fails.
         """
@@ -114,15 +113,15 @@ class BlockController(Protocol):
         ...
 
     def hold_on_path(self) -> None:
-        """Stop on the path, but finish a thread pass first."""
+        """Stop on the path (feed hold). A threading pass is completed first."""
         ...
 
     def resume(self) -> None:
-        """Resume motion after a hold. This function never starts the spindle."""
+        """Resume motion after a feed hold. This method never starts the spindle."""
         ...
 
     def abort_blocks(self) -> None:
-        """Stop and discard all blocks; ``state().is_at_rest`` is True when this is complete."""
+        """Stop motion and discard all blocks; ``state().is_at_rest`` becomes True afterwards."""
         ...
 
     def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
@@ -135,14 +134,17 @@ class BlockController(Protocol):
     def start_jog(
         self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
     ) -> bool:
-        """Start a jog or renew its lease; return False if no travel remains before ``limits``.
+        """Start a jog or renew its lease; return False if no travel remains within ``limits``.
 
         No motion is queued beyond the end of the lease. Raises DriverError if the driver fails.
         """
         ...
 
     def move_by_step(self, axis: str, target: float, speed: float) -> None:
-        """Move an axis to ``target`` in one step from rest to rest. Raises DriverError if this fails."""
+        """Move an axis to ``target``, starting and ending at rest.
+
+        Raises DriverError if the move cannot be started.
+        """
         ...
 
     def stop_jog(self) -> None:

@@ -35,12 +35,12 @@ class ClosingStep(NamedTuple):
 
 
 def close_in_order(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
-    """Run the steps one after another; return the names of the steps that failed or did not end."""
+    """Run the steps one after another; return the names of the steps that failed or timed out."""
     return [step.name for step in steps if not _RunningStep(step).wait_for_success(step.timeout_s, wait)]
 
 
 def close_together(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
-    """Run all steps at the same time; return the names of the steps that failed or did not end.
+    """Run all steps at the same time; return the names of the steps that failed or timed out.
 
     If several steps hang, the total wait is the longest time limit, not the sum of the limits.
     """

@@ -61,10 +61,10 @@ FaultCode = Literal[
 
 
 class Fault(str):
-    """An active fault: its message and its alarm code. An empty string means that there is no fault.
+    """An active fault: a message with an alarm code. An empty string means that there is no fault.
 
-    Because a fault is a string, a driver without details can return ``""``, and a driver with several
-    possible faults can return the first one with ``a or b``.
+    Because a fault is a string, a driver without faults can return ``""``, and a driver with several
+    possible faults can return the first active one with ``a or b``.
     """
 
     __slots__ = ("code",)
@@ -90,12 +90,13 @@ def get_fault_code(fault: str, default: FaultCode) -> FaultCode:
 
 
 class DriverError(CodedError):
-    """An error that a driver raises when it cannot perform a requested operation.
+    """An error raised by a driver that cannot perform a requested operation.
 
-    The text states the fault, the device and a remedy. ``values`` fill the fields of the text, as in
-    ``Message``. ``code`` is the code of the alarm that results if the error is not handled. If ``text`` is
-    a ``Fault``, its code is used. ``reason`` distinguishes causes with the same code, in lower case with
-    hyphens; it is empty if the code is sufficient.
+    - The text states the fault, the device and a remedy; ``values`` fill its fields, as in ``Message``.
+    - ``code`` is the code of the alarm that an unhandled error causes. If ``text`` is a ``Fault``,
+      the code of the fault is used.
+    - ``reason`` distinguishes causes with the same code, in lower case with hyphens. It is empty if
+      the code is sufficient.
     """
 
     def __init__(
@@ -112,9 +113,9 @@ class DriverError(CodedError):
 
 
 class TrippedError(DriverError):
-    """An error raised because the driver host has tripped and rejects commands.
+    """An error raised by a tripped driver host, which rejects commands.
 
-    The driver host has switched something off and rejects commands until the trip is acknowledged. See
+    The driver host has switched something off. It rejects commands until the trip is acknowledged. See
     ``TrippingDriverHost``.
     """
 
@@ -125,9 +126,9 @@ class TrippedError(DriverError):
 class DriverHostTrip(NamedTuple):
     """A shutdown by the driver host because it received no messages from the control.
 
-    ``silence_s`` is the time without messages, in seconds. ``spindle`` is True if the spindle was commanded
-    to turn. ``active_outputs`` are the outputs that were on. If ``was_connection_lost`` is True, the driver
-    host had lost contact with the machine instead, and these functions remained on.
+    ``silence_s`` is the time without messages in seconds. ``spindle`` is True if the spindle was commanded
+    to run. ``active_outputs`` are the outputs that were on. If ``was_connection_lost`` is True, the driver
+    host had lost its connection to the machine, so it could not switch off the spindle and the outputs.
     """
 
     trip_number: int
@@ -138,14 +139,14 @@ class DriverHostTrip(NamedTuple):
 
 
 class TrippingDriverHost(Protocol):
-    """A driver host that stops the spindle and switches off the outputs when the control is silent.
+    """A driver host that stops the spindle and switches off the outputs if control messages stop.
 
-    The driver host then raises TrippedError for setpoints and for commands that switch on a function, until
-    the control acknowledges the trip.
+    It then raises TrippedError for setpoints and for commands that switch something on, until the control
+    acknowledges the trip.
     """
 
     def get_active_trip(self) -> DriverHostTrip | None:
-        """Return the trip that has not been acknowledged, or None."""
+        """Return the trip that has not been acknowledged yet, or None if there is no such trip."""
         ...
 
     def acknowledge_trip(self, trip: DriverHostTrip) -> None:
@@ -154,7 +155,7 @@ class TrippingDriverHost(Protocol):
 
 
 class UnknownPart(StrEnum):
-    """Parts of the machine whose state is unknown because their connection is lost or silent."""
+    """Part of the machine whose state is unknown because its connection is lost or silent."""
 
     AXES = "slides"
     SPINDLE = "spindle"

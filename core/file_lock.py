@@ -23,7 +23,7 @@ _BESIDE = ("-journal", "-wal", "-shm")  # files that SQLite creates for a copy o
 
 
 def lock_file(file: int) -> None:
-    """Lock the file without waiting; the lock lasts as long as the file is open.
+    """Lock an open file without waiting, until the file is closed.
 
     Raises OSError if the file is locked through another open file, in this process or another, or if the
     file system does not support locks. On systems without file locks the function does nothing.

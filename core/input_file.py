@@ -27,13 +27,13 @@ class NotAFileError(OSError):
 
 
 class TooLargeError(OSError):
-    """An error raised if the file is larger than the limit for its kind."""
+    """An error raised if an input file is larger than the limit for its kind of file."""
 
 
 def open_input_file(path: Path, max_bytes: int | None = None) -> BufferedReader:
-    """Open a regular file of at most ``max_bytes`` bytes without blocking.
+    """Open a regular file without blocking, if it has at most ``max_bytes`` bytes.
 
-    If ``max_bytes`` is None, any size is permitted, for callers that read only part of the file. Raises
+    If ``max_bytes`` is None, the size is not limited, for callers that read only part of the file. Raises
     only OSError.
     """
     try:
@@ -92,7 +92,7 @@ def convert_exceptions(make_error: Callable[[Exception], Exception]) -> Iterator
 
 
 def parse_toml(text: str) -> dict[str, object]:
-    """Return the tables of a TOML text.
+    """Parse a TOML text and return its tables.
 
     Raises only ValueError, with the cause and, if known, the location.
     """

@@ -1,4 +1,4 @@
-"""Declarations of the keys in machine-readable output, for the reference page and its tests."""
+"""Declarations of the keys in TurnDesk's JSON output, for the reference page and its tests."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def declare_keys(text: str) -> tuple[JsonKey, ...]:
 def declare_row_keys(
     path: str, row_type: type[tuple[object, ...]] | type[object], text: str
 ) -> tuple[JsonKey, ...]:
-    """Return the keys of a row type below ``path``, described by a text table.
+    """Return the keys of a row type, as described by a text table, below the JSON path ``path``.
 
     The lines of ``text`` are ``name | unit | meaning``. Raises ValueError if ``text`` does not have exactly
     the fields of the type in the same order.
@@ -74,7 +74,7 @@ def find_json_type(annotation: object) -> str:
 
 
 def find_keys(value: object, keys: Collection[JsonKey]) -> Iterator[tuple[str, object]]:
-    """Yield the declared path and the value of every key in a JSON value."""
+    """Yield the path and the value of every key in a JSON value, with each path in its declared form."""
     yield from _walk(value, "", _collect_paths(keys))
 
 

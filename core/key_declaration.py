@@ -1,4 +1,4 @@
-"""Declaration of the keys of the machine file on the attributes that store their values."""
+"""Declaration of machine file keys, directly on the attributes that store their values."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class KeyRange(NamedTuple):
 
 
 class _Key(NamedTuple):
-    """A key declared on an attribute of a class that does not exist yet.
+    """A declared key before its class is complete, stored as the attribute's default.
 
     If ``name`` is empty, the key has the name of the attribute.
     """

@@ -177,7 +177,7 @@ class CodedError(Exception):
 def get_error_code(error: BaseException) -> str:
     """Return the code of an error, or an empty string if the error has no code.
 
-    Callers give this code to the error that replaces the original one.
+    A caller that raises another error instead passes this code on.
     """
     return error.code if isinstance(error, CodedError) else ""
 

@@ -26,7 +26,7 @@ ALL_UNKNOWN_PARTS = faults.ALL_UNKNOWN_PARTS
 
 
 class StopMode(StrEnum):
-    """Stop modes: power off at once, brake and power off, or brake and hold position."""
+    """Stop modes of the axes: power off at once, brake and power off, or brake and hold position."""
 
     OFF = "off"
     RAMP_OFF = "ramp-off"
@@ -71,7 +71,7 @@ def is_queue_finished(queue_end: float, now: float) -> bool:
 
 
 class AxisSample(NamedTuple):
-    """State of the axes at one instant; tuples are in the sink's order of axes."""
+    """State of the axes at one instant, with tuples in the axis order of the sink."""
 
     t: float
     demand: tuple[float, ...]
@@ -86,10 +86,14 @@ class AxisSample(NamedTuple):
 class SampleSource(Protocol):
     """Source of the samples that a driver records at its own rate, for the scope.
 
-    The executor reads the samples once per tick. A row is flat: time, demand of each axis, actual position
-    of each axis, load of each axis (percent of what its drive can deliver), spindle speed (rpm), spindle
-    revolutions (counted), spindle load (percent), and remaining time of the queue (s). A value that is not
-    reported is nan. Times increase; while no value changes, rows may be further apart.
+    The executor reads the samples once per tick. Each row contains, in this order:
+
+    - the time, and the demand and actual position of each axis
+    - the load of each axis, in percent of what its drive can deliver
+    - the spindle speed (rpm), the counted spindle revolutions and the spindle load (percent)
+    - the remaining time of the setpoint queue (s)
+
+    Values that are not reported are NaN. Times increase; rows may be further apart while no value changes.
     """
 
     sample_rate_hz: float  # samples a second while something moves
@@ -103,7 +107,7 @@ class SampleSource(Protocol):
 
 
 class AxisSink(Protocol):
-    """Destination of setpoints. Its queue always contains a complete trajectory that ends at rest."""
+    """Destination of axis setpoints, whose queue always contains a complete path that ends at rest."""
 
     axes: tuple[str, ...]
     commit: float  # nothing before now() + commit can be changed any more
@@ -113,7 +117,7 @@ class AxisSink(Protocol):
         ...
 
     def horizon(self) -> float:
-        """Return the end time of the queue; the result is at least now() if motion is queued."""
+        """Return the end time of the setpoint queue, which is not before now() while motion is queued."""
         ...
 
     def splice(self, segments: MotionSegments) -> None:
@@ -144,7 +148,10 @@ class AxisSink(Protocol):
         ...
 
     def stop(self, mode: StopMode) -> None:
-        """Discard the queue and stop in the given mode. Raises DriverError if the driver fails."""
+        """Discard the setpoint queue and stop the axes in the given mode.
+
+        Raises DriverError if the driver fails.
+        """
         ...
 
     def home(self, axis: str) -> None:
@@ -155,7 +162,7 @@ class AxisSink(Protocol):
         ...
 
     def clear_fault(self) -> None:
-        """Request that a fault is cleared, as ``sample`` reports.
+        """Request that the drive fault is cleared; ``sample`` reports whether a fault remains.
 
         Raises DriverError if the fault cannot be cleared or the driver fails.
         """
@@ -178,7 +185,7 @@ class Spindle(Protocol):
         ...
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time and the revolutions since power-up from the encoder, or None without an encoder."""
+        """Return the encoder's time and revolutions since power-up, or None without an encoder."""
         ...
 
     def read_fault(self) -> str:
@@ -192,14 +199,14 @@ class SpindleCAxis(Protocol):
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Request C-axis mode or spindle mode; the position count of C is retained.
 
-        If ``should_orient`` is True, the spindle turns by the shortest path until its count equals its
-        position from the index, apart from whole revolutions. A request for C-axis mode raises DriverError
-        while the spindle turns, has no power or has a fault of the C axis.
+        If ``should_orient`` is True, the spindle turns by the shortest path until its position count, apart
+        from whole revolutions, equals its angle from the index. A request for C-axis mode raises
+        DriverError while the spindle turns, has no power or has a fault of the C axis.
         """
         ...
 
     def is_c_ready(self) -> bool:
-        """Return whether the C axis can move and holds its position."""
+        """Return whether C-axis mode is active, so that C can move and holds its position."""
         ...
 
 
@@ -228,13 +235,13 @@ class OrientingSpindle(Protocol):
 
 
 class Cam(NamedTuple):
-    """Motion as a function of spindle revolutions instead of time.
+    """Electronic cam: motion of the axes as a function of spindle revolutions instead of time.
 
     ``segments.start_times_s`` and ``segments.durations_s`` are revolutions from the encoder count
-    ``start_revolutions`` on, in the direction ``sign`` in which the spindle turns. ``segments.velocities``
-    and ``segments.accelerations`` are per revolution. The axes are at rest before the start and after the
-    end of the cam. ``following_segments`` continue from that end as a function of time; their
-    ``start_times_s`` are seconds from there.
+    ``start_revolutions`` on, in the direction ``sign`` of the spindle. ``segments.velocities`` and
+    ``segments.accelerations`` are per revolution. The axes are at rest before the start and after the end
+    of the cam. ``following_segments`` continue from that end as a function of time; their ``start_times_s``
+    are seconds from there.
     """
 
     start_revolutions: float
@@ -244,10 +251,11 @@ class Cam(NamedTuple):
 
 
 class GearState(NamedTuple):
-    """Position of a driver on its cam, in revolutions from ``start_revolutions``.
+    """State of an electronic gear: the position on its cam, the lag of the axes, and the spindle speed.
 
-    ``lag_revolutions`` is the number of revolutions by which the axes lag the spindle. ``speed`` is the
-    spindle speed from the encoder in revolutions per second, positive in the direction of the cam.
+    The position is in revolutions from ``start_revolutions``. ``lag_revolutions`` is the number of
+    revolutions by which the axes lag the spindle. ``speed`` is the spindle speed from the encoder in
+    revolutions per second, positive in the direction of the cam.
     """
 
     revolutions: float
@@ -264,16 +272,20 @@ class SpindleGear(Protocol):
     """
 
     def mesh(self, cam: Cam) -> None:
-        """Make the axes follow the spindle with a cam.
+        """Make the axes follow the spindle with a cam, or replace the rest of an active cam.
 
-        If a cam is already active, the call replaces all of it from ``cam.segments.start_times_s[0]`` on.
-        Raises DriverError unless the cam starts at or after the position that the spindle will reach within
-        the sink's commit time, continues the remaining motion, and ends at rest. Also raises DriverError if
-        the drives have no power, if the spindle does not turn in the direction of the cam, if the axes are
-        not at rest before a first cam, or if the cam exceeds the limits of an axis. The sink's
-        ``demand_at`` and ``horizon`` then predict from the current speed, up to the end of the cam. Its
-        ``splice`` releases a gear that has not moved an axis yet and is rejected otherwise. Its ``stop``
-        brakes from the current position of the axes.
+        The replacement starts at ``cam.segments.start_times_s[0]``. Raises DriverError unless the cam
+        starts at or after the position that the spindle will reach within the sink's commit time, continues
+        the remaining motion, and ends at rest. Also raises DriverError if:
+
+        - the drives have no power
+        - the spindle does not turn in the direction of the cam
+        - the axes are not at rest before a first cam
+        - the cam exceeds the limits of an axis
+
+        The sink's ``demand_at`` and ``horizon`` then predict from the current speed, up to the end of the
+        cam. Its ``splice`` releases a gear that has not moved an axis yet and is rejected otherwise. Its
+        ``stop`` brakes from the current position of the axes.
         """
         ...
 
@@ -290,7 +302,7 @@ class DigitalIO(Protocol):
         ...
 
     def get_outputs(self) -> Mapping[str, bool]:
-        """Return the current state of all outputs, whether the control or another device switched them.
+        """Return the current state of all outputs, even if a device other than the control switched them.
 
         An output whose state is not reported to the driver has the last written state.
         """
@@ -341,10 +353,10 @@ PROBE_INPUT = "probe"  # the input of a touch probe or tool setter, on while it 
 
 
 class TouchLatch(NamedTuple):
-    """Position of the axes at the instant when the input ``probe`` turned on.
+    """Latched position of the axes at the instant when the input ``probe`` turned on.
 
-    ``axis_positions`` are encoder positions in the sink's order of axes. ``max_delay_s`` is the maximum
-    delay of the reading in seconds. The true position of an axis at speed v may therefore be up to v ×
+    ``axis_positions`` are encoder positions in the axis order of the sink. ``max_delay_s`` is the maximum
+    delay of the reading in seconds. At axis speed v, the true touch position may therefore be up to v ×
     ``max_delay_s`` before the recorded position.
     """
 
@@ -354,9 +366,9 @@ class TouchLatch(NamedTuple):
 
 
 class TouchInput(Protocol):
-    """A driver that latches the position of a touch at its own rate.
+    """A driver input that latches the axis positions at a probe touch, at the driver's own rate.
 
-    Without such a driver, the executor reads the position once per tick.
+    Without such an input, the executor reads the positions once per tick.
     """
 
     def arm_latch(self) -> None:
@@ -376,7 +388,10 @@ class WakeupSignal(Protocol):
     """
 
     def is_settled(self) -> bool:
-        """Return whether the driver now announces every change with a wakeup. Called at rest only."""
+        """Return whether the driver announces every further change with a wakeup.
+
+        The executor calls this function only while the machine is at rest.
+        """
         ...
 
     def request_poll(self) -> None:

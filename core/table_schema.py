@@ -274,7 +274,7 @@ def _is_words(raw: object) -> bool:
 
 
 def _parts(raw: object) -> list[float]:
-    """Return the numbers in a value; integers too large for a float become infinite."""
+    """Return the numbers in a raw value; integers that are too large for a float become infinite."""
     numbers = [part for part in (raw if isinstance(raw, list) else [raw]) if _number(part)]
     return [float(part) if abs(part) < _HUGE else inf for part in numbers]
 
@@ -324,7 +324,7 @@ def _expected(field: KeyField, inch: bool | None) -> str:
 
 
 def find_raw_value(data: object, path: str) -> object:
-    """Return the value at a path of a parsed file, or None."""
+    """Return the unprocessed value at a path of a parsed file, or None if the path does not exist."""
     for key in path.split("."):
         data = data.get(key) if isinstance(data, dict) else None
     return data
@@ -379,12 +379,13 @@ def _no_others(_file: MachineFileReading) -> Mapping[str, object]:
 class DriverTable:
     """A table of the machine file that belongs to a driver, with its keys, rules and dataclass.
 
-    ``child_tables`` are the names of inner tables that ``read_children`` reads; this function returns their
-    findings. If there are no findings, ``read_other_values`` returns the attributes of the dataclass that
-    are not keys. ``check_rules`` checks every file, including a file without this table. If
-    ``is_always_read`` is True, a missing table gets its default values. ``serial_port_key`` is the key that
-    names a serial port. ``purpose`` is the text of the reference page, and ``sub_tables`` are the tables
-    inside this table.
+    - ``child_tables`` are the names of inner tables, which ``read_children`` reads and checks.
+    - ``read_other_values`` returns the attributes of the dataclass that are not keys. It is called if
+      there are no findings.
+    - ``check_rules`` checks every file, including a file without this table.
+    - ``is_always_read`` means that a missing table gets its default values.
+    - ``serial_port_key`` is the key that names a serial port.
+    - ``purpose`` is the text of the reference page, and ``sub_tables`` are the tables inside this table.
     """
 
     path: str
@@ -408,12 +409,14 @@ class DriverTable:
 class DriverDeclaration:
     """A driver as described in the machine file.
 
-    ``backend_name`` and ``spindle`` are the driver's names in machine.backend and spindle.driver.
-    ``backend_name`` is empty for a driver that is used in addition to a backend. ``can_orient_spindle`` is
-    True if the spindle can stop at an angle. ``max_count_rate`` is the highest rate in counts per second
-    that the driver accepts for an axis. ``normalize_terminal`` returns equal values for equivalent
-    addresses, and None for an address of another driver. ``inputs`` yields the possible input addresses in
-    order. ``address_prefix`` is the prefix of addresses on the driver's device outside the backend.
+    - ``backend_name`` and ``spindle`` are the driver's names in machine.backend and spindle.driver.
+      ``backend_name`` is empty for a driver that is used in addition to a backend.
+    - ``can_orient_spindle`` means that the spindle can stop at an angle.
+    - ``max_count_rate`` is the highest rate in counts per second that the driver accepts for an axis.
+    - ``normalize_terminal`` returns equal values for equivalent addresses, and None for an address of
+      another driver.
+    - ``inputs`` yields the possible input addresses in order.
+    - ``address_prefix`` is the prefix of addresses on the driver's device outside the backend.
     """
 
     tables: tuple[DriverTable, ...]

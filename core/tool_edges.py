@@ -43,7 +43,7 @@ class NamedTool(int):
 
 
 def _like(key: int, number: int) -> int:
-    """Return ``number`` as a ``NamedTool`` with the tool name of ``key``, if ``key`` has a tool name."""
+    """Return ``number`` with the tool name of ``key``, or unchanged if ``key`` has no tool name."""
     return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
 
 

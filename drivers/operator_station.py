@@ -60,7 +60,7 @@ class TwoHandRelay:
         return self._on_from <= now < self._on_until
 
     def will_turn_off(self, now: float) -> bool:
-        """Return whether the output is on and will turn off without another operator action."""
+        """Return whether the output is on and will turn off when its minimum pulse ends."""
         return now < self._on_until < float("inf")
 
 
@@ -130,9 +130,9 @@ _WINDOW, _PULSE = 0.5, 0.1  # Seconds; two-hand relay that the screen replaces.
 
 
 class StationControls:
-    """Operator actions at a panel.
+    """Actions of the operator at a simulated or on-screen station.
 
-    Any thread may call the methods, because they acquire ``lock``, as the reader of the panel does.
+    Any thread may call the methods, because they acquire ``lock``, as the reader of the station does.
     """
 
     def __init__(self, panel: PanelState, lock: AbstractContextManager[object], clock: Clock) -> None:
@@ -232,7 +232,7 @@ class OnScreenStation(StationControls):
         )
 
     def press_estop(self) -> None:
-        """Press the on-screen E-stop, so that the control stops the machine as far as it can.
+        """Press the on-screen E-stop, after which the control stops the machine as far as it can.
 
         The on-screen E-stop is not a safety device.
         """
@@ -309,7 +309,7 @@ def _scaled(pot: PotSettings, fraction: float) -> float:
 
 
 def _posted_action(name: str) -> Callable[..., None]:
-    """Return a method that posts its own name and its arguments, and does not wait for a result."""
+    """Return a method that sends its own name and arguments to another process without waiting."""
 
     def use(self: PostedControls, *values: object) -> None:
         self.post_action(name, *values)

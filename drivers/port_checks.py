@@ -116,7 +116,10 @@ def require_output_allowed(name: str, is_on: bool, problem: str) -> None:
 
 
 class FirstTouchInput:
-    """``core.ports.TouchInput`` that latches the axis positions at the first touch after ``arm_latch``."""
+    """Probe input (``core.ports.TouchInput``) that latches the axis positions at the first touch.
+
+    Calling ``arm_latch`` permits the next latching.
+    """
 
     def __init__(self) -> None:
         self._on = False

@@ -36,10 +36,10 @@ def lower_thread_priority(priority: int) -> None:
 def lock_process_memory(*, only_used: bool = False) -> tuple[str, int]:
     """Lock the current and future memory of the process, and reduce garbage collection.
 
-    With ``only_used``, reserved memory is locked only when it is first used. Return the reason why locking
-    failed, or an empty string, and the limit of locked memory in bytes, or 0 if there is no limit. With a
-    limit, only current memory is locked: if ``MCL_FUTURE`` were used, the first allocation beyond the limit
-    would fail during a cut.
+    Return the reason why locking failed (empty if it succeeded), and the limit of locked memory in bytes (0
+    if there is none). With ``only_used``, reserved memory is locked only when it is first used. With a
+    limit, only current memory is locked: with ``MCL_FUTURE``, the first allocation beyond the limit would
+    fail during a cut.
     """
     gc.collect()
     gc.freeze()

@@ -124,7 +124,7 @@ _REMEDIES = {
 
 
 def why(error: Exception) -> str:
-    """Return the remedy for a serial port error, or the system's error text if no remedy is known."""
+    """Return how to fix a serial port error, or the system's error text if no remedy is known."""
     number = _error_number(error)
     if number is None and error.__context__ is not None:  # The library hides the cause in its own text.
         number = _error_number(error.__context__)

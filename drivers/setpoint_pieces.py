@@ -110,7 +110,7 @@ class PieceQueue:
         """Replace the queue with a straight-line deceleration to rest, and return its end time.
 
         All axes decelerate at the same time. This method is for stops without the host, such as an E-stop
-        or a fault. On a curved path, the axes leave the path by its curvature within the braking distance.
+        or a fault. On a curved path, the axes leave the path because they brake on the tangent.
         """
         return self._brake(now, self.get_commanded_state(now), decelerations)
 

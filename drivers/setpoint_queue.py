@@ -20,7 +20,7 @@ _BATCH_SIZE = 100  # Pieces per step; their conversion takes 0.1 ms.
 
 
 def _do_nothing() -> None:
-    """Do nothing."""
+    """Do nothing; default for a callback that yields the CPU."""
 
 
 def convert_segments(
@@ -114,7 +114,7 @@ _REST_SPEED = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
 
 @dataclass(frozen=True, slots=True)
 class JunctionTolerance:
-    """Permitted jumps of position (mm or degrees) and velocity of each axis where two pieces meet.
+    """Permitted position and velocity jumps of each axis between motion pieces, in mm or degrees.
 
     The position tolerance covers rounding. The velocity tolerance covers a corner: ``amax * interval``.
     """
@@ -173,7 +173,7 @@ class SetpointQueue(PieceQueue):
         self.replace_pieces_from(start, pieces)
 
     def _check_run(self, segments: MotionSegments) -> None:
-        """Raise DriverError if the segments contain a gap or a jump, or do not end at rest."""
+        """Raise DriverError if new segments contain a gap or a jump, or do not end at rest."""
         dt = segments.durations_s[:, None]
         t_end = segments.start_times_s + segments.durations_s
         p_end = segments.positions + (segments.velocities + 0.5 * segments.accelerations * dt) * dt
@@ -217,7 +217,7 @@ class SetpointQueue(PieceQueue):
         old: tuple[tuple[float, ...], tuple[float, ...]],
         new: tuple[tuple[float, ...], tuple[float, ...]],
     ) -> None:
-        """Raise DriverError if the old and new setpoints do not agree at the splice point.
+        """Raise DriverError if the new setpoints do not continue the old ones at the splice point.
 
         Position and velocity must agree within the tolerance.
         """

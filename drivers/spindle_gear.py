@@ -20,7 +20,7 @@ _DECAY_RATE = 250.0
 
 
 class SpindlePhaseFilter:
-    """Filter for spindle angle and speed, without lag at constant speed or constant acceleration.
+    """Filter for spindle angle and speed, which has no lag at constant speed or acceleration.
 
     It is a fading-memory filter of third order (Morrison 1969). With 4096 steps per revolution, read every
     millisecond, the angle error is below 0.02° at 3000 rpm while the speed oscillates by 2 % at 4 Hz.
@@ -79,7 +79,7 @@ class GearAxes(NamedTuple):
 
     @classmethod
     def from_axes(cls, axes: Sequence[AxisProperties], commit_time_s: float) -> GearAxes:
-        """Create the table from the properties of the axes; ``commit_time_s`` is in seconds."""
+        """Create the object from the properties of the axes; ``commit_time_s`` is in seconds."""
         vmax, amax = tuple(axis.vmax for axis in axes), tuple(axis.amax for axis in axes)
         return cls(
             tuple(axis.name for axis in axes), vmax, amax, commit_time_s, JunctionTolerance.from_axes(axes)
@@ -87,7 +87,7 @@ class GearAxes(NamedTuple):
 
 
 class SpeedLimit(NamedTuple):
-    """Limit of the spindle speed between two cam positions in revolutions.
+    """Limit of the spindle speed on a section of the cam, whose ends are in revolutions.
 
     ``speed_squared`` is the square of the permitted speed in rev²/s².
     """
@@ -115,9 +115,9 @@ class SpeedLimits:
         self._onwards = [*reversed([*onwards]), math.inf]
 
     def get_max_speed_squared(self, position_rev: float, braking_rev: float) -> float:
-        """Return the square of the permitted speed at ``position_rev``, in rev²/s².
+        """Return the square of the permitted spindle speed at ``position_rev``, in rev²/s².
 
-        At this speed, the spindle can still slow down to each limit ahead, ``braking_rev`` revolutions
+        At this speed, the spindle can still slow down to each later limit by ``braking_rev`` revolutions
         before that limit begins.
         """
         near = position_rev + braking_rev
@@ -130,7 +130,7 @@ class SpeedLimits:
 
 
 class CamGearing:
-    """Cam and the current position of the axes on this cam.
+    """Cam (a path over spindle revolutions) and the current position of the axes on it.
 
     The object is not thread-safe, so the driver must lock it. The axes start at ``rest_position``. Raises
     DriverError if the spindle does not turn in the direction of the cam, and in the cases that
@@ -183,10 +183,7 @@ class CamGearing:
         return SetpointQueue(self._slides.names, self._standing, 0.0, per_turn)
 
     def is_same_cam(self, cam: Cam) -> bool:
-        """Return whether a cam has the same reference as the current cam.
-
-        The cams must count from the same index pulse and in the same direction.
-        """
+        """Return whether a cam counts from the same index pulse and in the same direction as this cam."""
         return (cam.start_revolutions, cam.sign) == (self._cam.start_revolutions, self._cam.sign)
 
     @property
@@ -206,7 +203,7 @@ class CamGearing:
 
     @property
     def has_moved(self) -> bool:
-        """Return whether an axis has moved since the gear was engaged."""
+        """Return whether an axis has moved since the axes began to follow the spindle."""
         return self._queue.get_commanded_state(self.cam_position_rev)[0] != self._standing
 
     @property
@@ -399,8 +396,8 @@ class GearedQueue(SetpointQueue):
     def splice_segments(self, segments: MotionSegments, now: float) -> None:
         """Splice time-based setpoints into the queue.
 
-        Raises DriverError if an axis that follows the spindle will have moved on the cam by the start time
-        of the setpoints, and in the cases that ``SetpointQueue.splice_segments`` lists.
+        Raises DriverError if an axis will already have moved on a cam when the setpoints start, and in the
+        cases that ``SetpointQueue.splice_segments`` lists.
         """
         gearing = self._gearing
         if (

@@ -26,7 +26,7 @@ _CHUNK = 1 << 16
 
 
 class LocalWakeup:
-    """``core.ports.WakeupSignal`` within one process.
+    """Wake-up signal (``core.ports.WakeupSignal``) within one process.
 
     The driver supplies ``is_settled``, which returns whether the machine state will not change before the
     next wake-up.

@@ -1,1 +1,1 @@
-"""Automatic page. Its model is ``Desk``."""
+"""Page of the screen for running programs automatically. Its model is ``Desk``."""

@@ -1,4 +1,4 @@
-"""Automatic page with the program window, the comment, the path view, and the prompt for a file."""
+"""Automatic page with the program window, comment line, path view and file prompt."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _NO_LINES: tuple[str, ...] = ()
 
 
 class AutomaticPage(Page):
-    """Automatic page. Each part of the page is redrawn only after a change.
+    """Screen page for automatic operation, which redraws a part only after that part changes.
 
     ``Frame`` shows the large readouts above the page.
     """
@@ -77,20 +77,20 @@ class AutomaticPage(Page):
         self.window().setFocus()
 
     def try_leave(self) -> bool:
-        """Close the prompt for a file and return True, because the page can always be left."""
+        """Close the file prompt and return True, because the operator can always leave this page."""
         self.file_prompt.close_prompt()
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt for choosing a file or measuring, or an empty string during motion."""
+        """Return the prompt of the file dialog or of measuring, or an empty string during motion."""
         if self.file_prompt.isVisible() and not self._moving:
             return self.file_prompt.prompt_text()
         return make_measuring_prompt() if self.path_view.measurement is not None and not self._moving else ""
 
     def handle_escape(self) -> bool:
-        """End measuring and return whether it was active.
+        """End measuring in the path view, and return whether measuring was active.
 
-        While the machine moves, return False, so that Esc triggers feed hold.
+        During motion, return False, so that Esc triggers a feed hold.
         """
         measuring = self.path_view.measurement is not None and not self._moving
         if measuring:
@@ -98,7 +98,7 @@ class AutomaticPage(Page):
         return measuring
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out all parts again after the size of the page changes."""
+        """Lay out all parts of the page again after its size has changed."""
         listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.unit_px)
         for part, rect in (
             (self.program_listing, listing),
@@ -157,7 +157,7 @@ class AutomaticPage(Page):
         return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return those keys for choosing a program, the editor and SEARCHTO that are currently disabled."""
+        """Return the keys for program choice, editor and SEARCHTO that are currently disabled."""
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         asking = self.file_prompt.isVisible()
         named = bool(self.file_prompt.wanted_name) if asking else loaded.path is not None
@@ -196,7 +196,7 @@ class AutomaticPage(Page):
         }
 
     def _part_keys(self) -> KeyActions:
-        """Return the key actions of the part animation, which are empty while the part is not shown."""
+        """Return the key actions of the part animation, or no actions while the part is not shown."""
         if self.path_view.part_player is None or not self.path_view.is_part_shown:
             return {}
         return {**self.path_view.make_playback_key_actions(), "To line": self._show_part_at_line}

@@ -1,4 +1,4 @@
-"""The command ``turndesk alarms``, which lists all alarms, holds and stops.
+"""The command ``turndesk alarms``, which lists all alarms, feed holds and stops.
 
 Each entry has a number, the likely causes and the remedy.
 """

@@ -1,4 +1,4 @@
-"""Identification of a user who changes data on the command line, and access level check.
+"""Identification of a user who changes data on the command line, with a check of access levels.
 
 If access levels are off, nothing is checked. Otherwise the user must enter the PIN, either at the terminal
 or as a line of standard input.
@@ -53,11 +53,11 @@ def add_consent_options(parser: argparse.ArgumentParser) -> None:
 
 
 def get_change_author(store: Store, args: argparse.Namespace, *acts: ProtectedChange) -> str:
-    """Return the user name for the change history.
+    """Return the name of the user for the change history.
 
-    At least one act is required. Raises CommandError if access levels are on and the user is unknown, the
-    user's level is too low, or the PIN is missing, wrong or cannot be checked. Raises StoreError if the
-    store cannot be read or written.
+    ``acts`` has at least one kind of change. Raises CommandError if access levels are on and one of these
+    conditions applies: the user is unknown, the user's level is too low, or the PIN is missing, wrong or
+    cannot be checked. Raises StoreError if the store cannot be read or written.
     """
     people, act = store.people.read_users(), max(acts, key=get_required_level)
     if not people.is_access_restricted:
@@ -98,9 +98,9 @@ def _needs(act: ProtectedChange) -> str:
 
 
 def _access_remedy(people: UserList, needed: AccessLevel) -> str:
-    """Return a text that names the users with a sufficient access level.
+    """Return the error remedy, which names the users with a sufficient access level.
 
-    If no such user has a PIN, the text explains how to turn access levels off.
+    If no such user has a PIN, the remedy explains how to turn access levels off.
     """
     able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:
@@ -135,13 +135,12 @@ OpenStore = Callable[[], AbstractContextManager["Store"]]
 
 
 def get_permitted_user(open_store: OpenStore, args: argparse.Namespace, *acts: ProtectedChange) -> str:
-    """Return the user who may perform an action outside the store.
+    """Return the name of the user who may perform an action outside the store.
 
-    The name is empty if access levels are off and no user was named. Raises CommandError like
-    ``get_change_author``, and if the access levels cannot be read. Without access levels and without a
-    named user, the function also works while TurnDesk is running, because the store is then only read. If
-    the store cannot be read, its access levels are unknown. Only a restore is then permitted, after a
-    service reset at the machine's own keyboard.
+    The name is empty if access levels are off and no user was named. In this case, the store is only read,
+    so that the function also works while TurnDesk is running. If the store cannot be read, its access
+    levels are unknown. Only a restore is then permitted, after a service reset at the machine's own
+    keyboard. Raises CommandError like ``get_change_author``, and if the access levels cannot be read.
     """
     from app.desk.data_folder import find_data_folder
     from core.store.store import Store

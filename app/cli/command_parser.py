@@ -67,7 +67,7 @@ class SubcommandsAction(argparse._SubParsersAction):  # type: ignore[type-arg]
 
 
 class HelpFormatter(argparse.HelpFormatter):
-    """Help formatter that uses the width of the terminal and does not import the archive modules."""
+    """Help formatter that uses the terminal width and avoids importing Python's archive modules."""
 
     def __init__(self, prog: str, *args: Any, **kwargs: Any) -> None:
         super().__init__(prog, *args, **{"width": _terminal_width() - 2, **kwargs})
@@ -144,7 +144,7 @@ class CommandParser(argparse.ArgumentParser):
     def _raise_unknown(self, words: str, name: str, elsewhere_message: str) -> NoReturn:
         """Report unknown arguments and exit.
 
-        ``elsewhere_message`` is the message to print if the option belongs to a different parser.
+        ``elsewhere_message`` is printed instead if the option belongs to a different parser.
         """
         options = self._all_options()
         if name in options:

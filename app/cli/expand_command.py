@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
 def _block_texts(
     timeline: Timeline, source: ProgramSource, output_module: ModuleType, *, json_output: bool
 ) -> Iterator[tuple[int, str]]:
-    """Yield the text of each block or series of moves, with the number of its last block."""
+    """Yield the number of the last block and the text of each single block or series of moves."""
     from core.interpreter.shared.elementary_blocks import TimedSeries
     from core.proving.program_timeline import iter_timed_series
 

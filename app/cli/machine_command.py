@@ -56,9 +56,11 @@ def add_hal_parser(actions: SubParsers) -> None:
 def write_hal_file(args: argparse.Namespace) -> int:
     """Write the HAL file, and return 2 if the names in the machine file do not fit the board.
 
-    Without --out, the HAL file is written to stdout. Raises CommandError if the machine file is invalid or
-    has no [hal] or [board] table, if its backend is not hal, or if an output file already exists or cannot
-    be written.
+    Without --out, the HAL file is written to stdout. Raises CommandError in these cases:
+
+    - The machine file is invalid, or has no [hal] or [board] table.
+    - The backend of the machine file is not hal.
+    - An output file already exists or cannot be written.
     """
     from app.compose.backends.hal_file_writer import generate_hal
     from app.compose.machine.machine_setup import read_machine
@@ -230,7 +232,7 @@ def check(file: str | None, *, json_output: bool) -> int:
 
 
 def _unaccepted_changes(machine: Machine) -> Sequence[KeyChange]:
-    """Return the differences from the accepted machine file, or () if the store cannot be read."""
+    """Return the changes since the machine file was accepted, or () if the store cannot be read."""
     try:
         return list_changes(machine)
     except CommandError as error:
@@ -250,7 +252,7 @@ def format_check_table(rows: TableRows) -> Iterator[str]:
 
 
 def summarize_names(names: Sequence[str]) -> str:
-    """Return the names as one line. If there are several inputs or outputs, only their number is listed."""
+    """Return the names as one line, but only the count of inputs or outputs if there are several."""
     parts = [name for name in names if not name.startswith(("input ", "output "))]
     for kind in ("input", "output"):
         terminals = [name for name in names if name.startswith(f"{kind} ")]
@@ -269,7 +271,7 @@ MAX_PRINTED_CHANGES = 5  # changes that a run prints; a check prints all
 
 
 def list_changes(machine: Machine) -> tuple[KeyChange, ...]:
-    """Return the differences from the machine file that was accepted last, or () if none was accepted.
+    """Return the changes since the machine file was last accepted, or () if it never was accepted.
 
     Raises CommandError if the store cannot be read.
     """

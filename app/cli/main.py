@@ -134,7 +134,7 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 
 def _arguments(argv: Sequence[str]) -> Sequence[str]:
-    """Return the arguments with ``--demo`` and a program file in the places where the parser expects them."""
+    """Return the arguments, with ``--demo`` and a program file moved to where the parser expects them."""
     argv = move_demo_first(argv)
     if has_only_screen_options(argv) or (argv and argv[0] in CORE_COMMANDS):
         return argv
@@ -187,7 +187,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _rejection_types() -> tuple[type[CodedError], ...]:
-    """Return the exception types that a command reports in one line."""
+    """Return the types of expected exceptions, which a command reports in one line."""
     from app.desk.data_folder import DataFolderError
 
     return CommandError, DataFolderError
@@ -202,7 +202,7 @@ def _is_library_missing(error: ImportError) -> bool:
 
 
 def _flush_output(status: int) -> int:
-    """Flush stdout and return the exit status. An error such as a full disk is thus still reported."""
+    """Flush stdout and return the exit status, so that an error such as a full disk is reported."""
     sys.stdout.flush()
     return status
 
@@ -213,10 +213,10 @@ def _discard_output() -> None:
 
 
 def _clear_interrupt() -> None:
-    """Clear the interpreter's interrupt flag, so that the exit status is used.
+    """Clear the interpreter's interrupt flag, so that Python uses the exit status of TurnDesk.
 
-    If Ctrl+C interrupts the creation of a dataclass (``exec`` of a string), Python exits as if ended by the
-    signal, even if the exception is caught. Executing another string clears the flag.
+    If Ctrl+C interrupts the creation of a dataclass (``exec`` of a string), Python exits as if a signal had
+    ended it, even if the exception is caught. Executing another string clears the flag.
     """
     exec("")
 
@@ -234,7 +234,7 @@ def _dispatch(args: argparse.Namespace) -> int:
 
 
 def _open_demo(args: argparse.Namespace) -> None:
-    """Use the data folder of the demo, and load its program on the screen if no program is specified."""
+    """Use the data folder of the demo, and load its program if the user specified no program."""
     from app.compose.demo_store import find_demo_program, open_demo
 
     machine = getattr(args, "machine", None)

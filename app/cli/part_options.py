@@ -156,7 +156,10 @@ def _read_shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 
 
 def _read_stickout(args: argparse.Namespace, machine: Machine) -> float | None:
-    """Return the stick-out in mm, or None if it is not specified. Raises CommandError if it is invalid."""
+    """Return the stick-out of the stock in mm, or None if the option does not specify it.
+
+    Raises CommandError if the stick-out is invalid.
+    """
     if args.stick_out is None:
         return None
     stick_out = float(args.stick_out) * MM_PER_INCH

@@ -53,7 +53,7 @@ def add_ideal_option(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True, slots=True)
 class CommandContext:
-    """Machine and setup with which one command evaluates programs."""
+    """Machine and setup that one command uses to evaluate programs."""
 
     machine: Machine
     setup: Setup

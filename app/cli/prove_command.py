@@ -218,7 +218,7 @@ def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Name
 
 
 def _silenced_text(report: ProofReport) -> str:
-    """Return the number of silenced findings and the names of their checks as text."""
+    """Return the number of suppressed findings and the names of their checks, as text."""
     found = [each.check_name for each in report.diagnostics if each.downgrade_reason]
     return f"  silenced {len(found)} findings of {', '.join(sorted(set(found)))}\n" if found else ""
 
@@ -234,16 +234,16 @@ def _limits_text(report: ProofReport, length: Callable[[float], float], unit: st
 
 
 def _eased_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
-    """Return the corner tolerance as text, or an empty string if the machine file has none."""
+    """Return the corner tolerance as text, or an empty string if the machine file defines none."""
     if not report.corner_tolerance_mm:
         return ""
     return f"  joints of short chords within {length(report.corner_tolerance_mm):.5f} {unit} of their words\n"
 
 
 def _paths_text(report: ProofReport) -> str:
-    """Return the number and the cycle times of the paths that the program can take, as text.
+    """Return the number and cycle times of the program's possible execution paths, as text.
 
-    The paths depend on inputs and block delete.
+    The execution paths depend on inputs and block delete.
     """
     ways = report.branch_summary
     if ways.proved_count + ways.unproved_count <= 1:

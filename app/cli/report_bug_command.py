@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _is_confirmed(target: Path) -> bool:
-    """Return whether the user agrees to write the displayed text to a file."""
+    """Return whether the user agrees to write the displayed report to the file ``target``."""
     sys.stdout.write(f"\nRead the text above. Write it to {target}? [y/N] ")
     sys.stdout.flush()
     return sys.stdin.readline().strip().lower() in {"y", "yes"}

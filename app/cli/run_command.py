@@ -187,7 +187,7 @@ def _shown_place(final: dict[str, float], *, mill: bool) -> str:
 
 
 def _final_position(report: ProofReport, outcome: RunOutcome | None) -> dict[str, float]:
-    """Return the position of the tool tip in the frame of the last move.
+    """Return the final tool tip position in the coordinate system of the last move.
 
     X is a radius. Lengths are in inches for OmniTurn programs, and otherwise in mm.
     """

@@ -67,7 +67,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_line_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for both directions. Their default values are in [dnc] of the machine file."""
+    """Add the options of the serial line, which apply to sending and receiving.
+
+    Their default values are in [dnc] of the machine file.
+    """
     parser.add_argument("--machine", metavar="FILE", help="machine file with the settings in [dnc]")
     parser.add_argument(
         "--port",
@@ -260,7 +263,7 @@ _POLL_INTERVAL_S = 0.1  # s
 
 
 def _format_received(progress: TransferProgress) -> str:
-    """Return a text that gives the reason why the received data is not a program."""
+    """Return a message that explains why the received data is not a program."""
     if progress.wait_reason == "noise":
         return Message(
             "the received data is not text ({received}); check --baud, --bits, --parity and the cable",
@@ -273,9 +276,9 @@ def _format_received(progress: TransferProgress) -> str:
 
 
 def _tell(last_reason: str, progress: TransferProgress) -> str:
-    """Report received data that is not a program, and return the reason that was reported last.
+    """Print why the received data is not a program, and return this reason.
 
-    Each reason is reported once.
+    The reason is not printed again if it equals ``last_reason``.
     """
     if not progress.received_text or last_reason == progress.wait_reason:
         return last_reason

@@ -174,7 +174,7 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _row_values(rows: Mapping[int, OffsetRow]) -> dict[int, Mapping[str, FieldValue]]:
-    """Return the imported rows by number. Each row becomes a change of all its fields."""
+    """Return the imported rows by number, with all fields of each row as changes."""
     return {number: row._asdict() for number, row in rows.items()}
 
 

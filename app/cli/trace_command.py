@@ -100,7 +100,7 @@ def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
 
 
 class _Table:
-    """Columns of a machine's CSV file: time, axes in order, spindle angle and program line."""
+    """Layout of the CSV file of a machine: time, axes in order, spindle angle and program line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
         from app.cli.outputs.units import MM_PER_INCH
@@ -123,7 +123,7 @@ class _Table:
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: ProgramSource) -> None:
-    """Write the complete file. After a program error, a full disk or Ctrl+C, no file remains."""
+    """Write the complete CSV file, and delete it after a program error, a full disk or Ctrl+C."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:

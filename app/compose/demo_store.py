@@ -1,4 +1,4 @@
-"""Demo with a separate data store, which contains the offsets and stock of the sample programs.
+"""Demo with a separate data store for the offsets and stock of the sample programs.
 
 The user can change the data of the demo.
 """
@@ -70,7 +70,7 @@ def find_demo_program(machine_file: str | None) -> str:
 
 
 def _last_program() -> Path | None:
-    """Return the program that the demo loaded last, or None if its file does not exist."""
+    """Return the path of the program that the demo loaded last, or None if the file does not exist."""
     with suppress(StoreError, OSError), Store.open(find_data_folder(), read_only=True) as store:
         stored = store.settings.read_setting(LAST_PROGRAM_SETTING)
         if isinstance(stored, str) and Path(stored).is_file():

@@ -1,6 +1,6 @@
 """Assembly of the operator screen's model with all its pages.
 
-The control runs in this process or in another process.
+The machine control runs in this process or in another process.
 """
 
 from __future__ import annotations
@@ -50,9 +50,10 @@ def create_desk_and_executor(
     journal: Journal | None = None,
     records_folder: Path | None = None,
 ) -> tuple[Desk, Executor]:
-    """Return the screen model and the executor, which has not run a tick yet. ``journal`` receives events.
+    """Return the screen model, and the executor before its first tick.
 
-    Scope records are saved in the folder ``records_folder``. If it is None, they are only in memory.
+    ``journal`` receives events. Scope records are saved in the folder ``records_folder``. If it is None,
+    they are only in memory.
     """
     machine = read_machine(machine_file)
     if journal is not None:
@@ -129,7 +130,7 @@ def create_desk(
 
 
 def _handle_late_store(desk: Desk, journal: Journal) -> None:
-    """Report data that was unknown at startup because the store could not be opened then.
+    """Report data from a store that could not be opened until after startup.
 
     The function is called in a different thread.
     """
@@ -161,7 +162,10 @@ class EventDistributor:
         self._clock = clock
 
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
-        """Distribute an event. If an earlier screen has stored the event, only confirm its ``receipt``."""
+        """Pass an event to the screen model and the journal.
+
+        If a previous screen process has already stored the event, only confirm its ``receipt``.
+        """
         if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
             receipt.confirm_storage()
             if self.journal is not None:
@@ -173,7 +177,7 @@ class EventDistributor:
             self.journal.hear(event, receipt)
 
     def report_event(self, kind: str, text: str) -> None:
-        """Report an event with the current time."""
+        """Distribute an event that has the current time."""
         self.hear(LogEvent(self._clock.now(), kind, text))
 
 
@@ -225,7 +229,7 @@ def _create_desk_model(
 
 
 def _displayed_machine(machine: Machine) -> DeskMachine:
-    """Return the machine data that the screen shows."""
+    """Return the machine data that the operator screen shows."""
     return DeskMachine(
         name=Message("{machine} · {machine2}", machine=machine.name, machine2=_describe_drives(machine)),
         machine=machine,
@@ -236,7 +240,7 @@ def _displayed_machine(machine: Machine) -> DeskMachine:
 
 
 def _list_stops(journal: Journal) -> Sequence[EventRow]:
-    """Return the alarms and stops of earlier days, or () if the store cannot be read."""
+    """Return the alarms and stops of previous days, or () if the store cannot be read."""
     try:
         return journal.events("", LOGGED_KINDS, MAX_ENTRIES)
     except StoreError:
@@ -253,7 +257,7 @@ def _connected(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _describe_drives(machine: Machine) -> str:
-    """Return a text that tells the operator which parts of the machine are simulated."""
+    """Return the message that tells the operator which parts of the machine are simulated."""
     if not is_simulated(machine):
         return machine.backend.upper()
     return "SIMULATED AXES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"

@@ -1,7 +1,7 @@
-"""Table of the functions that register the pages of the operator screen.
+"""Functions that register the pages of the operator screen.
 
-Each function takes a ``PageSetup``. It registers with ``desk.page_registry`` either one model or a model
-that is created on first use.
+Each function takes a ``PageSetup``. It registers a page model with ``desk.page_registry``, or a function
+that creates the model on first use.
 """
 
 from __future__ import annotations
@@ -62,10 +62,12 @@ _MODEST_FRACTION = 0.2  # fraction of the manual rapid, for moves inside the par
 class PageSetup:
     """Objects from which the pages are created.
 
-    ``program_folder`` is the folder of the operator's programs. ``loading_steps`` reads and proves programs
-    with the current offsets and saves nothing. ``proof_steps`` does the same without pictures.
-    ``draw_thumbnail`` draws the part of a program. ``live_samples`` are samples for the scope, or None for
-    the samples of the control. Nothing is saved if ``journal`` is None.
+    - ``program_folder`` is the folder of the operator's programs.
+    - ``loading_steps`` reads and proves programs with the current offsets and saves nothing.
+    - ``proof_steps`` does the same without pictures.
+    - ``draw_thumbnail`` draws the part of a program.
+    - ``live_samples`` are samples for the scope, or None to use the samples of the control.
+    - ``journal`` saves data. If it is None, nothing is saved.
     """
 
     desk: Desk
@@ -105,7 +107,10 @@ def _register_editor(setup: PageSetup) -> None:
 
 
 def _create_editor(setup: PageSetup) -> EditorModel:
-    """Return the editor. It proves the edited text and does not save a version after each key press."""
+    """Return the model of the editor, which proves the edited text.
+
+    It does not save a version after each key press.
+    """
     from app.editor.editor_model import EditorModel
     from app.editor.version_history import NullArchive
 
@@ -161,7 +166,7 @@ def _register_part(setup: PageSetup) -> None:
 
 
 def _register_lines(setup: PageSetup) -> None:
-    """Register MDI and the functions of the Jog page that execute MDI lines."""
+    """Register the MDI page, and the functions of the Jog page that execute MDI lines."""
     desk, machine = setup.desk, setup.machine
     prove_line = create_line_prover(machine, setup.read_offsets)
     if desk.start_watch is not None:
@@ -185,7 +190,10 @@ def _register_mill_touch(setup: PageSetup) -> None:
 
 
 def _register_searchto(setup: PageSetup) -> None:
-    """Register SEARCHTO. It moves at the manual rapid rate, but more slowly inside the part."""
+    """Register SEARCHTO, the restart of a program at a chosen line.
+
+    The restart moves at the manual rapid rate, but more slowly inside the part.
+    """
     desk, rapid = setup.desk, setup.machine.limits.manual_rapid
     choices = OperatorChoices(outside_speed_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
 
@@ -213,7 +221,7 @@ def _register_searchto(setup: PageSetup) -> None:
 
 
 def register_sounds(setup: PageSetup) -> None:
-    """Register the sounds of the screen. The special functions need these sounds."""
+    """Register the sounds of the operator screen, which the special functions also need."""
     sounds = EventSounds(setup.desk, setup.persistence)
     setup.desk.page_registry.attach_model(sounds)
     setup.desk.page_registry.add_frame_watcher(sounds.play_new_event_sounds)

@@ -38,7 +38,7 @@ SUPERVISED_THREAD_TEXTS = {
 
 
 def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
-    """Report that a supervised thread has ended. The machine continues to run.
+    """Report that a supervised thread has ended unexpectedly. The machine continues to run.
 
     The function is called in the watchdog's thread.
     """

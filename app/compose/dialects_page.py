@@ -1,6 +1,7 @@
 """Generator of the lists of languages, codes and shipped machines in ``docs/dialects.md``.
 
-``python -m app.compose.dialects_page docs/dialects.md`` writes this part between its begin and end marks.
+The command ``python -m app.compose.dialects_page docs/dialects.md`` replaces the text between the begin and
+end marks of that file.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ def generate_text() -> str:
 
 
 def update_page(text: str) -> str:
-    """Return the page with its generated part updated. Raises ValueError if a mark is missing."""
+    """Return the page text with its generated part updated. Raises ValueError if a mark is missing."""
     before, mark, rest = text.partition(BEGIN_MARK)
     _, last, after = rest.partition(END_MARK)
     if not (mark and last):

@@ -245,7 +245,10 @@ def _bounds(field: KeyField) -> str:
 
 
 def _format_in_units(unit: FileUnit, *values: float) -> str:
-    """Return values of the model as text in the units of a machine file, lengths in mm and inches."""
+    """Return values of the machine model as text in the units of a machine file.
+
+    Lengths are given in mm and inches.
+    """
     if unit not in LENGTH_UNITS:
         return " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
     if values == (0.0,):
@@ -269,7 +272,7 @@ def _default(field: KeyField) -> str:
 
 
 def _is_possible(field: KeyField) -> bool:
-    """Return whether a file could contain the default value.
+    """Return whether a machine file could contain the default value of this key.
 
     A default value outside the permitted range means that the key has no default.
     """

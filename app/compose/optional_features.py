@@ -41,9 +41,9 @@ T = TypeVar("T")
 
 
 class Subcommand(NamedTuple):
-    """Position and text of a subcommand in the help of ``turndesk``.
+    """Entry for a subcommand in the help of ``turndesk``.
 
-    ``preceding_subcommand`` is the subcommand that precedes it, and ``help_line`` is its help text.
+    ``preceding_subcommand`` is the subcommand listed above it, and ``help_line`` is its help text.
     """
 
     preceding_subcommand: str
@@ -51,20 +51,21 @@ class Subcommand(NamedTuple):
 
 
 class OptionalFeature:
-    """Base class of an optional feature, which overrides only the members that it adds.
+    """Base class of an optional feature. A feature overrides only the members that it needs.
 
-    ``subcommands`` are its subcommands. The module of a subcommand is
-    ``app.extras.NAME.SUBCOMMAND_command``. ``supervised_threads`` maps each supervised thread to the
-    function that is lost when the thread ends. ``own_special_functions`` names the special functions that a
-    page of the feature shows, so that F10 does not show them. ``required_features`` names the features that
-    this feature requires. ``worker_class_name`` is the dotted name of a class of workers on other computers
-    that prove programs. ``drawing_suffixes`` are the suffixes of drawings from which this feature makes
-    programs, and which the list of programs shows. ``editor_panel_class`` is the dotted name of a subclass
-    of ``EditorPanel`` that replaces the editor's text area and writes lines. ``machine_actions`` lists the
-    actions of ``turndesk machine``, each with a module ``app.extras.NAME.ACTION_command``.
-    ``machine_tables`` maps each module whose ``DRIVER`` declares tables of the machine file to the
-    paths of these tables. ``preceding_table`` is the table of the machine file that precedes the tables of
-    this feature in lists. If it is empty, the tables are listed last.
+    - ``subcommands`` have the modules ``app.extras.NAME.SUBCOMMAND_command``.
+    - ``supervised_threads`` maps each supervised thread to the function lost if the thread ends.
+    - ``own_special_functions`` names the special functions that the feature's own page shows. They are
+      not in the F10 list.
+    - ``required_features`` names the features that this feature requires.
+    - ``worker_class_name`` is the dotted class name of workers that prove programs on other computers.
+    - ``drawing_suffixes`` are the suffixes of drawings from which this feature makes programs.
+    - ``editor_panel_class`` is the dotted name of an ``EditorPanel`` subclass. Its panel replaces the
+      editor's text area and writes lines.
+    - ``machine_actions`` are actions of ``turndesk machine`` (``app.extras.NAME.ACTION_command``).
+    - ``machine_tables`` maps each module whose ``DRIVER`` declares machine file tables to their paths.
+    - ``preceding_table`` is the machine file table listed before this feature's tables, or empty to
+      list them last.
     """
 
     required_features: Sequence[str] = ()
@@ -114,7 +115,7 @@ class OptionalFeature:
         return ()
 
     def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
-        """Extend ``model``, which belongs to a required feature, when it is created."""
+        """Extend ``model``, the model of a required feature, when that model is created."""
 
     def start_services(
         self, desk: Desk, journal: Journal, report_reason: ReportFunction
@@ -133,21 +134,22 @@ class OptionalFeature:
         *,
         is_real_time: bool,
     ) -> CloseFunction | None:
-        """Start the services of this feature for a run without a screen.
+        """Start the services of this feature for a program run without a screen.
 
-        Returns the function that ends the services, or None. ``is_real_time`` means that the run takes as
-        long as on the machine. ``report_reason`` prints the reason if the feature cannot run.
+        Returns the function that ends the services, or None if there are no services. ``is_real_time``
+        means that the run takes as long as on the machine. ``report_reason`` prints the reason if the
+        feature cannot run.
         """
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the outputs that this feature adds to --json.
+        """Return the JSON outputs that this feature adds to --json.
 
-        In the reference, the new outputs follow the output that is their key.
+        Each key is the existing output that the new outputs follow in the reference page.
         """
         return {}
 
     def words(self) -> Sequence[str]:
-        """Return the screen texts to list as texts although they look like identifiers in the source."""
+        """Return screen texts that look like identifiers in the source but must be listed as texts."""
         return ()
 
     def list_shop_outputs(self) -> Sequence[JsonOutput]:
@@ -208,9 +210,9 @@ def _modules(words_of: Callable[[OptionalFeature], Iterable[str]]) -> Mapping[st
 
 
 def find_worker_class() -> str:
-    """Return the dotted name of the class of workers on other computers.
+    """Return the dotted class name of the workers that prove programs on other computers.
 
-    The name is empty if such a class does not exist.
+    The name is empty if no feature provides such a class.
     """
     return next((extra.worker_class_name for extra in extras().values() if extra.worker_class_name), "")
 

@@ -1,4 +1,4 @@
-"""Data of a part that are known before its proof, such as the tools and the clamping.
+"""Data of a part that are known before the part is proved, such as the tools and clamping.
 
 The store has the stock of each program, by program name. The stock is never written to the program text.
 """
@@ -33,9 +33,10 @@ def read_known_part(
     shapes: Mapping[int, ToolShape],
     stick_out_mm: float | None = None,
 ) -> PartSettings:
-    """Return the part settings without a stock.
+    """Return the part settings, without a stock.
 
-    ``stick_out_mm`` is the stick-out of the job in mm, or None for the stick-out in the machine file.
+    ``stick_out_mm`` is the stick-out for the program in mm. If it is None, the stick-out in the machine
+    file is used.
     """
     return PartSettings(
         shapes=shapes,
@@ -52,7 +53,7 @@ def read_known_part(
 def apply_stored_clamping(
     part_settings: PartSettings, machine: Machine, stored_part: StoredPart, *, is_explicit: bool = False
 ) -> PartSettings:
-    """Return the part settings with the stored stick-out and the stored silenced checks.
+    """Return the part settings with the stored stick-out and the stored list of silenced checks.
 
     If ``is_explicit`` is true, the current stick-out is retained, because the user specified it.
     """
@@ -89,7 +90,7 @@ def _stock_clamping(machine: Machine, stick_out: float | None) -> Clamping | Non
 
 
 def read_stored_part(program: str) -> StoredPart:
-    """Return the stored data of a program's part, which is empty without a store.
+    """Return the stored data of a program's part, or empty data if there is no store.
 
     Raises CommandError if the store cannot be read.
     """

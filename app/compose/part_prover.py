@@ -1,7 +1,7 @@
-"""Proof of the part that the loaded program makes, with the severity of each finding.
+"""Proof of the part that the loaded program makes, with a severity for each finding.
 
-The part is proved after the program. Decision 0011 specifies which functions wait for the proof of the
-part.
+The part is proved after the program. Decision record 0011 specifies which functions wait for the proof of
+the part.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def get_empty_part(_program: str) -> StoredPart:
 
 @dataclass(frozen=True, slots=True)
 class PartProver:
-    """Prover of parts on this machine.
+    """Prover of the parts that programs make on this machine.
 
     ``read_source`` reads a program whose finished part is the stock of another program.
     """
@@ -63,9 +63,9 @@ class PartProver:
     def read_settings(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
-        """Return the specified stock, tools and clamping, and a finding if the stock cannot be used.
+        """Return the specified stock, tools and clamping, and a finding about the stock.
 
-        Without such a problem, the finding is None.
+        The finding is None if the stock can be used.
         """
         from app.compose.part_data import apply_stored_clamping, read_known_part
         from app.compose.specified_stock import StockContext, read_stock
@@ -89,7 +89,7 @@ class PartProver:
     def compare_parts(
         self, old_job: Job, new_job: Job, report_progress: ProgressCallback
     ) -> ComparedPart | None:
-        """Return the part that a job makes with new offsets, compared with its current part.
+        """Return a comparison of the parts that a job makes with old and with new offsets.
 
         The result is None if the job does not make a part.
         """
@@ -144,10 +144,9 @@ def _unusable(why: str) -> Diagnostic:
 
 
 def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) -> PartProof:
-    """Return the proof with a severity for each finding.
+    """Return the proof of the part, with a severity for each finding.
 
-    The proof also contains the texts of the findings that are announced when the operator starts the
-    program.
+    The proof also contains the texts of the findings that are shown when the operator starts the program.
     """
     findings = tuple(findings)
     warned = [each for each in findings if _is_announced(each)]
@@ -155,7 +154,7 @@ def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) 
 
 
 def _is_announced(finding: Diagnostic) -> bool:
-    """Return whether the finding is announced before a start.
+    """Return whether a finding is shown to the operator before the program starts.
 
     This applies to a serious warning, and to a part that was not proved.
     """
@@ -165,7 +164,7 @@ def _is_announced(finding: Diagnostic) -> bool:
 
 
 def _shorten(finding: Diagnostic) -> str:
-    """Return the short text of an announced finding.
+    """Return the short text of a finding that is shown before the program starts.
 
     The list of findings has the full text and the remedy.
     """

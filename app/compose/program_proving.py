@@ -1,6 +1,6 @@
 """Proving of programs, MDI lines and restarts on this machine.
 
-The module also proves how other offsets would change a path.
+The module also proves how changed offsets would alter a tool path.
 """
 
 from __future__ import annotations
@@ -160,7 +160,10 @@ def _read_complete(source: ProgramSource, *folders: Path) -> ProgramSource:
 
 
 def create_proof(job: Job, report: ProofReport) -> Proof:
-    """Return the proof of this job for the executor. The report must be for the same text and setup."""
+    """Return the proof of this job for the executor.
+
+    ``report`` must be from the same program text and setup as the job.
+    """
     return Proof(
         digest=job.digest,
         errors=tuple(d.format_one_line(job.source.name) for d in report.errors),
@@ -197,7 +200,7 @@ def create_thumbnail_drawer(
 
 
 def create_drawer(machine: Machine) -> DrawPaths:
-    """Return a function that draws the path of a job with specified offsets for the tools."""
+    """Return a function that draws the tool path of a job with specified tool offsets."""
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
         from app.path.path_picture import build_picture
@@ -210,7 +213,7 @@ def create_drawer(machine: Machine) -> DrawPaths:
 
 
 def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffset]) -> Iterator[TimedBlocks]:
-    """Yield the blocks with part zero shifted to the position that the offsets of ``frame`` specify."""
+    """Yield the blocks with part zero shifted to the position from the tool offsets ``frame``."""
     for block, start, end in blocks:
         modal = block.modal
         offset = frame.get(modal.tool, ToolOffset())
@@ -255,7 +258,10 @@ def create_line_prover(machine: Machine, read_offsets: Callable[[], Offsets]) ->
 
 
 def create_search(job: Job, report_progress: ProgressCallback) -> RestartSearch:
-    """Return the search through the program of a job. The interpreter is loaded on first use."""
+    """Return the search for restart lines in a job's program.
+
+    The interpreter is loaded on first use.
+    """
     if job.source.dialect is not Dialect.OMNITURN:
         from core.interpreter.restart.program_search import BlockSearch
 

@@ -53,7 +53,7 @@ class SerialLines:
 
 
 class _LineTransfer:
-    """A transfer that can be canceled before its serial line is open. The worker opens the line."""
+    """A transfer over a serial line, which can be canceled before the worker opens the line."""
 
     def __init__(self) -> None:
         self._inner: SendTransfer | ReceiveTransfer | None = None
@@ -87,10 +87,10 @@ class FileSendTransfer(_LineTransfer):
         self._settings, self._path, self._clock = settings, path, clock
 
     def run_transfer(self) -> int:
-        """Read and send the file, and return the number of bytes sent, including markers and codes.
+        """Read and send the file, and return the number of bytes sent, including control characters.
 
-        Raises FileOperationError if the file cannot be read, or DriverError if its text cannot be sent or
-        the transfer fails or is canceled.
+        Raises FileOperationError if the file cannot be read. Raises DriverError if its text cannot be sent,
+        or if the transfer fails or is canceled.
         """
         try:
             text = read_input_bytes(self._path, MAX_FILE_BYTES)

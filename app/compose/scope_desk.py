@@ -1,4 +1,4 @@
-"""Assembly of the SCOPE page."""
+"""Assembly of the SCOPE page, which shows recorded signals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Assembly of the operator screen. Its control runs in a thread or in a separate process."""
+"""Assembly of the operator screen, whose control runs in a thread or in a separate process."""
 
 from __future__ import annotations
 

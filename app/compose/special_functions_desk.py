@@ -57,7 +57,10 @@ def _setup_sheet(
 def _create_transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, program_folder: Path
 ) -> SpecialFunction:
-    """Return the RS-232 function. It proves received programs, and its initial settings are in [dnc]."""
+    """Return the special function for RS-232, which proves received programs.
+
+    Its initial settings are in [dnc] of the machine file.
+    """
     lines = SerialLines(create_proof_check(workshop), get_default_extension(Dialect(machine.mdi_language)))
     return SerialTransferFunction(
         desk,

@@ -1,4 +1,4 @@
-"""Reading of the specified stock.
+"""Reading of the stock that the operator specified for a program.
 
 The stock is a bar, a tube, a profile from a file, or the part that another program makes.
 """
@@ -29,12 +29,12 @@ _MAX_PROFILE_BYTES = 16 * BYTES_PER_MB  # largest profile file
 
 
 class StockContext(NamedTuple):
-    """Context for proving the preceding program, whose part is the stock.
+    """Context for proving the preceding program, which makes the part that is used as stock.
 
-    ``read_source`` reads that program and may raise any exception that the caller handles.
-    ``report_progress`` receives the progress of the proof. ``read_stored_part`` returns the stored stock
-    and stick-out of a program by name. ``preceding_programs`` are the names of the programs whose proofs
-    depend on this program.
+    - ``read_source`` reads that program. The caller handles any exception that it raises.
+    - ``report_progress`` receives the progress of the proof.
+    - ``read_stored_part`` returns the stored stock and stick-out of a program by name.
+    - ``preceding_programs`` are the names of the programs whose proofs depend on this program.
     """
 
     read_source: Callable[[Path], ProgramSource]

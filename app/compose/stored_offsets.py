@@ -60,7 +60,7 @@ def create_setup_with_offsets(
     block_delete: bool = False,
     is_strict: bool = False,
 ) -> Setup:
-    """Return the setup of a program after power-up with these offsets."""
+    """Return the setup of a program that starts after power-up with these offsets."""
     return add_mill_offsets(
         create_setup(
             machine,
@@ -119,7 +119,7 @@ def read_stored_shapes() -> dict[int, ToolShape]:
 
 
 def try_read_shapes() -> dict[int, ToolShape]:
-    """Return the tool shapes for a picture, or {} if the store cannot be read.
+    """Return the stored tool shapes for a picture, or {} if the store cannot be read.
 
     The error is not reported here, because other functions report it.
     """
@@ -160,10 +160,11 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
 
 
 def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
-    """Return the offsets for the screen.
+    """Return the book of offsets that the operator screen shows.
 
-    They are the offsets of the journal's store, or else the read-only offsets that ``load_offsets``
-    returns, such as those of a file. Raises CommandError if ``load_offsets`` finds errors.
+    If there is a ``journal``, they are the offsets of its store. Otherwise they are the read-only offsets
+    that ``load_offsets`` returns, such as those of a file. Raises CommandError if ``load_offsets`` finds
+    errors.
     """
     if journal is not None and load_offsets is read_stored_offsets:
         return journal.book()

@@ -43,7 +43,7 @@ class ThumbnailCache:
     height_px: int = HIGH
 
     def get_thumbnail(self, job: Job, report_progress: ProgressCallback) -> Thumbnail | None:
-        """Return a picture of the job's part, in pixels of width and height, or None if there is no part.
+        """Return the thumbnail of the job's part, or None if the job does not make a part.
 
         ``report_progress`` may raise an exception to cancel the drawing.
         """
@@ -122,7 +122,10 @@ def _found(path: Path, pixels_wanted: int) -> bytes | None:
 
 
 def _save_cached(path: Path, pixels: bytes) -> None:
-    """Write the complete file or no file. A disk error is ignored, and the picture is later drawn again."""
+    """Write a thumbnail file completely or not at all.
+
+    A disk error is ignored, and the thumbnail is later drawn again.
+    """
     aside = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

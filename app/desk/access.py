@@ -67,7 +67,7 @@ class UserAccess:
 
     @property
     def has_read_failed(self) -> bool:
-        """Return whether the stored users could not be read."""
+        """Return whether an error prevented reading the stored users."""
         return self._unread is not None
 
     # --- who and what --------------------------------------------------------------------------------
@@ -79,7 +79,7 @@ class UserAccess:
 
     @property
     def header_text(self) -> str:
-        """Return the user and the current level for the header, or an empty string without access levels."""
+        """Return the user and the access level for the header, or an empty string if levels are off."""
         if not self.user_list.is_access_restricted:
             return ""
         if self.pending_notice:
@@ -88,7 +88,7 @@ class UserAccess:
         return join_messages(" · ", (mark_untranslated(self.user_name), level)) if self.user_name else level
 
     def find_refusal(self, change: ProtectedChange) -> str:
-        """Return the reason why the level does not permit this act, or an empty string if it does."""
+        """Return the reason why the access level forbids this change, or an empty string if permitted."""
         needed = get_required_level(change)
         if not self.user_list.is_access_restricted or self.access_level >= needed:
             return ""
@@ -151,7 +151,7 @@ class UserAccess:
         self.reload()
 
     def log_access(self, text: str) -> None:
-        """Write a line to the log with the name of the signed-in user."""
+        """Log a line with the name of the signed-in user."""
         self.persistence.log_access(text, self.recorded_user)
 
     def close(self) -> None:

@@ -19,9 +19,9 @@ class EntryError(ValueError):
 def evaluate_expression(entry: str) -> float:
     """Return the value of an arithmetic expression.
 
-    Raises EntryError with the reason if the expression is empty, invalid or longer than ``MAX_LENGTH``,
-    divides by zero, or has a value that is too large. For an unexpected number or operator, the text
-    contains its position.
+    Raises EntryError with the reason if the expression is empty, invalid or longer than ``MAX_LENGTH``. It
+    also raises EntryError for a division by zero or a value that is too large. For an unexpected number or
+    operator, the error text contains its position.
     """
     if not entry.strip():
         raise EntryError("no value entered; type a number")

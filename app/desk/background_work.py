@@ -1,7 +1,7 @@
 """Slow and repeated work of TurnDesk on worker threads.
 
-A new request for proving, drawing or searching replaces older requests, because their results would be
-outdated. Queued work, such as writing, always runs to its end. Results are delivered on the caller's thread
+A new request for proving, drawing or searching replaces previous requests, because their results would be
+outdated. Queued work, such as writing, is always completed. Results are delivered on the caller's thread
 when the caller polls, once per frame.
 """
 
@@ -109,9 +109,9 @@ class WorkRequest:
 class LatestRequestWorker:
     """Worker on which a new request replaces the previous request.
 
-    ``enqueue_work`` adds work that is never canceled. For requests that follow typing, work begins after
-    ``quiet_time_s`` seconds without another request, but no later than after ``max_delay_s`` seconds. A
-    replaced request may continue for ``grace_time_s`` seconds. ``thread_owner`` is another worker whose
+    ``enqueue_work`` adds work that is never canceled. Requests that follow typing are delayed: work begins
+    after ``quiet_time_s`` seconds without another request, but no later than after ``max_delay_s`` seconds.
+    A replaced request may continue for ``grace_time_s`` seconds. ``thread_owner`` is another worker whose
     thread this worker shares.
     """
 
@@ -182,7 +182,7 @@ class LatestRequestWorker:
             self.progress_count = 0
 
     def deliver_results(self) -> None:
-        """Deliver the finished results in the order of the work.
+        """Deliver the results of completed work in the order in which the work was done.
 
         The screen calls this method once per frame.
         """
@@ -194,7 +194,7 @@ class LatestRequestWorker:
             answer()
 
     def wait_for_results(self, timeout_s: float) -> None:
-        """Wait for the results and deliver them.
+        """Wait for the results of all work and deliver them.
 
         Only scripts and tests use this method, because it blocks.
         """
@@ -261,7 +261,7 @@ class LatestRequestWorker:
     def _wait_for_request(self) -> WorkRequest | None:
         """Return the next request, or None if no request is waiting.
 
-        Before returning, wait until typing has paused for ``quiet_time_s`` seconds, or until
+        While the operator types, wait until typing has paused for ``quiet_time_s`` seconds, or until
         ``max_delay_s`` seconds have passed.
         """
         with self.lock:
@@ -281,7 +281,10 @@ class LatestRequestWorker:
 
 
 def _run_request(request: WorkRequest) -> Callable[[], None] | None:
-    """Do the work and return the function that delivers its result. If the work is canceled, return None."""
+    """Do the requested work, and return the function that delivers its result.
+
+    If the work is canceled, return None.
+    """
     try:
         return request.run_work(request)
     except AbandonedError:
@@ -294,7 +297,7 @@ def _run_request(request: WorkRequest) -> Callable[[], None] | None:
 
 
 def _is_defect(error: BaseException) -> bool:
-    """Return whether an error is a programming error. The traceback of such an error must be logged."""
+    """Return whether an error is a programming error, whose traceback must be logged."""
     return type(error).__module__ == "builtins" and not isinstance(error, OSError | ValueError)
 
 

@@ -22,7 +22,7 @@ class CommandError(CodedError):
 
 @contextmanager
 def convert_to_command_error(*kinds: type[Exception]) -> Iterator[None]:
-    """Convert exceptions of these types to CommandError with the same text."""
+    """Convert exceptions of these types inside the block to CommandError with the same text."""
     try:
         yield
     except kinds as error:

@@ -1,8 +1,8 @@
 """Daily backup of the store, verified and rotated, in the folder that the machine file specifies.
 
-The module does not use Qt. The backup waits at most 12 h until the machine is at rest. The computer's clock
-may be wrong. A backup with a date in the future was made before the clock was set back, and counts as the
-oldest backup.
+The module does not use Qt. A backup waits at most 12 h until the machine is at rest. If the computer's
+clock was set back, an existing backup may have a date in the future. Such a backup counts as the oldest
+backup.
 """
 
 from __future__ import annotations
@@ -28,10 +28,11 @@ _FIRST_LOOK, _LOOK = 60.0, 600.0  # s
 class DailyBackup:
     """Service that makes and verifies a backup each day and deletes old backups.
 
-    ``write_backup`` writes a backup. ``verify_backup`` returns the defects of a backup file. ``is_idle``
-    returns whether the machine is at rest. ``data_folder`` is the folder of the original data, or None if
-    the machine file does not specify a separate folder for backups. ``report_same_disk`` is called if both
-    folders are on the same disk.
+    - ``write_backup`` writes a backup, and ``verify_backup`` returns the defects of a backup file.
+    - ``is_idle`` returns whether the machine is at rest.
+    - ``data_folder`` is the folder of the original data, or None if the machine file does not specify
+      a separate folder for backups.
+    - ``report_same_disk`` is called if both folders are on the same disk.
     """
 
     folder: Path
@@ -55,7 +56,7 @@ class DailyBackup:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread after a backup in progress is finished."""
+        """End the backup thread, after completing a backup in progress."""
         self._thread.close()
 
     def make_if_due(self) -> Path | None:
@@ -95,8 +96,8 @@ class DailyBackup:
     def _make_backup(self) -> Path:
         """Write and verify a backup, delete the oldest backups, and return the path of the new backup.
 
-        A backup that fails verification is deleted, and the older backups remain. Raises OSError or
-        StoreError.
+        A backup that fails verification is deleted, and the previous backups remain. Raises OSError if a
+        file cannot be written, or StoreError if the backup fails.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         target = self.folder / self._name()
@@ -135,5 +136,5 @@ class DailyBackup:
 
 
 def _sort_key(now: str, path: Path) -> tuple[bool, str]:
-    """Return the key that sorts backups by age. ``now`` is the name that a new backup would have now."""
+    """Return the key that sorts backups by age. ``now`` is the file name of a backup made now."""
     return path.name <= now, path.name

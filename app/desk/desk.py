@@ -1,4 +1,4 @@
-"""Model of the Automatic page and of the running TurnDesk. It does not use Qt and never waits.
+"""Model of the Automatic page and of the running TurnDesk, which does not use Qt and never waits.
 
 Every method that a key or a touch calls returns immediately. If the action is not possible, the prompt line
 shows the reason (``prompt_notice``). Otherwise the method posts a command, and a later snapshot shows the
@@ -63,8 +63,9 @@ _NO_MACHINE = DeskMachine()
 class Desk:
     """Model of the Automatic page, with the objects that all pages share.
 
-    ``persistence`` stores settings, levels, counts and runs. Without ``persistence``, they are lost when
-    TurnDesk closes. ``start_watch`` checks the first move of a start, if the machine supports this check.
+    ``persistence`` stores settings, access levels, counts and runs. Without it, these data are lost when
+    TurnDesk closes. ``start_watch`` checks the first move after a start, if the machine supports this
+    check.
     """
 
     def __init__(
@@ -145,11 +146,14 @@ class Desk:
         return self.desk_control.read_snapshot()
 
     def say(self, text: str) -> None:
-        """Show a message for 4 s or until the next key press."""
+        """Show a message on the prompt line for 4 s or until the next key press."""
         self.prompt_answers.say(text)
 
     def show_warning(self, text: str) -> None:
-        """Show a warning for 4 s, for example about dropped input. Key presses do not remove it."""
+        """Show a warning on the prompt line for 4 s, for example about dropped input.
+
+        Key presses do not remove it.
+        """
         self.prompt_answers.say(text, is_lasting=True)
 
     def show_success(self, text: str) -> None:
@@ -180,12 +184,12 @@ class Desk:
 
     @property
     def prompt_notice(self) -> str:
-        """Return the open question, the message for the last key, or an empty string."""
+        """Return the open question or the message for the last key, or an empty string if neither exists."""
         return self.prompt_answers.shown_message
 
     @property
     def start_instruction(self) -> str:
-        """Return the instruction that says how to start a cycle at this machine."""
+        """Return the instruction for starting a cycle at this machine."""
         if self.desk_control.station_panel is None:
             return "PRESS BOTH PALM BUTTONS" if self.machine.is_two_hand else "PRESS CYCLE START"
         if (
@@ -200,7 +204,7 @@ class Desk:
 
     @property
     def release_instruction(self) -> str:
-        """Return the instruction that says how to release the E-stop at this machine."""
+        """Return the instruction for releasing the E-stop at this machine."""
         if self.window_state.has_text_field():
             by_hand = "F1, THEN U: RELEASE E-STOP"
             return (
@@ -216,7 +220,7 @@ class Desk:
         return ReadoutKind(self.settings_store.current_settings.readout)
 
     def is_refused(self, change: ProtectedChange) -> bool:
-        """Return whether the access level is too low for this act. If it is, show the reason."""
+        """Return whether the access level is too low for this change, and if so, show the reason."""
         why = self.user_access.find_refusal(change)
         if why:
             self.say(why)
@@ -231,7 +235,7 @@ class Desk:
             self.try_save(partial(self.settings_store.choose, name, value))
 
     def try_save(self, save: Callable[[], None]) -> None:
-        """Call a function that saves data, and show a message if saving fails."""
+        """Call ``save``, and show a message if saving fails."""
         try:
             save()
         except StoreError as error:
@@ -258,7 +262,7 @@ class Desk:
         self.alarm_log.hear(event)
 
     def barred(self) -> str:
-        """Return the reason why the start buttons have no effect, or an empty string if they work."""
+        """Return the reason why the start buttons are disabled, or an empty string if they are enabled."""
         if self.window_state.is_stop_held() or not self.window_state.can_start_here:
             return (
                 prompt_line.RELEASE_STOP_KEY
@@ -320,10 +324,7 @@ class Desk:
             self.try_save(partial(self.program_runs.update_first_job, snapshot, loaded))
 
     def find_first_move_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why the first move of the program prevents its start.
-
-        The result is an empty string if the first move is clear.
-        """
+        """Return the reason why the program's first move must not start, or an empty string if it may."""
         if self.start_watch is None or snapshot.state is not MachineState.IDLE:
             return ""
         return self.start_watch.start_refusal if snapshot.starts is StartAction.PROGRAM else ""
@@ -366,7 +367,7 @@ class Desk:
     def reset_control(self) -> None:
         """Acknowledge an alarm, or cancel an interrupted program after the operator confirms.
 
-        If the control is silent, start a new control where possible.
+        If the control does not respond, start a new control where possible.
         """
         state = self.read_snapshot().state
         if self.desk_control.silence_watch.is_silent and self.desk_control.restart_control is not None:
@@ -384,10 +385,9 @@ class Desk:
         self.post(Reset())
 
     def confirm_question(self) -> None:
-        """Handle the key Y.
+        """Handle the key Y, which confirms the open question.
 
-        Y confirms the open question. Without a question, Y confirms that an interrupted job starts again at
-        line 1.
+        Without a question, Y confirms that an interrupted job starts again at line 1.
         """
         snapshot = self.read_snapshot()
         found, here = snapshot.interrupted, self.window_state.can_start_here
@@ -412,7 +412,7 @@ class Desk:
             self.post(ConfirmStart(""))
 
     def enable_drives(self) -> None:
-        """Switch the drives on after an E-stop or power-up. If this is not possible, show the reason."""
+        """Switch the drives on after an E-stop or power-up, or show the reason if this is not possible."""
         state = self.read_snapshot().state
         if state is MachineState.DISABLED:
             self.clear_prompt_line()
@@ -428,7 +428,7 @@ class Desk:
         """Handle the Esc key, and return False if it has no effect.
 
         Esc cancels an open question or a confirmed start at line 1. While the machine moves, Esc starts
-        feed hold. A message without a question does not delay the feed hold.
+        feed hold. A message on the prompt line does not delay the feed hold.
         """
         shot = self.read_snapshot()
         moves = shot.state in prompt_line.MOVING_STATES

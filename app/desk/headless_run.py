@@ -43,7 +43,7 @@ class HeadlessControl(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class RunOutcome:
-    """Outcome of a run.
+    """Outcome of a program run.
 
     ``final_state`` is ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``. ``failure_reason`` is
     the reason as text. ``elapsed_s`` is the cycle time in seconds.
@@ -56,7 +56,7 @@ class RunOutcome:
 
 
 class HeadlessRun:
-    """Run that loads and starts a job, presses Cycle Start at M00 and M01, and reports the outcome."""
+    """Program run that loads and starts a job, and presses Cycle Start at M00 and M01."""
 
     def __init__(
         self,
@@ -176,7 +176,7 @@ class HeadlessRun:
         return False
 
     def _is_stuck(self, snapshot: Snapshot) -> bool:
-        """Return whether the program has waited too long for an input. In this run, inputs never change."""
+        """Return whether the program has waited too long for an input, which cannot change in this run."""
         now = self._clock.now()
         if snapshot.state is not MachineState.WAIT or snapshot.waiting_for.startswith("DWELL"):
             self._last_move = now

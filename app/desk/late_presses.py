@@ -1,8 +1,8 @@
-"""Complete list of actions that a late key press or touch must not start.
+"""Actions that a late key press or touch must not start.
 
-A press is late if it was made before the end of a stall of the screen. All other late presses are executed
-in order. One key has many meanings, so each press is checked at the point where it would start an action.
-These points are the posting of a command, the simulated station, and the reply to a question.
+A press is late if it was made before the end of a stall of the screen. All other effects of late presses
+are executed in order. One key has many meanings, so each press is checked at the point where it would start
+an action. These points are the posting of a command, the simulated station, and the reply to a question.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ REPORT_INTERVAL_S = 4.0  # Seconds after the last dropped press. A press dropped
 
 
 class StartingAction(Enum):
-    """Action that a press may start, for example a motion, the drives or an output."""
+    """Action that a late press must not start, such as a motion, the drives or an output."""
 
     CYCLE = auto()
     DRIVES = auto()
@@ -86,7 +86,10 @@ def _begins_at_line_1(command: Command, _now: Snapshot) -> bool:
 
 
 def _is_drive_switch(command: Command, _now: Snapshot) -> bool:
-    """Return whether a forced output can start a motion or a device. Switching the coolant off cannot."""
+    """Return whether a forced output can start a motion or a device.
+
+    Switching the coolant off, for example, cannot start one.
+    """
     return isinstance(command, commands.ForceOutput) and (command.on or command.name != "coolant")
 
 
@@ -181,7 +184,7 @@ class LatePressFilter:
     def suspend_check(self) -> Iterator[None]:
         """Return a context in which actions are not attributed to the current press.
 
-        Once per frame, the screen renews keys that are held down in this context.
+        Once per frame, the screen uses this context to renew keys that are held down.
         """
         late, self.is_late = self.is_late, False
         try:

@@ -1,4 +1,4 @@
-"""Description of a page of the main window. It contains the names of classes but imports none of them."""
+"""Description of a page of the main window, which names the page's classes without importing them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ ALL_LANGUAGES = LATHES | MILLS
 
 @dataclass(frozen=True, slots=True)
 class PageDescription:
-    """Description of one page.
+    """Description of one page of the main window.
 
-    ``view_class`` and ``model_class`` are dotted class names, which are imported when the page is first
-    opened. The model must be attached to TurnDesk. A view without a model gets its data from ``Desk``. A
-    page without a key is not in the main menu. ``deferred_modules`` lists dotted names of modules that are
-    imported after the page has opened.
+    - ``view_class`` and ``model_class`` are dotted class names, imported when the page first opens.
+      The model must be attached to TurnDesk. A view without a model gets its data from ``Desk``.
+    - A page without a key is not in the main menu.
+    - ``deferred_modules`` are dotted names of modules that are imported after the page has opened.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Interface through which the screen uses the store, and a substitute if no store can be opened."""
+"""Interface between the screen and the data store, with a substitute without a store."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOTHING_SAVED = "no data is being saved; start turndesk with a writable folder (
 
 @dataclass(frozen=True, slots=True)
 class NullRunRecords:
-    """Run records without an open store. Every record is dropped, and part counts are zero.
+    """Substitute for run records if no store is open, which drops every record and counts no parts.
 
     ``error_text`` is the reason why no store is open. It is empty for scripts, which do not have a store.
     """
@@ -51,7 +51,7 @@ class NullRunRecords:
         """Ignore the outcome of a run."""
 
     def record_cycle(self, program: str, seconds: float) -> None:
-        """Ignore the time of a cycle."""
+        """Ignore the duration of a cycle."""
 
     def record_proof(self, program: str, result: str, planned: float | None, text: str | None = None) -> None:
         """Ignore the result of a proof."""
@@ -62,9 +62,10 @@ class Persistence:
     """Storage of settings, run records, versions, users and the event log.
 
     This base class is for scripts and for a store that cannot be opened. It stores only settings, and only
-    until the program ends. Reading may raise StoreError. Writing is posted and never waits. Call
-    ``backup``, ``restore``, ``save_settings``, ``events`` and ``save_version`` only on a worker thread.
-    Wait for changes of ``require_store`` only on a worker thread.
+    until the program ends. Reading may raise StoreError. Writing is queued and never waits.
+
+    Call ``backup``, ``restore``, ``save_settings``, ``events`` and ``save_version`` only on a worker
+    thread. Wait for changes of ``require_store`` only on a worker thread.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
@@ -75,7 +76,7 @@ class Persistence:
         return self.settings.get(key)
 
     def save_setting(self, key: str, value: object) -> None:
-        """Store the value of a setting, which JSON must be able to represent. None removes the setting."""
+        """Store the value of a setting, which must be representable in JSON. None removes the setting."""
         self.settings[key] = value
 
     def save_settings(self, values: Mapping[str, object]) -> None:
@@ -87,10 +88,10 @@ class Persistence:
             self.save_setting(key, value)
 
     def log_change(self, text: str, user_name: str = "") -> None:
-        """Write a change to the event log, for data without its own history.
+        """Write a change of data that have no history of their own to the event log.
 
-        ``user_name`` is the user who requested the change, or empty for the signed-in user. Without access
-        levels, nothing is written.
+        ``user_name`` is the user who requested the change, or empty for the signed-in user. If access
+        levels are off, nothing is written.
         """
 
     def log_access(self, text: str, user_name: str) -> None:
@@ -122,8 +123,8 @@ class Persistence:
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Save a version of a program, wait until it is on the disk, and return its number.
 
-        Raises StoreError if saving fails. Without a store, this method always raises the error, because the
-        text would be lost.
+        Raises StoreError if saving fails. Without a store, this method always raises StoreError, because
+        the text would be lost.
         """
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 

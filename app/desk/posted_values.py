@@ -10,7 +10,7 @@ ARRIVAL_TIMEOUT_S = 0.3  # Seconds within which the snapshot shows a posted valu
 
 @dataclass(slots=True)
 class PostedValues:
-    """Newest posted value for each name. Because of it, two quick key presses both take effect.
+    """Latest value posted to the control for each name, so that two quick key presses both take effect.
 
     ``read_time_s`` returns monotonic time in seconds.
     """
@@ -26,9 +26,9 @@ class PostedValues:
         return bool(self.change_value(name, displayed_state, lambda now: not now))
 
     def change_value(self, name: str, displayed_value: float, change: Callable[[float], float]) -> float:
-        """Return the value after adding ``change``. The caller must post this value immediately.
+        """Return the result of ``change``, which the caller must post immediately.
 
-        The change applies to the value that was posted last, or to ``displayed_value`` if no value was
+        The function is applied to the value that was posted last, or to ``displayed_value`` if no value was
         posted in the last 0.3 s.
         """
         now = self.read_time_s()

@@ -59,7 +59,7 @@ _UNLOGGED_SETTINGS = frozenset({"readout"})  # Settings that change many times p
 
 @dataclass(slots=True)
 class SettingsStore:
-    """The current screen settings. If a stored value is not a valid choice, it is ignored."""
+    """The current screen settings, read from the store. Invalid stored values are ignored."""
 
     persistence: Persistence = field(default_factory=Persistence)
     current_settings: ScreenSettings = field(init=False)
@@ -96,7 +96,7 @@ class SettingsStore:
             )
 
     def find_next_choice(self, name: str) -> object:
-        """Return the choice that follows the current choice. The first choice follows the last choice."""
+        """Return the choice of a setting that follows its current choice, wrapping to the first choice."""
         choices = SETTING_CHOICES[name]
         return choices[(choices.index(getattr(self.current_settings, name)) + 1) % len(choices)]
 

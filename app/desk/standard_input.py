@@ -1,4 +1,4 @@
-"""Reading of standard input. The argument ``-`` selects standard input instead of a file.
+"""Reading of standard input for an argument ``-``, which selects it instead of a file.
 
 Only one argument can use standard input.
 """
@@ -16,7 +16,7 @@ _read_inputs: dict[str, bytes] = {}
 
 
 def reset_standard_input() -> None:
-    """Discard the input that was read. Call this function at the beginning of a command."""
+    """Discard the stored bytes of standard input. Call this function at the beginning of a command."""
     _read_inputs.clear()
 
 

@@ -69,11 +69,11 @@ class StationPanel(Protocol):
 
 @dataclass(slots=True)
 class PalmButtons:
-    """Pressed palm buttons and their press times, from which the reason for a failed start is found.
+    """Pressed palm buttons and their press times, used to find the reason for a failed start.
 
-    A pair of presses is invalid if the buttons were not pressed in time, or if one button was released
-    while the other remained pressed. An invalid pair has no effect until both buttons are released, so that
-    a button that is taped down cannot start a cycle.
+    A pair of presses is invalid if the buttons were not pressed within the time limit, or if one button was
+    released while the other remained pressed. An invalid pair has no effect until both buttons are
+    released, so that a button that is taped down cannot start a cycle.
     """
 
     # "left" or "right", with its monotonic time in seconds.
@@ -82,10 +82,7 @@ class PalmButtons:
     is_pair_invalid: bool = False
 
     def record_press(self, side: str, time_s: float) -> bool:
-        """Record a press, and return whether both buttons are now pressed.
-
-        The result is False if the buttons were not pressed within the time limit.
-        """
+        """Record a press, and return whether both buttons are pressed and were pressed in time."""
         if side in self.press_times:
             return False
         self.press_times[side] = time_s
@@ -128,7 +125,7 @@ class OverridePot:
     late_presses: LatePressFilter | None = None
 
     def set(self, fraction: float) -> None:
-        """Set the target of the pot. The pot turns toward the target at a limited speed.
+        """Set the target of the pot, toward which it turns at a limited speed.
 
         A late press does not raise the target, because an operator who sees no effect presses too often.
         """
@@ -164,7 +161,7 @@ class StationControls:
 
     Without a simulated station, the actions have no effect. ``say`` shows a message on the prompt line, and
     ``clear`` removes the message. ``starting`` is called when both palm buttons are pressed. ``barred``
-    returns why a start is not possible now.
+    returns why a start is not possible.
     """
 
     station: StationPanel | None
@@ -198,11 +195,11 @@ class StationControls:
         return self.clock() - self.find_press_age()
 
     def palm(self, side: str, is_down: bool) -> None:
-        """Press or release a palm button, at the time of the key event.
+        """Press or release a palm button.
 
-        The relay of the station decides whether the two presses start a cycle. The relay receives a press
-        when this method is called, not at the time of the key event. If the buttons were not pressed
-        together, this method therefore forwards only one press.
+        The station's relay decides whether two presses start a cycle. The relay receives a press when this
+        method is called, not at the time of the key event. If the buttons were not pressed together, this
+        method therefore forwards only one press.
         """
         station = self.station
         if station is None:
@@ -220,7 +217,7 @@ class StationControls:
                 self.say(self.one_palm_message)
 
     def latch(self, side: str) -> None:
-        """Press a palm button of a simulated machine with one touch or the mouse.
+        """Latch a palm button of a simulated machine with one touch or mouse click.
 
         The button remains latched until the other button is touched. Touching the other button presses both
         buttons together, and the end of the touch releases both.
@@ -239,16 +236,16 @@ class StationControls:
             self.palm(each, is_down=True)
 
     def update_latched_side(self) -> str:
-        """Return the palm button that is currently latched. It waits for a touch of the other button.
+        """Return the palm button that is latched until the other button is touched.
 
-        The latch ends after a time limit.
+        The button is no longer latched after a time limit.
         """
         if self.latched and self.clock() - self._latched_at > LATCH_TIME_S:
             self.latched = ""
         return self.latched
 
     def release_latched(self) -> None:
-        """Release both palm buttons at the end of the touch."""
+        """Release both palm buttons at the end of the touch that pressed them."""
         for side in tuple(self.palms.press_times):
             self.palm(side, is_down=False)
 
@@ -291,11 +288,11 @@ class StationControls:
             self.station.set_spindle_auto(is_auto)
 
     def turn_spindle_pot(self, steps: int) -> None:
-        """Turn the spindle pot by a number of steps of ten percent."""
+        """Turn the spindle override pot by a number of steps of ten percent."""
         self.spindle_pot.set(step_fraction(self.spindle_pot.wanted, steps))
 
     def turn_feed_pot(self, steps: int) -> None:
-        """Turn the feed pot by a number of steps of ten percent.
+        """Turn the feed override pot by a number of steps of ten percent.
 
         The feed override always equals the position of the pot.
         """

@@ -19,8 +19,8 @@ class StoredPart:
     """Stored part settings of one program.
 
     ``stock_text`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out_mm`` is in
-    mm, or None if it was not entered. ``silenced_checks`` maps each silenced check to the reason for
-    silencing it.
+    mm, or None if it was not entered. ``silenced_checks`` maps the name of each suppressed check to the
+    operator's reason.
     """
 
     stock_text: str = ""
@@ -53,6 +53,6 @@ def load_stored_part(read_setting: ReadSetting, program: str) -> StoredPart:
 
 
 def make_stock_absolute(stock: str) -> str:
-    """Return a stock specification that is valid in every folder because its file path is absolute."""
+    """Return the stock specification with an absolute file path, so that it is valid in every folder."""
     kind, _, rest = stock.partition(":")
     return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else stock

@@ -13,7 +13,7 @@ from core.tool_edges import format_edge_name, get_tool_number
 
 
 def make_tool_shape(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
-    """Return the shape of a tool with the nose radius and tip quadrant of its offset.
+    """Return the tool's shape with the nose radius and tip quadrant from its tool offset.
 
     Both values are 0 for a tool without an offset.
     """

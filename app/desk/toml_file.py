@@ -1,4 +1,4 @@
-"""Reading of TOML files that users write. One error reports all mistakes of a file."""
+"""Reading of TOML files that users write, with one error that reports all mistakes of a file."""
 
 from __future__ import annotations
 

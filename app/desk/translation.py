@@ -1,9 +1,8 @@
 """Translation of texts into the operator's language, without Qt.
 
-The screen sets the translator when it starts.
-
-The template of a ``Message`` is translated, and its values are translated and inserted. A text without
-values is translated as a whole. A text that is not in the catalog remains in English.
+The screen sets the translator when it starts. For a ``Message``, the template is translated, and its values
+are translated and inserted. A text without values is translated as a whole. A text that is not in the
+catalog remains in English.
 """
 
 from __future__ import annotations
@@ -83,10 +82,7 @@ def _fill_message(message: Message, translate: Translate) -> str:
 
 
 def _is_untranslatable(name: str, value: MessageValue, of_program: bool) -> bool:
-    """Return whether a value must not be translated.
-
-    Such a value is a number, a name, or a word of the program.
-    """
+    """Return whether a value is a number, a name or a program word, which must not be translated."""
     if isinstance(value, Message):
         return False
     if not isinstance(value, str) or name in _NAMES:

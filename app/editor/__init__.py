@@ -1,4 +1,4 @@
-"""Editor page (F3): program text, live proof of the text, program files and version history.
+"""Editor page (F3) for the program text, with live proof, program files and version history.
 
 The package contains the model and the views.
 """

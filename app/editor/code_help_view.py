@@ -1,4 +1,4 @@
-"""Code help of the editor: the meaning and a sketch of the code at the cursor, and the list of codes."""
+"""Code help of the editor: meaning and sketch of the code at the cursor, and the list of codes."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def _make_arrow(a: Point, b: Point) -> Outline:
 def _make_roughing_sketch(deep: str, left: str, *points: str) -> Sketch:
     """Return the sketch of a roughing cycle.
 
-    ``deep`` and ``left`` are the address words for the depth of cut and the allowance. ``points`` are the
-    words for the start and end points.
+    ``deep`` and ``left`` are the address words for the depth of cut and the finishing allowance. ``points``
+    are the address words for the start and end points.
     """
     profile = ((0, 3), (-6, 3), (-9, 6), (-14, 6), (-14, 9))
     passes = [
@@ -80,7 +80,10 @@ def _make_roughing_sketch(deep: str, left: str, *points: str) -> Sketch:
 
 
 def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch:
-    """Return the sketch of a threading cycle. The address words label lead, start, last pass and end."""
+    """Return the sketch of a threading cycle.
+
+    The parameters are the address words that label the lead, start, last pass and end.
+    """
     teeth = [(-float(k), 7.0 if k % 2 else 5.6) for k in range(13)]
     depths = [
         make_cut_outline((3, 7.0 - 0.7 * math.sqrt(k)), (-12, 7.0 - 0.7 * math.sqrt(k))) for k in (1, 2, 3, 4)
@@ -96,7 +99,7 @@ def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch
 
 
 def _make_side_sketch(*, outside: bool) -> Sketch:
-    """Return the sketch of a tool nose that moves along the outside or inside contour to the chuck."""
+    """Return the sketch of a tool nose that follows an outside or inside contour to the chuck."""
     solid = make_part_outline((0, 0), (0, 5), (-8, 5), (-12, 8), (-18, 8), (-18, 0))
     off = 1.2 if outside else -1.2
     path = make_cut_outline((2, 5 + off), (-8, 5 + off), (-12, 8 + off), (-18, 8 + off))
@@ -171,10 +174,7 @@ class CodeStrip(Panel):
 
 
 class CodeList(CodeChoiceList):
-    """List of codes.
-
-    For the selected code, the list also shows the description, examples and a sketch.
-    """
+    """List of codes, which shows the description, examples and a sketch of the selected code."""
 
     def __init__(
         self,
@@ -186,7 +186,7 @@ class CodeList(CodeChoiceList):
     ) -> None:
         """Create the list.
 
-        ``return_to_text`` is called to close the list and to return to the text.
+        ``return_to_text`` is called to close the list and move the focus back to the program text.
         """
         self._codes = CodeHelp()
         super().__init__(theme, self._codes, self._insert_code, parent)
@@ -242,7 +242,7 @@ class CodeList(CodeChoiceList):
             )
 
     def _find_foot_height(self) -> float:
-        """Return the height in pixels of the area for the example and the sketch."""
+        """Return the height in pixels of the area below the list for the example and the sketch."""
         return super()._find_foot_height() + self._find_sketch_height()
 
     def _find_sketch_height(self) -> float:

@@ -33,9 +33,9 @@ class InvalidNameError(ValueError):
 class Document:
     """Program that is being edited.
 
-    ``text`` contains line feeds only, and ``line_ending`` is the line ending of the file. ``is_read_only``
-    marks a sample, which must be saved under another name. ``is_new`` marks a document that has no file
-    yet.
+    ``text`` has line feeds as line endings, and ``line_ending`` is the line ending of the file.
+    ``is_read_only`` marks a sample, which must be saved under another name. ``is_new`` marks a document
+    that has no file yet.
     """
 
     path: Path
@@ -55,7 +55,7 @@ class Document:
 
 
 def end_last_line(text: str) -> str:
-    """Return the text with a final line feed, or an empty string for an empty text.
+    """Return the text with a line feed at its end, or an empty string for an empty text.
 
     TurnDesk saves and proves texts in this form.
     """
@@ -144,9 +144,12 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
     """Write ``text`` to the file of ``document`` and archive it as a version.
 
     Returns an empty string on success, or the reason why no version was archived. If another program has
-    changed the file, nothing is written and the result is ``CHANGED_EXTERNALLY`` in two cases: if
-    ``may_overwrite`` is False, or if the changed content cannot be archived. Raises FileOperationError if
-    the file cannot be read or written.
+    changed the file, nothing is written and the result is ``CHANGED_EXTERNALLY`` in two cases:
+
+    - ``may_overwrite`` is False.
+    - The changed content of the file cannot be archived.
+
+    Raises FileOperationError if the file cannot be read or written.
     """
     there = read_if_exists(document.path)
     foreign = there is not None and not _matches_opened(document, there)
@@ -244,7 +247,7 @@ class DraftStore:
         return Message(messages.DRAFT_NOT_ARCHIVED, name=aside, why=why)
 
     def poll(self) -> None:
-        """Process finished writes and start the next write.
+        """Process completed writes and start the next write.
 
         This method is called once per frame.
         """

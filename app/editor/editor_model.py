@@ -1,4 +1,4 @@
-"""Model of the editor, independent of Qt: opens, creates, saves and closes programs.
+"""Model of the editor, independent of Qt, which opens, creates, saves and closes programs.
 
 No method blocks. A request of the operator starts work, which a later call of ``EditorModel.poll``
 completes. ``EditorModel.poll`` is called once per frame. The page owns the text and passes it with each
@@ -36,7 +36,7 @@ from core.message import Message
 
 
 class EditorStage(StrEnum):
-    """Stage of work on a document in the editor."""
+    """Stage of the editor's work on a document."""
 
     CLOSED = "closed"
     OFFERED = "offered"  # a new file: F1 creates it, Esc cancels
@@ -103,7 +103,7 @@ class EditorModel:
         self.draft_store = DraftStore(self.programs_folder / ".drafts", self.version_archive)
 
     def poll(self) -> None:
-        """Process finished work.
+        """Process the results of completed background work.
 
         This method is called once per frame.
         """
@@ -113,7 +113,7 @@ class EditorModel:
             self.message = self.draft_store.error_text
 
     def close(self) -> None:
-        """Stop the workers after pending writes are finished."""
+        """Stop the workers after pending writes are complete."""
         self.live_proof.close()
         self.worker.close()
         self.draft_store.close()
@@ -212,7 +212,7 @@ class EditorModel:
     # --- saving and leaving --------------------------------------------------------------------------
 
     def save_document(self, text: str, *, leave_after: bool = False, may_overwrite: bool = False) -> None:
-        """Save the file, archive the version, and close the editor if ``leave_after`` is set.
+        """Save the file, archive the version, and close the editor if ``leave_after`` is true.
 
         ``may_overwrite`` permits replacing a file that another program has changed.
         """
@@ -274,7 +274,7 @@ class EditorModel:
     def discard_and_leave(self, text: str) -> None:
         """Close the editor without saving.
 
-        If the text has unsaved changes, the operator must first confirm this.
+        If the text has unsaved changes, the operator must first confirm that they are discarded.
         """
         if self.stage is not EditorStage.OPEN:
             return
@@ -335,8 +335,8 @@ class EditorModel:
 def open_editor(desk: Desk, editor: EditorModel) -> bool:
     """Open the editor with the program whose name was typed, or else with the loaded program.
 
-    For an unknown name, the editor offers to create a new file. Returns False if the editor cannot open;
-    TurnDesk then shows the reason.
+    For an unknown name, the editor offers to create a new file. If the editor cannot open, the function
+    returns False and the prompt line shows the reason.
     """
     name, now = editor.pending_name.strip(), desk.program_loader.loaded_program
     editor.pending_name = ""
@@ -394,7 +394,7 @@ def _stays(left: ClosedProgram, now: LoadedProgram) -> str:
 def _should_load(closed: ClosedProgram, loaded: LoadedProgram) -> bool:
     """Return whether F3 loads the closed program.
 
-    F3 loads a program that was changed, and reloads the loaded program if its text is different. A program
+    F3 loads a program that was changed, and reloads the loaded program if its text has changed. A program
     that was only viewed never replaces another loaded program.
     """
     if closed.is_changed or loaded.path is None:
@@ -403,10 +403,7 @@ def _should_load(closed: ClosedProgram, loaded: LoadedProgram) -> bool:
 
 
 def _is_loaded(text: str, current: LoadedProgram) -> bool:
-    """Return whether the loaded program has this text.
-
-    Different line endings are ignored.
-    """
+    """Return whether the loaded program has this text, ignoring different line endings."""
     if current.source is None:
         return False
     loaded = current.source.text.replace("\r\n", "\n").replace("\r", "\n")

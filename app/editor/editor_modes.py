@@ -1,4 +1,4 @@
-"""Modes of the editor page, with their prompts. The mode determines the meaning of the keys."""
+"""Modes of the editor page, which determine the meaning of the keys, with their prompts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.editor import editor_messages as messages
 
 
 class EditorMode(StrEnum):
-    """Mode of the editor page. The mode determines the meaning of the keys."""
+    """Mode of the editor page, which determines the meaning of the keys."""
 
     TEXT = "text"
     FIND = "find"

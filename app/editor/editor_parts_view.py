@@ -1,4 +1,4 @@
-"""Parts of the editor page: head line, path, findings and keyboard, with their visibility and layout."""
+"""Parts of the editor page: head line, tool path, findings and keyboard, with their layout."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ if TYPE_CHECKING:
 
 
 class EditorPathView(PathView):
-    """View of the path of the edited text.
+    """View of the tool path of the edited text.
 
-    While the text changes, the view keeps the zoom and pan that the operator set. When the operator touches
-    a path, the constructor's ``jump_to_line`` function receives the source line.
+    While the text changes, the view retains the zoom and pan that the operator set. When the operator
+    touches a path, the constructor's ``jump_to_line`` function receives the source line.
     """
 
     title = "PATH TO THE CURSOR"
@@ -64,7 +64,7 @@ class EditorPathView(PathView):
 
     @property
     def tip_position(self) -> TipPosition:
-        """Return the position of the tool tip at the end of the cursor line's motion."""
+        """Return the position of the tool tip after the motion of the cursor line."""
         return self._tip or TipPosition()
 
     def follow_line(self, line: int) -> None:
@@ -86,7 +86,7 @@ class EditorPathView(PathView):
     def jump_to_path_line(self) -> str:
         """Move the cursor to the source line of the path element at the crosshair.
 
-        Returns a message if the crosshair is not on the path, or else an empty string.
+        Returns a message if the crosshair is not on the path, and otherwise an empty string.
         """
         block = self.measurement.find_block() if self.measurement is not None else 0
         if not block:
@@ -105,7 +105,7 @@ class EditorPathView(PathView):
         }
 
     def make_pan_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the actions that pan the path, by arrow key."""
+        """Return the action of each arrow key, which pans the view of the path."""
         steps = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
         steps[Qt.Key.Key_Down] = (0, 1)
         return {key: partial(self.pan_view, *step) for key, step in steps.items()}
@@ -129,7 +129,7 @@ FINDING_ROW_HEIGHT = 5.2  # units: two lines of text, at least a fingertip high
 
 
 class FindingList(RowPanel):
-    """List of findings, sorted by line.
+    """List of the proof's findings, sorted by line.
 
     The finding in the cursor line is marked and always visible.
     """
@@ -152,7 +152,7 @@ class FindingList(RowPanel):
 
     @property
     def words(self) -> str:
-        """Return the title of the list."""
+        """Return the title of the list of findings."""
         found = self.findings
         if found.error_text:
             return found.error_text
@@ -168,10 +168,10 @@ class FindingList(RowPanel):
         )
 
     def find_next_error(self, line: int) -> Diagnostic | None:
-        """Return the first error after a line, or None if no finding has a line number.
+        """Return the first error after a line, continuing the search at the first line.
 
-        After the last line, the search continues at the first line. If there are no errors, the next
-        warning or note is returned.
+        If there are no errors, return the next warning or note. If no finding has a line number, return
+        None.
         """
         placed = [d for d in self.findings.diagnostics if d.line]
         found = [d for d in placed if d.severity is Severity.ERROR] or placed
@@ -218,7 +218,7 @@ HEAD_KEY_WIDTH = 14.0  # units: width of the key that shows the keyboard and of 
 
 
 class EditorHeading(NamedTuple):
-    """Content of the head line.
+    """Content of the editor's head line.
 
     ``mark`` is CHANGED, SAMPLE or NEW. It is an empty string for an unchanged file.
     """
@@ -229,7 +229,7 @@ class EditorHeading(NamedTuple):
 
 
 class EditorHeadLine(Panel):
-    """Head line with the edited program. The title line shows the loaded program instead."""
+    """Head line that shows the edited program, unlike the title line, which shows the loaded program."""
 
     background_color = "panel"
     heading = RedrawingAttribute(EditorHeading())
@@ -245,7 +245,8 @@ class EditorHeadLine(Panel):
     ) -> None:
         """Create the head line.
 
-        ``toggle_keyboard`` shows or hides the keyboard, and ``open_panel`` opens the panel of a key.
+        ``toggle_keyboard`` shows or hides the drawn keyboard. ``open_panel`` opens the feature panel that a
+        key name identifies.
         """
         super().__init__(theme, parent)
         self._keys, self._panel = toggle_keyboard, open_panel
@@ -279,11 +280,12 @@ HEAD_LINE_HEIGHT = 6.8  # units: a fingertip, for the key that shows the keyboar
 
 
 class EditorLayout(NamedTuple):
-    """Areas of the editor page.
+    """Rectangles of the areas on the editor page.
 
-    ``question_line`` is empty if no question is shown, and ``keyboard`` is empty while the drawn keyboard
-    is hidden. ``code_strip`` is the line that explains the code at the cursor, and ``code_list`` is the
-    list of codes. ``path_area`` contains all pictures of the program.
+    - ``question_line`` is empty if no question is shown.
+    - ``keyboard`` is empty while the drawn keyboard is hidden.
+    - ``code_strip`` explains the code at the cursor, and ``code_list`` is the list of codes.
+    - ``path_area`` contains all pictures of the program.
     """
 
     head_line: Rect
@@ -328,7 +330,7 @@ def make_editor_layout(
 
 
 class EditorParts(Page):
-    """Editor page with its parts and their layout, the base class of ``EditorPage``.
+    """Base class of ``EditorPage``, with the parts of the page and their layout.
 
     ``mode`` determines which parts are visible.
     """

@@ -81,14 +81,14 @@ class EditorPage(EditorParts):
     # --- calls of the main window --------------------------------------------------------------------
 
     def can_open(self) -> bool:
-        """Return whether the editor can open; if possible, open it.
+        """Open the editor if possible, and return whether it opens.
 
         The editor cannot open while a program runs or the spindle turns.
         """
         return self.editor.stage is not EditorStage.CLOSED or open_editor(self.desk, self.editor)
 
     def on_open(self) -> None:
-        """Reset the page when it opens, while the program is still being read."""
+        """Reset the page when it opens, before the program has been read."""
         self._target = page_table.AUTOMATIC
         self.enter_mode(EditorMode.TEXT)
 
@@ -152,11 +152,11 @@ class EditorPage(EditorParts):
         return True
 
     def find_pending_question(self) -> str:
-        """Return the question that F6 confirms, or an empty string."""
+        """Return the question that F6 confirms, or an empty string if no question is pending."""
         return self.editor.message if self.editor.pending_action else ""
 
     def prompt_text(self) -> str:
-        """Return the last message, or the finding of the cursor line if there is no message."""
+        """Return the last message of the editor, or else the finding of the cursor line."""
         if self.editor.message:
             return self.editor.message
         if self._moving:
@@ -174,7 +174,7 @@ class EditorPage(EditorParts):
         return messages.SAVE_HINT
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Process finished work, submit typed text for proof, and update the page."""
+        """Process completed background work, submit typed text for proof, and update the page."""
         editor = self.editor
         self._moving = snapshot.state in MOVING_STATES
         editor.poll()
@@ -278,7 +278,7 @@ class EditorPage(EditorParts):
             self.text_field.setFocus()
 
     def return_to_text(self) -> None:
-        """Return to the text from a question, a list or the path."""
+        """Move the focus from a question, a list or the path back to the program text."""
         self.editor.cancel_naming()
         if self.mode is EditorMode.PANEL:
             self.text_synchronizer.is_stale = True  # The present proof can belong to the preview of a form.
@@ -294,7 +294,7 @@ class EditorPage(EditorParts):
     def _show_finding(self, found: Diagnostic) -> None:
         """Move the cursor to a finding.
 
-        If the finding is about the machined part, the picture shows the part after that line.
+        If the finding is about the machined part, the picture shows the part after the finding's line.
         """
         self.move_cursor_to(found.line, found.column)
         if found.block_number:
@@ -343,7 +343,7 @@ class EditorPage(EditorParts):
             self.editor.message = messages.PROOF_PENDING
 
     def focus_path(self) -> None:
-        """Move the keyboard focus to the path, so that the operator can measure it or find a source line."""
+        """Move the keyboard focus to the tool path for measuring or for finding a source line."""
         if self.path_view.has_path:
             self.enter_mode(EditorMode.PATH)
         else:
@@ -436,7 +436,7 @@ class EditorPage(EditorParts):
         return action is not None
 
     def _find_action(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """Return the action of a key that is neither text nor a function key, or None without an action."""
+        """Return the action of a key that is neither text nor a function key, or None if it has none."""
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
             return self._make_chord_actions().get(key)

@@ -1,4 +1,4 @@
-"""Live proof of the program while the operator types.
+"""Live proof of the program text while the operator types.
 
 A worker proves only the latest text, so that typing is never delayed.
 """
@@ -28,9 +28,9 @@ _SEVERITY_WEIGHTS = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 
 @dataclass(frozen=True, slots=True)
 class ProofFindings:
-    """Result of proving the text that has the number ``number``.
+    """Findings of the proof of one text, which ``number`` identifies.
 
-    ``picture`` can show an older text.
+    ``picture`` may still show an older text.
     """
 
     number: int = 0
@@ -85,7 +85,7 @@ class LiveProof:
 
     @property
     def current_findings(self) -> ProofFindings:
-        """Return the latest findings.
+        """Return the latest available findings.
 
         If the worker fails, ``error_text`` of the findings contains the reason.
         """

@@ -1,4 +1,4 @@
-"""Text of the editor's panel, which is proved as a preview and then copied into the text field."""
+"""Text of the editor's feature panel, which is proved as a preview and copied into the text field."""
 
 from __future__ import annotations
 

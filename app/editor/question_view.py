@@ -55,13 +55,13 @@ class TextSearch:
         return pattern + "(?![A-Za-z])" if self.search_text[-1].isalpha() else pattern
 
     def inside(self, text: str) -> int:
-        """Return the number of matches that are parts of longer words or numbers."""
+        """Return the number of matches that lie inside longer words or numbers."""
         return len(TextSearch(self.search_text, matches_whole_words=False).find_matches(text)) - len(
             self.find_matches(text)
         )
 
     def words(self, text: str) -> str:
-        """Return a text for the operator with the number of matches."""
+        """Return a message for the operator with the number of matches."""
         count = len(self.find_matches(text))
         found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
         if not self.matches_whole_words:
@@ -75,9 +75,9 @@ class TextSearch:
 
 
 def following(positions: tuple[int, ...], start: int) -> int | None:
-    """Return the first position that is not before ``start``.
+    """Return the first match position at or after ``start``, wrapping to the first position.
 
-    After the last position, the search continues at the first. Returns None if there are no positions.
+    Returns None if there are no positions.
     """
     if not positions:
         return None
@@ -85,9 +85,9 @@ def following(positions: tuple[int, ...], start: int) -> int | None:
 
 
 def find_preceding(positions: tuple[int, ...], start: int) -> int | None:
-    """Return the last position before ``start``.
+    """Return the last match position before ``start``, wrapping to the last position.
 
-    Before the first position, the search continues at the last. Returns None if there are no positions.
+    Returns None if there are no positions.
     """
     return positions[bisect_left(positions, start) - 1] if positions else None
 
@@ -97,7 +97,7 @@ MESSAGE_WIDTH = 34.0  # units: width of the message
 
 
 class QuestionLine(Panel):
-    """Line with one or two labeled fields. A message about the entry is on the right."""
+    """Question line with one or two labeled fields, and a message about the entry on the right."""
 
     background_color = "panel"
     message_text = RedrawingAttribute("")  # message about the entry
@@ -113,7 +113,7 @@ class QuestionLine(Panel):
         self.hide()
 
     def show_question(self, *labels: str, initial_text: str | None = None) -> None:
-        """Show the line and move the keyboard focus to it.
+        """Show the question line and move the keyboard focus to it.
 
         The previous entry is selected, so that typing replaces it.
         """
@@ -167,10 +167,7 @@ class QuestionLine(Panel):
 
 
 class TextFinder:
-    """Finder for the text that the operator types in the question line.
-
-    The cursor moves to the next match.
-    """
+    """Finder for the text in the question line, which moves the cursor to the next match."""
 
     def __init__(self, text_field: ProgramTextField, question_line: QuestionLine) -> None:
         self._field, self._ask = text_field, question_line

@@ -51,9 +51,9 @@ _TOKEN_COLORS = {
 
 
 class SyntaxHighlighter(QSyntaxHighlighter):
-    """Syntax highlighter for program text.
+    """Highlighter of the syntax of a program text.
 
-    The state that is passed from line to line depends on the language.
+    Which highlighting state is passed from line to line depends on the program language.
     """
 
     def __init__(self, theme: ScreenTheme, document: QTextDocument) -> None:
@@ -83,9 +83,10 @@ class SyntaxHighlighter(QSyntaxHighlighter):
             self.rehighlight()
 
     def highlightBlock(self, text: str) -> None:
-        """Highlight one line.
+        """Highlight one line of the text.
 
-        Qt calls this method when the text of the line or the state of the preceding line changes.
+        Qt calls this method when the text of the line or the highlighting state of the preceding line
+        changes.
         """
         found, state = color_program_line(self._dialect, text, max(self.previousBlockState(), PLAIN_STATE))
         self.setCurrentBlockState(state)
@@ -242,9 +243,9 @@ class ProgramTextField(QPlainTextEdit):
             super().keyPressEvent(event)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Clear the selection before a mouse press is handled.
+        """Clear the selection before handling a mouse press, so that selected text cannot be dragged.
 
-        Dragging selected text with the mouse would block all keys, including the stop keys.
+        Dragging text with the mouse would block all keys, including the stop keys.
         """
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self.textCursor().hasSelection() and event.button() is Qt.MouseButton.LeftButton and not shift:
@@ -391,7 +392,7 @@ class TextSynchronizer:
         return self._dirty
 
     def synchronize(self) -> None:
-        """Copy a new text of the editor into the field, or pass typed text to the proof.
+        """Copy a new text of the editor model into the field, or pass typed text to the proof.
 
         This method is called once per frame.
         """
@@ -411,7 +412,7 @@ class TextSynchronizer:
         field.setReadOnly(editor.stage is not EditorStage.OPEN)
 
     def _update_dialect(self) -> None:
-        """Set the programming language that the file name indicates.
+        """Set the program language that the file name indicates.
 
         The resulting change of colors does not count as a change of the text.
         """
@@ -423,7 +424,7 @@ class TextSynchronizer:
 
     @property
     def mark(self) -> str:
-        """Return the word for the save state of the text: whether it differs from its file."""
+        """Return the word for the state of the text: CHANGED, SAMPLE, NEW, or empty if unchanged."""
         document = self._editor.document
         if document is None:
             return ""

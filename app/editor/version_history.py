@@ -14,9 +14,10 @@ from core.store.store_rows import VersionRow
 
 
 class VersionArchive(Protocol):
-    """Archive of program versions.
+    """Archive of the stored versions of all programs.
 
-    The methods are called only on the worker of the editor. All methods raise StoreError.
+    The methods are called only on the worker of the editor. All methods raise StoreError if the archive
+    fails.
     """
 
     def versions(self, name: str) -> Sequence[VersionRow]:
@@ -36,10 +37,10 @@ class VersionArchive(Protocol):
 
 
 class NullArchive:
-    """Empty archive for scripts, and for TurnDesk if its store cannot be opened."""
+    """Archive without versions, for scripts, and for TurnDesk if its store cannot be opened."""
 
     def versions(self, _name: str) -> Sequence[VersionRow]:
-        """Return no versions."""
+        """Return an empty tuple because this archive stores no versions."""
         return ()
 
     def read_version_text(self, name: str, version: int) -> bytes:
@@ -50,7 +51,7 @@ class NullArchive:
         )
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """Store nothing and return 0."""
+        """Store nothing and return 0 as the version number."""
         return 0
 
 
@@ -63,7 +64,7 @@ MAX_COMPARED_LINES = 20_000  # number of lines above which only the first and la
 
 @dataclass(frozen=True, slots=True)
 class DifferenceRow:
-    """One line of a comparison.
+    """One line in the comparison of an old and a new text.
 
     ``sign`` is + for a new line, - for an old line, a blank for a line in both texts, and … for omitted
     lines.
@@ -76,7 +77,7 @@ class DifferenceRow:
 
 
 def compare_texts(old: str, new: str) -> tuple[DifferenceRow, ...]:
-    """Return the rows of a comparison, or an empty tuple if the texts are equal."""
+    """Return the lines of a comparison of two texts, or an empty tuple if the texts are equal."""
     if old == new:
         return ()
     before, after = old.splitlines(), new.splitlines()
@@ -132,7 +133,7 @@ class VersionHistory:
     error_text: str = ""
 
     def open_history(self, name: str, current_text: str) -> None:
-        """Open the history of a program.
+        """Start reading the versions of a program.
 
         ``current_text`` is the text in the editor.
         """
@@ -168,7 +169,7 @@ class VersionHistory:
         return self.rows[self.marked].number if self.rows else 0
 
     def words(self) -> str:
-        """Return a text that describes the status of the selected version."""
+        """Return the status of the history as display text, for example that it is being read."""
         if self.error_text:
             return self.error_text
         if not self.rows:

@@ -33,8 +33,8 @@ SIGN_COLORS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
 class VersionList(RowPanel):
     """List of versions with the comparison of the selected version.
 
-    The history stores which version is selected. The comparison scrolls, and the selected version is in the
-    middle of the list.
+    The history model stores which version is selected. The selected version is in the middle of the list.
+    The scroll keys scroll only the comparison.
     """
 
     title = "HISTORY"
@@ -122,7 +122,7 @@ class VersionList(RowPanel):
         }
 
     def arrow_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the actions of the function keys for the arrow keys and the page keys."""
+        """Return the actions of the arrow and page keys, which are the same as those of F4 to F7."""
         by = {number: key.action for number, key in self.function_keys().items()}
         return {
             Qt.Key.Key_Up: by[4],

@@ -1,8 +1,14 @@
-"""Jog with a key or touch that is held down: steps, speeds and directions.
+"""Jog with a key or touch that is held down, and the step lengths and speeds of the jog.
 
-The motion ends when the key is released, when the window loses the keyboard focus, when another key or
-touch is pressed, when the step changes, when the screen stalls, or when the key stops repeating. Unless the
-motion ended by a release, no axis moves again until all keys are released and a key is pressed.
+The motion ends when one of these events occurs:
+
+- the key is released or stops repeating
+- the window loses the keyboard focus
+- another key or touch is pressed
+- the step changes
+- the screen stalls
+
+Unless the motion ended by a release, no axis moves again until all keys are released and a key is pressed.
 """
 
 from __future__ import annotations
@@ -35,7 +41,7 @@ CONTINUOUS_STEP_INDEX = -1
 
 @dataclass(slots=True)
 class JogSpeeds:
-    """Selected step and speed of the jog.
+    """Selected jog step and jog speed.
 
     ``step_index`` is CONTINUOUS_STEP_INDEX or the index of one of four step lengths. ``speed_index`` is the
     index of one of four speeds.
@@ -46,7 +52,7 @@ class JogSpeeds:
     speed_index: int = 1
 
     def select_next_step(self) -> None:
-        """Select the next step.
+        """Select the next jog step.
 
         The order is continuous, then the steps from the longest to the shortest, and then continuous again.
         """
@@ -74,7 +80,7 @@ class JogSpeeds:
         return length / 2 if axis == "X" and value_mode.is_diameter else length
 
     def format_step(self, axis: str, value_mode: ValueMode, step_index: int) -> str:
-        """Return the length of a step as text, for one axis."""
+        """Return the length of a jog step for one axis as text."""
         return (
             _short(DEGREE_STEPS[step_index])
             if self._turns(axis)
@@ -105,17 +111,17 @@ class JogSpeeds:
 
 
 def make_step_labels(value_mode: ValueMode) -> tuple[str, ...]:
-    """Return the lengths of the steps as key labels."""
+    """Return the lengths of the jog steps as key labels."""
     return tuple(_short(step) for step in (MM_STEPS if value_mode.is_metric else INCH_STEPS))
 
 
 def make_speed_labels(value_mode: ValueMode) -> tuple[str, ...]:
-    """Return the speeds of linear axes as key labels, in mm or inches per minute."""
+    """Return the jog speeds of linear axes as key labels, in mm or inches per minute."""
     return tuple(f"{speed:g}" for speed in (MM_SPEEDS if value_mode.is_metric else INCH_SPEEDS))
 
 
 def make_rotary_speed_labels() -> tuple[str, ...]:
-    """Return the speeds of rotary axes as key labels, in degrees per minute."""
+    """Return the jog speeds of rotary axes as key labels, in degrees per minute."""
     return tuple(f"{60 * speed:g}" for speed in ROTARY_SPEEDS_DEG_S)
 
 
@@ -137,7 +143,7 @@ _NO_ARROW: ArrowPoint = (0, 0)
 
 @dataclass(frozen=True, slots=True)
 class JogDirection:
-    """Jog direction with its axis and sign, its cell in the cross of arrows, and its key.
+    """Jog direction: its axis and sign, its cell in the cross of arrow keys, and its key.
 
     ``key_name`` is the Qt name of the key, and ``label`` is the text on the key.
     """
@@ -182,7 +188,7 @@ _ROTARY_DIRECTIONS = (
 def make_jog_directions(machine: Machine) -> tuple[JogDirection, ...]:
     """Return all jog directions of a machine.
 
-    A lathe has C directions only if its spindle can be positioned.
+    A lathe has jog directions for C only if its spindle can be positioned as an axis.
     """
     if machine.kind != "mill":
         turning = tuple(
@@ -221,7 +227,7 @@ class ActiveJog:
 
 @dataclass(slots=True)
 class HeldJog:
-    """Jog with a key or touch that is held down.
+    """Jog that runs while a key or touch is held down.
 
     ``lease_s`` is the time in seconds after which the motion ends unless the lease is renewed.
     ``find_refusal`` returns the reason why jogging is not possible now, or an empty string. ``read_clock``
@@ -250,7 +256,7 @@ class HeldJog:
     def press_direction(
         self, key_source: str, axis: str, direction_sign: int, *, is_rapid: bool, button_name: str = ""
     ) -> None:
-        """Handle a press on a direction.
+        """Handle a press on a jog direction.
 
         ``key_source`` identifies the key or touch. ``button_name`` is the input name of a button on the
         machine, or an empty string for other keys.
@@ -279,7 +285,7 @@ class HeldJog:
             self._begin(source, axis, sign, rapid)
 
     def _start_step(self, axis: str, sign: int, rapid: bool) -> None:
-        """Start one step.
+        """Jog the axis by one step.
 
         Holding the key down does not make the step longer.
         """
@@ -331,7 +337,7 @@ class HeldJog:
             self.stop_jog(tr("SHIFT RELEASED. RAPID STOPPED"))
 
     def release_all(self, reason: str = "") -> None:
-        """Treat all keys as released and stop the jog, because release events may not arrive."""
+        """Treat all keys as released and stop the jog, because release events may be lost."""
         self.pressed_keys.clear()
         if self.active_jog is not None:
             self.stop_jog(reason)
@@ -349,7 +355,7 @@ class HeldJog:
             self.show_message(reason)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the lease of the jog, or stop the jog if it must not continue.
+        """Renew the lease of the jog, or stop the jog if it is no longer permitted.
 
         This method is called once per frame.
         """
@@ -375,7 +381,7 @@ class HeldJog:
             self.post_command(StopJog())
 
     def _repeat_reason(self, snapshot: Snapshot) -> None:
-        """Show the reason for the stop again if a change of the machine state has cleared it."""
+        """Show the reason why the jog stopped again if a change of the machine state has cleared it."""
         if self._ended and snapshot.state is not MachineState.JOG:
             self.show_message(self._ended)
             self._ended = ""

@@ -1,4 +1,4 @@
-"""Page with keys and touch targets that move an axis only while they are held down."""
+"""Base of pages with keys and touch targets that move an axis only while they are held down."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TouchHandler = Callable[[str, str, int], None]  # Arguments: source, axis, sign.
 
 
 def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], color: str) -> None:
-    """Draw an arrow in its touch target, at the edge toward which the arrow points."""
+    """Draw an arrow in its touch target, near the edge to which the arrow points."""
     size = 0.16 * min(box.width(), box.height())
     centre = box.center() + QPointF(direction[0] * 0.30 * box.width(), direction[1] * 0.28 * box.height())
     forward, side = (
@@ -33,9 +33,9 @@ def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], 
 
 
 def draw_jog_mode(painter: ThemedPainter, box: QRectF, mode_labels: tuple[str, str, str]) -> None:
-    """Draw the current jog mode in the middle of the cross.
+    """Draw the current jog mode in the middle of the cross of arrow keys.
 
-    ``mode_labels`` are the type of the mode, its value and its unit.
+    ``mode_labels`` are the name of the mode, its value and the unit.
     """
     kind, figure, unit = mode_labels
     high, edge = 2.2 * painter.theme.unit_px, 0.1 * box.height()
@@ -47,7 +47,7 @@ def draw_jog_mode(painter: ThemedPainter, box: QRectF, mode_labels: tuple[str, s
 
 
 class JogCross(TouchPanel):
-    """Cross of touch targets.
+    """Cross of touch targets, one for each jog direction.
 
     An axis moves while its target is touched.
     """
@@ -100,7 +100,7 @@ class JogCross(TouchPanel):
         self.controls.append(self._make_control(box, axis, sign))
 
     def _make_control(self, box: QRectF, axis: str, sign: int) -> TouchControl:
-        """Return the touch control of a target.
+        """Return the touch control for a jog direction.
 
         The control is active until the touch ends or leaves the target.
         """
@@ -126,7 +126,7 @@ CHORD_MODIFIERS = (
 
 
 class HeldKeysModel(PageModel, Protocol):
-    """Interface of the model of a page with held keys.
+    """Interface of the model of a page with keys that are held down.
 
     ``is_active`` is True while a key is held down or the handwheel is selected.
     """
@@ -138,7 +138,7 @@ class HeldKeysModel(PageModel, Protocol):
 
     @property
     def directions(self) -> Sequence[JogDirection]:
-        """Return the jog directions of the page, each with its key."""
+        """Return the jog directions of the page."""
         ...
 
     @property
@@ -152,7 +152,7 @@ class HeldKeysModel(PageModel, Protocol):
 
 
 class HeldKeysPage(ModelPage):
-    """Page with keys that act while they are held down.
+    """Page with keys that act only while they are held down.
 
     The page detects presses and releases, and the model acts on them. ``jog_cross`` is the cross of touch
     targets.
@@ -173,7 +173,7 @@ class HeldKeysPage(ModelPage):
     # --- keys ----------------------------------------------------------------------------------------
 
     def handle_key_press(self, event: QKeyEvent) -> bool:
-        """Handle a direction key.
+        """Handle a direction key, which moves an axis.
 
         Any other key stops the motion and then has its usual function.
         """
@@ -222,7 +222,7 @@ class HeldKeysPage(ModelPage):
         self.model.release_all()
 
     def _has_keyboard(self) -> bool:
-        """Return whether this page receives keys, and not a dialog, a menu or another window.
+        """Return whether this page has the keyboard focus, and not a dialog, a menu or another window.
 
         Without a window manager, the window is never active. Only a change from active to inactive then
         counts as lost focus.
@@ -236,7 +236,7 @@ class HeldKeysPage(ModelPage):
     def release_if_active(self) -> None:
         """Stop the motion if a key is held down or the handwheel is selected.
 
-        Another window could receive the release event, and the motion would not stop.
+        Another window could receive the release event of the key, and the motion would then not stop.
         """
         if self.model.is_active:
             self.release_all()

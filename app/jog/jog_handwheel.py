@@ -1,7 +1,8 @@
 """Handwheel of the Jog page, and jog buttons on the machine.
 
-A key, a touch or switches of the operator station select the axis of the handwheel. After the handwheel was
-turned off, the key can select the axis again. A switch must first be turned to another position.
+The axis of the handwheel is selected by key or touch, or by switches of the operator station. After the
+handwheel was turned off, a key can select the same axis again, but a switch must first be set to another
+position.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ WheelChoice = tuple[str, int]  # Axis and step index.
 
 @dataclass(slots=True)
 class JogHandwheel:
-    """Handwheel of the Jog page.
+    """Handwheel that moves the selected axis on the Jog page.
 
     ``wheel_choice`` is the axis and the step of the handwheel, or None if no axis is selected.
     """
@@ -79,7 +80,7 @@ class JogHandwheel:
         return self.held_jog.post_command
 
     def select_next_axis(self) -> None:
-        """Select the next axis, or turn the handwheel off after the last axis."""
+        """Select the next axis of the handwheel, or turn the handwheel off after the last axis."""
         self.select_axis(following(("", *self.axis_names), self.wheel_choice[0] if self.wheel_choice else ""))
 
     def select_next_step(self) -> None:
@@ -117,7 +118,7 @@ class JogHandwheel:
             self.held_jog.clear_message()
 
     def turn_off(self, reason: str) -> None:
-        """Turn the handwheel off and show the reason."""
+        """Turn the handwheel off by deselecting its axis, and show the reason."""
         self._by_hand = ""
         if self.wheel_choice is not None:
             self._left, self.wheel_choice = self.wheel_choice, None
@@ -149,9 +150,10 @@ class JogHandwheel:
             self._renew(wanted, now)
 
     def _find_wanted_choice(self, snapshot: Snapshot) -> WheelChoice | None:
-        """Return the axis and step that key, touch or switches select, or None if no axis is selected.
+        """Return the requested axis and step of the handwheel, or None if no axis is selected.
 
-        If no switch selects the step, the step of the page applies.
+        They are selected by key, touch or switches. If no switch selects the step, the step of the Jog page
+        applies.
         """
         axis, step = self._by_hand, self._speeds.step_index
         if self.has_axis_switch:

@@ -23,7 +23,7 @@ class HomingState(StrEnum):
 
     @property
     def state_name(self) -> str:
-        """Return the translated name of the homing state."""
+        """Return the translated name of the homing state for display."""
         words = {
             HomingState.HOMED: tr("HOMED"),
             HomingState.NOT_HOMED: tr("NOT HOMED"),
@@ -75,7 +75,7 @@ class HomingQuestion:
         return known
 
     def find_unhomed_axes(self, snapshot: Snapshot) -> list[str]:
-        """Return the names of the axes that are not homed yet, in homing order."""
+        """Return the names of the axes that are not homed yet, in the order of homing."""
         known = self.find_states(snapshot)
         order = sorted(self.homing_axes, key=lambda axis: axis.home_order)
         return [
@@ -83,7 +83,7 @@ class HomingQuestion:
         ]
 
     def handle_home_key(self, snapshot: Snapshot, refusal: str) -> None:
-        """Handle the home key: ask which axes to home.
+        """Ask which axes to home after the home key was pressed.
 
         If ``refusal`` is not empty, it is shown instead of the question.
         """
@@ -100,7 +100,7 @@ class HomingQuestion:
             self._asked = True
 
     def handle_axis_key(self, key: str, snapshot: Snapshot) -> bool:
-        """Handle a key of the open question, and return whether the key was the letter of an axis.
+        """Handle a key while the question is open, and return whether it was the letter of an axis.
 
         The letter of an axis starts homing that axis. Any other key cancels the question.
         """
@@ -117,7 +117,7 @@ class HomingQuestion:
         return False
 
     def handle_axis_touch(self, name: str, snapshot: Snapshot, refusal: str) -> None:
-        """Handle a touch on one axis.
+        """Handle a touch on the homing key of one axis.
 
         The first touch asks for confirmation, and the second touch homes the axis.
         """
@@ -132,7 +132,7 @@ class HomingQuestion:
         self.desk.post(HomeAxes(axis))
 
     def cancel(self) -> bool:
-        """Cancel the question, and return whether the question was open."""
+        """Cancel the homing question, and return whether it was open."""
         was, self._asked = self.is_open, False
         if was:
             self.desk.clear_prompt_line()
@@ -140,7 +140,10 @@ class HomingQuestion:
 
 
 def _make_tool_warning(snapshot: Snapshot) -> str:
-    """Return a warning for the question if a tool may be in the part, or an empty string."""
+    """Return a warning if a tool may still be in the part after an interrupted run.
+
+    The warning precedes the homing question. The result is an empty string if no run was interrupted.
+    """
     found = snapshot.interrupted
     if found is None:
         return ""

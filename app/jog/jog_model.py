@@ -1,4 +1,4 @@
-"""Model of the Jog page: the functions of its keys and the conditions for manual motion."""
+"""Model of the Jog page: its key functions and the conditions for manual motion."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class JogModel:
 
     @property
     def is_entry_open(self) -> bool:
-        """Return whether the operator is entering a value for the tool or the spindle speed."""
+        """Return whether the operator is entering a tool value or the spindle speed."""
         return bool(self.tool_setting.question_name) or self.manual_functions.is_asking_speed
 
     def _now(self) -> float:
@@ -111,7 +111,7 @@ class JogModel:
     def _find_wheel_refusal(self) -> str:
         """Return the reason why the handwheel cannot move an axis now, or an empty string.
 
-        This method does not cancel an open question.
+        Unlike ``find_jog_refusal``, this method does not cancel an open question.
         """
         if self.tilted_jog.is_on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
@@ -139,7 +139,7 @@ class JogModel:
             self.manual_functions.cancel_selection()
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt that applies on the Jog page now."""
+        """Return the prompt of the Jog page for the current state."""
         if self.tool_setting.is_setter_result:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool_setting.question_name:
@@ -175,35 +175,35 @@ class JogModel:
     # --- step and speed: any change ends the jog -----------------------------------------------------
 
     def select_next_step(self) -> None:
-        """Select the next step and stop the jog (F2)."""
+        """Select the next jog step, and stop the jog (F2)."""
         self._another_step()
         self.jog_speeds.select_next_step()
 
     def select_step(self, step_index: int) -> None:
-        """Select the touched step and stop the jog."""
+        """Select the touched jog step, and stop the jog."""
         self._another_step()
         self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step_index, False
 
     def select_next_speed(self) -> None:
-        """Select the next speed and stop the jog (F3)."""
+        """Select the next jog speed, and stop the jog (F3)."""
         self._another_speed()
         self.jog_speeds.select_next_speed()
 
     def select_speed(self, speed_index: int) -> None:
-        """Select the touched speed and stop the jog."""
+        """Select the touched jog speed, and stop the jog."""
         self._another_speed()
         self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed_index, False
 
     def toggle_rapid(self) -> None:
-        """Turn rapid on or off for the next touch jog.
+        """Turn rapid speed on or off for the next jog by touch.
 
-        A jog by other means turns rapid off.
+        A jog by other means turns rapid speed off.
         """
         self._another_speed()
         self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
 
     def press_direction(self, key_source: str, axis: str, direction_sign: int) -> None:
-        """Handle a touch or mouse press on a direction."""
+        """Handle a touch or mouse press on a jog direction."""
         self.held_jog.press_direction(key_source, axis, direction_sign, is_rapid=self.held_jog.is_rapid_armed)
 
     def _another_step(self) -> None:
@@ -230,7 +230,10 @@ class JogModel:
         return self.machine.kind == "mill"
 
     def toggle_tilt(self) -> None:
-        """Turn 3D-ROT on or off. In both cases, turn the handwheel off."""
+        """Turn jogging in the tilted coordinate system (3D-ROT) on or off.
+
+        The handwheel is turned off in both cases.
+        """
         self.handwheel.turn_off("")
         self.tilted_jog.toggle_tilted_frame(find_jog_refusal(self.desk.read_snapshot().state))
 
@@ -238,7 +241,7 @@ class JogModel:
         self.held_jog.release_all(why)
 
     def press_function(self, name: str) -> None:
-        """Handle a touch on a manual function and stop the jog."""
+        """Select the touched manual function, and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.select_function(name)
 
@@ -266,7 +269,7 @@ class JogModel:
 
     @property
     def is_wheel_shown(self) -> bool:
-        """Return whether the handwheel on the screen can move an axis now.
+        """Return whether the on-screen handwheel is shown and can move an axis now.
 
         The handwheel is on the screen only if the operator station is simulated.
         """
@@ -283,13 +286,13 @@ class JogModel:
             station.turn_handwheel(clicks * self.handwheel.counts_per_click)
 
     def handle_home_key(self) -> None:
-        """Handle the home key: ask which axes to home."""
+        """Stop all manual motion, and ask which axes to home."""
         self.held_jog.release_all()
         self.handwheel.turn_off("")
         self.homing_question.handle_home_key(self.desk.read_snapshot(), self._no_homing())
 
     def handle_home_touch(self, axis: str) -> None:
-        """Handle a touch on the homing target of one axis.
+        """Stop all manual motion, and handle a touch on the homing key of one axis.
 
         The first touch asks for confirmation, and the second touch homes the axis.
         """
@@ -304,9 +307,9 @@ class JogModel:
         return tr("AXES ARE STILL MOVING") if state is MachineState.JOG else find_jog_refusal(state)
 
     def on_open(self) -> None:
-        """Prepare the model when the page opens.
+        """Prepare the model when the Jog page opens.
 
-        Offset changes made before are then ignored, and Cycle Start runs the lines of manual functions.
+        Earlier offset changes are ignored from then on, and Cycle Start runs the lines of manual functions.
         """
         self.tool_setting.offset_history.on_open()
         self.manual_functions.on_open()
@@ -338,7 +341,7 @@ class JogModel:
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character has a function on this page."""
+        """Return whether a character has a function on the Jog page."""
         own = {"v", "b"} if self.is_mill else {*QUESTION_LETTERS, "m", "v", "p", "b", "c"}
         if self.is_entry_open:
             return self.manual_functions.accepts_key(key) or self.tool_setting.accepts_key(key)
@@ -383,10 +386,7 @@ class JogModel:
             self.desk.post(StopJog())
 
     def try_leave(self) -> bool:
-        """Return whether the page can close.
-
-        If it can close, all motion, questions and entries end.
-        """
+        """Return whether the page can close. If it can, stop all manual motion and cancel open questions."""
         self.held_jog.release_all()
         if not self.manual_functions.try_leave():
             return False

@@ -1,4 +1,4 @@
-"""Jog pad with directions that move an axis while touched, and with steps, speeds and homing."""
+"""Jog pad with arrow keys that move an axis while touched, and with steps, speeds and homing."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ SHORT_LABEL_LENGTH = 4  # Letters: a longer word gets a wider tile.
 
 @dataclass(frozen=True, slots=True)
 class TileRow:
-    """Row of touch tiles.
+    """Row of touch keys (tiles).
 
     ``name_and_key`` contains the name of the row and its key. ``is_warning`` shows the selected tile in the
-    warning color, and ``alarmed_indices`` are the indices of the tiles in the alarm color.
+    warning color. ``alarmed_indices`` are the indices of the tiles in the alarm color.
     """
 
     name_and_key: tuple[str, str]
@@ -78,7 +78,7 @@ def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:
 
 
 def _draw_tile(painter: ThemedPainter, box: QRectF, word: str, tiles: TileRow, number: int) -> None:
-    """Draw one tile. A selected tile is filled, if necessary in the warning or alarm color."""
+    """Draw one tile, which is filled if it is selected and can have the warning or alarm color."""
     ink, ground, line = "text", "key", "frame"
     if number in tiles.alarmed_indices:
         ink = line = "alarm"
@@ -100,7 +100,7 @@ _SPOKE_COUNT = 24
 class HandwheelDial:
     """Handwheel on the screen.
 
-    The ``turn_handwheel`` parameter is called with the number of clicks. Clockwise rotation is positive.
+    ``turn_handwheel`` is called with the number of clicks. Clockwise rotation is positive.
     """
 
     def __init__(self, turn_handwheel: Callable[[int], None]) -> None:
@@ -134,7 +134,7 @@ class HandwheelDial:
         self._turn(DEGREES_PER_CLICK * delta / _WHEEL_NOTCH)
 
     def draw(self, painter: ThemedPainter, box: QRectF, click_text: str) -> None:
-        """Draw the handwheel at its current angle, with the distance per click as text."""
+        """Draw the handwheel at its current angle, with ``click_text`` as the distance per click."""
         size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.theme.unit_px
         painter.setPen(painter.theme.make_pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
@@ -161,7 +161,7 @@ DrawTileRow = Callable[[ThemedPainter, QRectF], None]
 
 
 class JogPad(JogCross):
-    """Jog pad. Its touch targets are as large as the available area permits."""
+    """Pad of touch targets for jogging, which are as large as the available area permits."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _known: RedrawingAttribute[Mapping[str, HomingState]] = RedrawingAttribute({})
@@ -211,7 +211,7 @@ class JogPad(JogCross):
         self._draw_middle(painter, middle)
 
     def _make_row_drawers(self, area: QRectF) -> list[DrawTileRow]:
-        """Return the functions that draw the rows above the cross.
+        """Return the functions that draw the rows above the cross of arrow keys.
 
         If the height is small, steps and speeds share one row.
         """
@@ -234,7 +234,7 @@ class JogPad(JogCross):
         return max(min(finger, float(FINGERTIP_PX)), ROW * u, min(finger, left / rows - 0.6 * u))
 
     def _draw_steps_and_speeds(self, painter: ThemedPainter, row: QRectF) -> None:
-        """Draw the step, the speed and RAPID in one row.
+        """Draw the jog step, the jog speed and RAPID in one row.
 
         The step and speed tiles have the functions of F2 and F3.
         """
@@ -296,7 +296,7 @@ class JogPad(JogCross):
 
     @property
     def _active_rotary_axis(self) -> str:
-        """Return the rotary axis that is jogged or on the handwheel, or an empty string.
+        """Return the rotary axis that is jogged or moved by the handwheel, or an empty string.
 
         The steps and speeds of a rotary axis are in degrees.
         """
@@ -312,7 +312,7 @@ class JogPad(JogCross):
         return f"{60 * velocity:.0f}"
 
     def _draw_wheel(self, painter: ThemedPainter, row: QRectF) -> None:
-        """Draw the row that selects the axis of the handwheel."""
+        """Draw the row of keys that select the axis of the handwheel."""
         wheel = self._model.handwheel
         axis = wheel.wheel_choice[0] if wheel.wheel_choice else ""
         presses = [partial(wheel.select_axis, name) for name in ("", *wheel.axis_names)]

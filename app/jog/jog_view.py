@@ -38,7 +38,7 @@ StripKey = tuple[str, str, Callable[[], object]]  # Letter, label and action.
 def draw_function_key(
     painter: ThemedPainter, box: QRectF, key_letter: str, label: str, *, is_selected: bool, is_on: bool
 ) -> None:
-    """Draw a key with its letter and its label.
+    """Draw the key of a manual function with its letter and its label.
 
     The key is filled if its function is on, and framed if its function is selected.
     """
@@ -65,7 +65,7 @@ class ManualPanel(TouchPanel):
         self._model = model
 
     def show_functions(self, snapshot: Snapshot) -> None:
-        """Show for each function whether it is selected, prepared or on."""
+        """Update which functions are shown as selected, prepared or on."""
         hand = self._model.manual_functions
         self._shown = (
             hand.selected_function,
@@ -148,7 +148,7 @@ class ManualPanel(TouchPanel):
 
 
 def find_strip_key_height(theme: ScreenTheme) -> float:
-    """Return the height of the strip keys in pixels, which is at least that of a fingertip."""
+    """Return the height of the keys in the strip in pixels, at least that of a fingertip."""
     return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.unit_px)
 
 
@@ -166,13 +166,13 @@ class ManualStrip(TouchPanel):
         self._model = model
 
     def show_keys(self, snapshot: Snapshot, change_text: str, footer_text: str) -> None:
-        """Show the available keys, the last offset change, and the hint about other keys."""
+        """Show the available keys, the last offset change, and the hint about further keys."""
         skim, hand = self._model.skim_cut, self._model.manual_functions
         self.change_text, self.footer_text = change_text, footer_text
         self._shown = (skim.cut_step, skim.measured_axis, hand.is_shown, hand.is_spindle_turning(snapshot))
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the keys for manual functions and skim cut. The change text or the footer is above them."""
+        """Draw the keys for manual functions and skim cut, with the last offset change or the hint above."""
         self.controls.clear()
         u = self.theme.unit_px
         painter.fill_rect(self.find_full_area(), "ground")
@@ -220,7 +220,7 @@ WIDE, ASKED, WORDS = 0.46, 12.0, 2.6
 
 
 class JogPage(HeldKeysPage):
-    """Jog page.
+    """Screen page for manual axis motion.
 
     ``refresh`` renews the lease of the jog. If the screen stalls, the motion therefore stops.
     """
@@ -262,7 +262,7 @@ class JogPage(HeldKeysPage):
         self.host.open_page(page_table.SECCMP)
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the key labels.
+        """Return the labels of the function keys.
 
         A mill has no touch-off keys here, because tools and presets are set on their own pages.
         """
@@ -292,7 +292,7 @@ class JogPage(HeldKeysPage):
         return {**common, **touch, "F4": model.tool_setting.ask_undo}
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the touch-off, undo and tilted plane keys that are disabled now."""
+        """Return the disabled function keys: touch-off and undo, or 3D-ROT on a mill."""
         model, snapshot = self.model, self.desk.read_snapshot()
         if model.is_mill:
             return frozenset() if model.tilted_jog.is_available(snapshot) else frozenset({"F5"})
@@ -315,18 +315,15 @@ class JogPage(HeldKeysPage):
         return self.model.prompt_text(self.desk.read_snapshot())
 
     def try_leave(self) -> bool:
-        """Release all keys and return whether the page can close.
+        """Release all keys, and return whether the page can close.
 
-        The page cannot close while a line is running.
+        The page cannot close while an MDI line is running.
         """
         self.jog_cross.release_all()
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update the model and show its state.
-
-        Updating the model renews the jog.
-        """
+        """Update the model, which also renews the lease of the jog, and show the state of the model."""
         if not self._has_keyboard():
             self.release_if_active()
         self.model.update(snapshot)
@@ -370,7 +367,7 @@ class JogPage(HeldKeysPage):
         self.manual_strip.show_keys(snapshot, tool.offset_history.last_change_text, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the pad on the left, and on the right the tool panel above the entry line."""
+        """Arrange the jog pad on the left, and the tool panel above the entry line on the right."""
         u, gap = self.theme.unit_px, max(4, round(0.7 * self.theme.unit_px))
         left = round(WIDE * self.width())
         for part in (self.jog_cross, self.number_pad):

@@ -39,7 +39,7 @@ SPEED_KEY = "9"  # The key that asks for the spindle speed.
 
 
 class Words(NamedTuple):
-    """Codes of the functions in a programming language.
+    """Program words of the manual functions in a programming language.
 
     ``speed_line`` sets the speed in a separate line, for languages that do not permit S with M3.
     """
@@ -60,7 +60,7 @@ CODES_BY_LANGUAGE = {
 
 @dataclass(slots=True)
 class ManualFunctions:
-    """Manual functions. At most one function is selected, prepared or running.
+    """Manual functions, of which at most one is selected, prepared or running.
 
     ``is_open`` is True while the Jog page is open. ``is_shown`` is True while the panel of the functions is
     visible.
@@ -85,7 +85,7 @@ class ManualFunctions:
 
     @property
     def function_codes(self) -> Words:
-        """Return the codes of the functions in the programming language of the machine."""
+        """Return the program words of the functions in the programming language of the machine."""
         return CODES_BY_LANGUAGE[self.machine.mdi_language]
 
     @property
@@ -116,7 +116,8 @@ class ManualFunctions:
     def try_leave(self) -> bool:
         """Return whether the page can close.
 
-        The page cannot close while a line is running. The spindle remains on when the page closes.
+        The page cannot close while the MDI line of a function is running. The spindle remains on when the
+        page closes.
         """
         if self.is_line_running(self.desk.read_snapshot()):
             self.desk.say(tr("A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R"))
@@ -128,11 +129,11 @@ class ManualFunctions:
         return True
 
     def close(self) -> None:
-        """Stop the worker that proves lines."""
+        """Stop the worker that proves MDI lines."""
         self.prepared_line.close()
 
     def is_line_running(self, snapshot: Snapshot) -> bool:
-        """Return whether a line of a manual function is running."""
+        """Return whether the MDI line of a manual function is running."""
         return self._armed and snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
 
     # --- keys and touches ----------------------------------------------------------------------------
@@ -144,7 +145,7 @@ class ManualFunctions:
         self.is_shown = not self.is_shown
 
     def select_function(self, function: str) -> None:
-        """Select a function.
+        """Select a manual function.
 
         A function that turns something off takes effect immediately.
         """
@@ -162,7 +163,8 @@ class ManualFunctions:
     def start_speed_rpm(self) -> float:
         """Return the speed in rpm for FORWARD and REVERSE, or 0 if no speed is known.
 
-        This is the active S. If the line of the function contains S, an entered speed has priority.
+        This is the programmed speed S that is active. An entered speed has priority if the line of the
+        function contains S.
         """
         modal = self.desk.read_snapshot().modal
         typed = 0.0 if self.function_codes.speed_line else self.entered_rpm
@@ -196,9 +198,9 @@ class ManualFunctions:
         )
 
     def _find_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why no function can be selected now, or an empty string.
+        """Return the reason why no manual function can be selected now, or an empty string.
 
-        When the line starts, the executor repeats these checks and makes more checks.
+        When the line starts, the executor repeats these checks and makes further checks.
         """
         if snapshot.state is MachineState.IDLE:
             return ""
@@ -238,7 +240,7 @@ class ManualFunctions:
         self.is_asking_speed, self.text = True, ""
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the page must handle the key."""
+        """Handle a key, and return False if the Jog page must handle the key."""
         if self.is_asking_speed:
             if key == "Enter":
                 self._enter()
@@ -292,7 +294,7 @@ class ManualFunctions:
     # --- cancel --------------------------------------------------------------------------------------
 
     def cancel_selection(self) -> bool:
-        """Cancel the selected function or the speed question, and return whether anything was canceled."""
+        """Cancel the selected function or the speed question. Return False if there was nothing to cancel."""
         was = bool(self.selected_function or self.is_asking_speed)
         if self._armed and self.selected_function and not self.is_line_running(self.desk.read_snapshot()):
             self.prepared_line.cancel_line()
@@ -306,7 +308,7 @@ class ManualFunctions:
     def handle_cancel_key(self) -> bool:
         """Cancel the selected function or the speed question when Esc is pressed.
 
-        Returns False if nothing was canceled.
+        Returns False if there was nothing to cancel.
         """
         if self.is_line_running(self.desk.read_snapshot()) or not self.cancel_selection():
             return False
@@ -334,7 +336,7 @@ class ManualFunctions:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process the proof of a line.
+        """Process the result of proving a line.
 
         If the axes have moved, a prepared line is canceled. This method is called once per frame.
         """
@@ -352,14 +354,14 @@ class ManualFunctions:
 
     @staticmethod
     def _is_gripping(snapshot: Snapshot) -> bool:
-        """Return whether the collet must stay clamped because the spindle is turning or could be started."""
+        """Return whether the collet must stay clamped.
+
+        It must stay clamped while the spindle is turning or a spindle speed is requested.
+        """
         return ManualFunctions.is_spindle_turning(snapshot) or snapshot.requested_rpm != 0.0
 
     def barred(self) -> str:
-        """Return the reason why the start buttons have no effect now, or an empty string.
-
-        The result is empty if the start buttons can start a line.
-        """
+        """Return the reason why the start buttons cannot start a line now, or an empty string if they can."""
         snapshot = self.desk.read_snapshot()
         if snapshot.state in CYCLE_STATES:
             return "" if self.is_line_running(snapshot) else prompt_line.START_ON_AUTOMATIC

@@ -1,9 +1,11 @@
 """Touch-off of a tool by a skim cut or at the tool setter.
 
-A skim cut has these steps: cut, retract, stop the spindle, measure, and enter the size. The measured axis,
-X for a diameter and Z for a face, must not move between the cut and the entry. The tool retracts along the
-other axis. The offset is calculated from the position of the measured axis during the cut. If this axis
-moves after the cut, the position is discarded because it could belong to another cut.
+A skim cut has these steps: cut, retract, stop the spindle, measure, and enter the size. The measured axis
+is X for a diameter and Z for a face. It must not move between the cut and the entry, so the tool retracts
+along the other axis.
+
+The offset is calculated from the position of the measured axis during the cut. If this axis moves after the
+cut, the position is discarded because it could belong to another cut.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ MIN_CUT_MM = 0.25
 
 
 class SkimCutStep(Enum):
-    """Step of a skim cut."""
+    """Step of a touch-off by skim cut."""
 
     OFF = auto()
     CHOOSE_AXIS = auto()  # Choose a diameter or a face.
@@ -44,7 +46,7 @@ class SkimCutStep(Enum):
 
 @dataclass(slots=True)
 class SkimCut:
-    """Touch-off by a skim cut.
+    """Touch-off of a tool by a skim cut.
 
     Offsets change only when the size is entered. Esc cancels the skim cut.
     """
@@ -70,7 +72,7 @@ class SkimCut:
 
     @property
     def measured_axis(self) -> str:
-        """Return the axis that is measured. This axis must not move after the cut."""
+        """Return the axis that the skim cut measures, which must not move after the cut."""
         return TOUCH_FIELDS[self.measured_quantity].upper() if self.measured_quantity else ""
 
     @property
@@ -81,7 +83,7 @@ class SkimCut:
     # --- keys ----------------------------------------------------------------------------------------
 
     def begin_skim_cut(self) -> None:
-        """Ask for the axis of the skim cut, or show the reason why no tool can be set now."""
+        """Ask whether to cut a diameter or a face, or show the reason why no tool can be set now."""
         if self.is_open:
             return
         why = self.tool_setting.find_refusal(TOUCH_X, self.desk.read_snapshot())
@@ -92,7 +94,7 @@ class SkimCut:
         self.cut_step = SkimCutStep.CHOOSE_AXIS
 
     def select_cut(self, quantity: str) -> None:
-        """Select the type of cut, a diameter or a face."""
+        """Select the type of skim cut: a diameter or a face."""
         why = self.tool_setting.find_refusal(quantity, self.desk.read_snapshot())
         if why:
             self.desk.say(why)
@@ -102,7 +104,7 @@ class SkimCut:
         self._anew(self.desk.read_snapshot())
 
     def finish_cut(self) -> None:
-        """Finish the cut and store the position of the measured axis."""
+        """End the cutting step, and store the position of the measured axis."""
         snapshot = self.desk.read_snapshot()
         why = self._find_cut_refusal(snapshot)
         if why:
@@ -117,7 +119,7 @@ class SkimCut:
         )
 
     def _find_cut_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why the cut cannot be finished yet, or an empty string."""
+        """Return the reason why the cutting step cannot end yet, or an empty string."""
         if snapshot.state is not MachineState.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
         if self.cut_length_mm >= MIN_CUT_MM:
@@ -133,7 +135,7 @@ class SkimCut:
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the page must handle the key."""
+        """Handle a key, and return False if the Jog page must handle the key."""
         if self.cut_step is SkimCutStep.CHOOSE_AXIS and key.lower() in {"x", "z"}:
             self.select_cut(TOUCH_X if key.lower() == "x" else TOUCH_Z)
         elif self.cut_step is SkimCutStep.CUTTING and key == "Enter":
@@ -202,8 +204,8 @@ class SkimCut:
     def _follow_cut(self, snapshot: Snapshot) -> None:
         """Update the length of the cut.
 
-        The length is the travel along the other axis with the spindle turning, since the last move of the
-        measured axis.
+        The length is the travel along the other axis while the spindle turns, since the measured axis last
+        moved.
         """
         if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVE_TOLERANCE_MM:
             self._anew(snapshot)
@@ -248,7 +250,7 @@ class SkimCut:
     # --- display -------------------------------------------------------------------------------------
 
     def make_step_prompt(self, snapshot: Snapshot) -> str:
-        """Return the prompt that explains the next step, or an empty string."""
+        """Return the prompt that explains the current step, or an empty string if no prompt applies."""
         if self.cut_step is SkimCutStep.CHOOSE_AXIS:
             return tr("SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL")
         if self.cut_step is SkimCutStep.RETRACT:
@@ -296,7 +298,7 @@ def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
 def find_zero_position(
     touch_position_mm: float, direction: TouchDirection, tool_setter: SetterModel, tool_row: ToolRow | None
 ) -> float:
-    """Return the machine position in mm at which the tool tip is at part zero.
+    """Return the machine position in mm at which the tool tip would be at part zero.
 
     ``touch_position_mm`` is the machine position in mm at which the tip touched the tool setter.
     """
@@ -306,13 +308,13 @@ def find_zero_position(
 
 
 def format_direction(direction: TouchDirection) -> str:
-    """Return a direction as text, for example X−."""
+    """Return a touch direction as text, for example X−."""
     return f"{direction[0]}{'+' if direction[1] > 0 else '−'}"
 
 
 @dataclass(slots=True)
 class SetterTouchOff:
-    """Touch-off at the tool setter.
+    """Touch-off of a tool at the tool setter.
 
     ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the
     directions of those keys.
@@ -329,7 +331,7 @@ class SetterTouchOff:
 
     @property
     def tool_setter(self) -> SetterModel | None:
-        """Return the tool setter of the machine, or None if there is no tool setter with an input."""
+        """Return the tool setter of the machine, or None if no tool setter is connected to an input."""
         return (
             self.machine.hardware.find_driver_table(SetterModel)
             if PROBE_INPUT in self.machine.inputs
@@ -365,7 +367,10 @@ class SetterTouchOff:
         return ""
 
     def make_command(self, axis: str, direction_sign: int, button_name: str) -> Command | str:
-        """Return the touch-off command for a direction, or a text with the reason if it is not possible."""
+        """Return the touch-off command for a direction.
+
+        If the touch-off is not possible, return the reason as text.
+        """
         ways = find_touch_directions(self.tool_setting.tool_row)
         if (axis, direction_sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
@@ -434,7 +439,7 @@ class SetterTouchOff:
 
 @dataclass(slots=True)
 class HeldTouchOff(HeldJog):
-    """Held jog whose key starts a touch-off instead of a jog while ``setter_touch`` is armed."""
+    """Held jog, in which a direction key starts a touch-off while ``setter_touch`` is armed."""
 
     setter_touch: SetterTouchOff | None = None
     _asked: Command | None = field(default=None)

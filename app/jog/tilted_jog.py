@@ -1,4 +1,4 @@
-"""Jog along the axes of the active tilted plane, or along the tool axis of a tilted head (3D-ROT)."""
+"""Jog along the axes of the active tilted working plane or of a tilted head (3D-ROT)."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 
 @dataclass(frozen=True, slots=True)
 class JogFrame:
-    """Coordinate frame with the jog directions X, Y and Z.
+    """Coordinate frame that defines the jog directions X, Y and Z.
 
-    The columns of ``axes`` are the directions in machine coordinates. ``frame_name`` is the name of the
-    frame.
+    The columns of ``axis_matrix`` are the directions in machine coordinates. ``frame_name`` is the name of
+    the frame.
     """
 
     axis_matrix: Matrix
@@ -42,10 +42,10 @@ class JogFrame:
 
 
 def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
-    """Return the frame for jogging. If there is no such frame, return the reason as text.
+    """Return the tilted frame for jogging, or the reason as text if there is no such frame.
 
-    If a plane is active, its frame is used, but only if the rotary axes are at the angles of the plane. If
-    no plane is active, the frame of a tilted head is used.
+    If a tilted plane is active, its frame is used, but only if the rotary axes are at the angles of the
+    plane. If no plane is active, the frame of a tilted head is used.
     """
     swivel = snapshot.swivel
     angles = dict(zip(snapshot.axes, snapshot.actual, strict=True))
@@ -72,7 +72,7 @@ def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFram
 
 
 def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> bool:
-    """Return whether a rotary axis is not at the angle that the plane requires."""
+    """Return whether a rotary axis is not at the angle that the tilted plane requires."""
     target = system.target_angles[_ROTARY.index(axis.name)]
     return (
         abs(axis.find_travel(target, system.kinematics.get_displayed_angle(axis, angle)))
@@ -82,7 +82,7 @@ def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> 
 
 @dataclass(slots=True)
 class TiltedJog:
-    """Jog in a tilted frame. It is turned off if the frame is no longer available.
+    """Jog in a tilted frame (3D-ROT), which is turned off if the frame is no longer available.
 
     ``release_keys`` stops the jog, and ``show_message`` shows the reason.
     """
@@ -95,7 +95,7 @@ class TiltedJog:
     refusal_reason: str = ""  # Why no frame is available.
 
     def toggle_tilted_frame(self, refusal: str = "") -> None:
-        """Turn 3D-ROT on or off, or show the reason why this is not possible."""
+        """Turn 3D-ROT on or off, or show the reason why it cannot be turned on."""
         self.release_keys("")
         if not self.is_on and self.jog_frame is None:
             self.show_message(self.refusal_reason)
@@ -110,11 +110,11 @@ class TiltedJog:
         return self.is_on or (self.jog_frame is not None and snapshot.state in MANUAL_STATES)
 
     def turn_off(self) -> None:
-        """Turn 3D-ROT off because the page closes."""
+        """Turn 3D-ROT off because the Jog page closes."""
         self.is_on = False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the tilted frame.
+        """Update the tilted frame. Turn 3D-ROT off if the frame is no longer available.
 
         This method is called once per frame of the screen.
         """
@@ -127,5 +127,8 @@ class TiltedJog:
             self.show_message(why)
 
     def find_direction(self, axis: str) -> Direction | None:
-        """Return the jog direction in machine coordinates, or None to jog the machine axis itself."""
+        """Return the jog direction of an axis in machine coordinates.
+
+        Returns None if the machine axis itself is to be jogged.
+        """
         return self.jog_frame.find_direction(axis) if self.is_on and self.jog_frame is not None else None

@@ -1,4 +1,4 @@
-"""Tool setting on the Jog page: selecting a tool, touching it off, and entering its other fields."""
+"""Tool setting on the Jog page: select a tool, touch it off, and enter its other values."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _NEXT_QUESTIONS = {"wear_x": "wear_z"}  # The question that follows an answer.
 
 @dataclass(slots=True)
 class ToolSetting:
-    """Tool setting with the selected tool, the open question and the entered text."""
+    """Model of tool setting, with the selected tool, the open question and the entered text."""
 
     desk: Desk
     offset_book: OffsetBook
@@ -65,19 +65,19 @@ class ToolSetting:
 
     @property
     def is_master_touched(self) -> bool:
-        """Return whether the master tool is being touched off."""
+        """Return whether the touch-off that is in progress is for the master tool."""
         return self.question_name in TOUCH_FIELDS and self.tool_row is not None and self.tool_row.master
 
     @property
     def is_setter_result(self) -> bool:
-        """Return whether the open question is about a measurement of the tool setter."""
+        """Return whether the open question is whether to save a measurement of the tool setter."""
         return self.question_name in TOUCH_FIELDS and self.touch_off.measured_position_mm is not None
 
     def ask_setter_result(self, quantity: str, position_mm: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
         ``position_mm`` is the machine position in mm with the tool tip at part zero. If the value is
-        suspicious, the question about suspicious changes is asked instead.
+        suspicious, the operator is asked to confirm the suspicious change instead.
         """
         self.question_name, self.text = quantity, ""
         self.touch_off.set_measurement(quantity, position_mm, reason)
@@ -87,7 +87,7 @@ class ToolSetting:
             self._enter()
 
     def ask_cut_size(self, quantity: str, position_mm: float) -> None:
-        """Ask for the size of a skim cut.
+        """Ask for the measured size of a skim cut.
 
         ``position_mm`` is the machine position in mm during the cut.
         """
@@ -108,7 +108,7 @@ class ToolSetting:
         )
 
     def make_question_text(self) -> str:
-        """Return the text of the open question, or an empty string."""
+        """Return the text of the open question, or an empty string if no question is open."""
         name = format_edge_name(self.tool_number)
         if self.question_name == TOOL_QUESTION:
             return tr("TOOL NUMBER?")
@@ -150,7 +150,10 @@ class ToolSetting:
         return ""
 
     def describe_change(self) -> str:
-        """Return a description of the change that the entry would make, or of the last change if none."""
+        """Return a description of the change that the current entry would make.
+
+        If there is no entry, the last change is described.
+        """
         if not self.question_name or self.question_name == TOOL_QUESTION:
             return self.offset_history.last_change_text
         mode, name, row = (
@@ -177,7 +180,10 @@ class ToolSetting:
             return f"{title}  {was}  →  …"  # An incomplete expression is not an error yet.
 
     def _format_difference(self, name: str, mode: ValueMode) -> str:
-        """Return the measured offset minus the current offset, as text."""
+        """Return the measured offset minus the current offset as text.
+
+        The result is an empty string if nothing was measured.
+        """
         if self.offset_change_mm is None:
             return ""
         shown = 2 * self.offset_change_mm if name == "x" and mode.is_diameter else self.offset_change_mm
@@ -191,7 +197,7 @@ class ToolSetting:
         return snapshot.tip[0] - x, snapshot.tip[1] - z
 
     def find_master_difference(self) -> Pair | None:
-        """Return the offset of this tool minus the offset of the master tool, in mm.
+        """Return the offset of the selected tool minus the offset of the master tool, in mm.
 
         Returns None unless both tools are set.
         """
@@ -204,7 +210,7 @@ class ToolSetting:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Select the tool that becomes active, and discard the entry if the unit changes.
+        """Select the tool that becomes active, and discard the entry if the unit of length changes.
 
         This method is called once per frame.
         """
@@ -226,7 +232,7 @@ class ToolSetting:
     # --- questions -----------------------------------------------------------------------------------
 
     def open_question(self, quantity: str) -> None:
-        """Open a question, or show the reason why it cannot be opened."""
+        """Ask for a value of the selected tool, or show the reason why the value cannot be changed."""
         snapshot = self.desk.read_snapshot()
         why = "" if quantity == TOOL_QUESTION else self.find_refusal(quantity, snapshot)
         if why:
@@ -240,7 +246,7 @@ class ToolSetting:
             self.touch_off.begin_touch(quantity, snapshot)
 
     def find_refusal(self, quantity: str, snapshot: Snapshot) -> str:
-        """Return the reason why a question cannot be opened now, or an empty string."""
+        """Return the reason why a value of the tool cannot be changed now, or an empty string."""
         why = self.offset_book.lock_reason or find_change_refusal(
             snapshot, is_correction=quantity in CORRECTION_FIELDS[OffsetKind.TOOL]
         )
@@ -273,7 +279,7 @@ class ToolSetting:
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the open question, and return False if the key has no function in an entry."""
+        """Handle a key while a question is open, and return whether the key was used."""
         if key == "Enter":
             self._enter()
         elif key in {"Back", "Delete"} or (len(key) == 1 and self.accepts_key(key)):
@@ -296,7 +302,7 @@ class ToolSetting:
             self.desk.say(why)
 
     def _save_answer(self) -> str:
-        """Process the answer, and return the message to show, or an empty string.
+        """Process the entered answer, and return the message to show, or an empty string.
 
         The message is the reason why the answer is rejected or, after a touch-off, the note that the
         operator must read. Raises EntryError if the entered text is invalid.
@@ -339,7 +345,7 @@ class ToolSetting:
     def ask_master(self) -> None:
         """Ask whether to make the selected tool the master tool.
 
-        If the selected tool already is the master tool, the question is whether to have no master tool.
+        If it already is the master tool, ask whether to use no master tool.
         """
         why = self.find_refusal("master", self.desk.read_snapshot())
         self.close_question()
@@ -354,7 +360,7 @@ class ToolSetting:
         )
 
     def find_undo_refusal(self) -> str:
-        """Return the reason why the last change of the tool cannot be undone now, or an empty string."""
+        """Return the reason why the tool's last offset change cannot be undone, or an empty string."""
         why = self.offset_book.lock_reason or find_change_refusal(
             self.desk.read_snapshot(), is_correction=False
         )
@@ -377,9 +383,9 @@ def _which_tool() -> str:
 
 
 def _describe_reset_wear(row: ToolRow | None, name: str, mode: ValueMode) -> str:
-    """Return a text about the wear that a touch-off resets to zero, or an empty string.
+    """Return a text about the wear that a touch-off resets to zero, or an empty string without wear.
 
-    The touch-off resets the wear because the new geometry includes it.
+    The touch-off resets the wear because the new geometry offset includes it.
     """
     if row is None or not getattr(row, name):
         return ""

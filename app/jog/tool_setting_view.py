@@ -46,7 +46,7 @@ _FIELD_QUESTIONS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
 class ToolSettingPanel(Panel):
-    """Panel of tool setting. Every field of the panel is a touch target."""
+    """Panel of tool setting, in which every field is a touch target."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _tip: RedrawingAttribute[tuple[float, float] | None] = RedrawingAttribute(None)
@@ -71,7 +71,7 @@ class ToolSettingPanel(Panel):
 
     @property
     def displayed_mode(self) -> ValueMode:
-        """Return the unit of the position display.
+        """Return the unit of length of the position display, and whether X is a diameter.
 
         The panel uses this unit, so the page never shows positions in two units.
         """
@@ -81,7 +81,10 @@ class ToolSettingPanel(Panel):
 
     @property
     def tip_heading(self) -> str:
-        """Return the heading of the tip position. It contains the unit if the panel has a different unit."""
+        """Return the heading of the tip position.
+
+        The heading contains the unit if it differs from the unit of the control.
+        """
         if self.displayed_mode.is_metric == self._mode.is_metric:
             return tr("TIP POSITION FROM PART ZERO")
         return (
@@ -188,7 +191,7 @@ class ToolSettingPanel(Panel):
         return format_value(name, getattr(tool.tool_row, name), mode) if tool.tool_row else ""
 
     def _describe_master(self) -> str:
-        """Return a text with the master tool and the offset of this tool relative to the master tool."""
+        """Return a text with the master tool and the offset of the selected tool relative to it."""
         tool, mode = self._model.tool_setting, self._mode
         master = tool.offset_book.master_number
         if not master:
@@ -219,7 +222,7 @@ _ROW_HEIGHT = 6.0  # Units: height of a row.
 
 
 class MillJogPanel(Panel):
-    """Panel of a mill, with touch targets for tool, preset and 3D-ROT."""
+    """Panel on the Jog page of a mill, with touch targets for tool, preset and 3D-ROT."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _tip: RedrawingAttribute[tuple[float, ...] | None] = RedrawingAttribute(None)
@@ -252,7 +255,7 @@ class MillJogPanel(Panel):
         )
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the tool, the preset, the tilted plane and the axes of the mill. Lengths are in mm."""
+        """Draw the tool, the preset, the tilted plane and the axis positions of the mill in mm."""
         self.frame(painter, tr("TOOL, PRESET, TILTED PLANE  ·  MM"))
         u, room = self.theme.unit_px, self.inside()
         row = QRectF(room.x(), room.y(), room.width(), _ROW_HEIGHT * u - 0.6 * u)

@@ -1,4 +1,4 @@
-"""Touch-off of one axis of a tool on the Jog page, by hand, by a skim cut or by the tool setter."""
+"""Touch-off of one tool axis on the Jog page: by hand, by a skim cut or with the tool setter."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ def find_axis_position(quantity: str, snapshot: Snapshot) -> float:
 
 @dataclass(slots=True)
 class TouchOff:
-    """Touch-off of one axis.
+    """Touch-off of one axis of a tool.
 
-    ``touch_position_mm`` is the machine position in mm at the touch. ``measured_position_mm`` is the
-    machine position in mm with the tool tip at part zero, as measured with the tool setter, and
-    ``change_reason`` describes the measurement. After such a measurement, no entry is necessary and the
-    axis may move.
+    - ``touch_position_mm`` is the machine position in mm at the touch.
+    - ``measured_position_mm`` is the result of the tool setter: the machine position in mm with the tip at
+    part zero.
+    - ``change_reason`` describes the measurement. After it, no entry is necessary and the axis may move.
     """
 
     measured_quantity: str = ""
@@ -67,7 +67,7 @@ class TouchOff:
         self.measured_position_mm, self.change_reason, self.is_skim_cut = None, "", False
 
     def set_cut(self, quantity: str, position_mm: float) -> None:
-        """Store the machine position of a skim cut in mm as the touch position."""
+        """Store the machine position in mm during a skim cut as the touch position."""
         self.measured_quantity, self.touch_position_mm, self.skips_followers = quantity, position_mm, False
         self.measured_position_mm, self.change_reason, self.is_skim_cut = None, "", True
 
@@ -91,7 +91,7 @@ class TouchOff:
         )
 
     def find_zero_position(self, text: str, value_mode: ValueMode) -> float:
-        """Return the machine position in mm with the tool tip at part zero, with X as a radius.
+        """Return the machine position in mm at which the tool tip is at part zero, with X as a radius.
 
         Raises EntryError if the text is invalid or the position is out of range.
         """
@@ -147,7 +147,7 @@ class TouchOff:
         return why
 
     def make_touch_position(self, zero_position_mm: float) -> TouchPosition:
-        """Return the touch position of this axis for the offset table.
+        """Return the result of the touch-off for the offset table.
 
         ``zero_position_mm`` is the machine position in mm with the tool tip at part zero.
         """
@@ -168,7 +168,7 @@ class TouchOff:
     def has_moved(self, snapshot: Snapshot) -> bool:
         """Return whether the axis has moved since the touch.
 
-        The result is always False for a measurement of the tool setter. It is also False for a skim cut,
+        For a measurement of the tool setter, the result is always False. It is also False for a skim cut,
         because ``SkimCut`` makes its own check.
         """
         return (

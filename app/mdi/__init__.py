@@ -1,1 +1,1 @@
-"""MDI page, on which the operator enters one line at a time. Each line is proved before it runs."""
+"""MDI page for single program lines, each of which is proved before it runs."""

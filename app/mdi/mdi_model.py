@@ -49,7 +49,7 @@ class MdiInput:
         self.reload_history()
 
     def reload_history(self) -> None:
-        """Read the stored history. Invalid entries are ignored."""
+        """Read the stored history of input lines. Invalid entries are ignored."""
         try:
             kept = self.persistence.read_setting(HISTORY_SETTING)
         except StoreError:
@@ -98,7 +98,7 @@ class MdiInput:
         self.set_text(self.history_lines[-index] if index else self._draft)
 
     def finish_line(self) -> None:
-        """Add the line that has started running to the history, and begin an empty line."""
+        """Add the line that has started running to the history, and clear the input line."""
         self.error_columns.pop(self.text, None)
         self._remember()
         self.set_text("")
@@ -132,9 +132,9 @@ CONTINUATION_SIGN = "~"  # A block of Klartext continues in the next line.
 
 @dataclass(slots=True)
 class LineCompletion:
-    """Code help and completion for the input line.
+    """Code help and code completion for the MDI input line.
 
-    ``is_open`` is True while the arrow keys select a choice.
+    ``is_open`` is True while the list of choices is open and the arrow keys select a choice.
     """
 
     mdi_input: MdiInput
@@ -143,7 +143,7 @@ class LineCompletion:
     is_open: bool = False
 
     def toggle_choices(self) -> None:
-        """Open the choices for the text before the cursor, or close the choices."""
+        """Open or close the list of codes that match the text before the cursor."""
         self.is_open = not self.is_open
         if self.is_open:
             self.code_help.update_for_cursor(
@@ -154,8 +154,8 @@ class LineCompletion:
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the input line must handle the key.
 
-        Tab opens the choices. While they are open, the arrow keys select a choice. Any key without a
-        function closes the choices.
+        Tab opens the list of choices. While it is open, the arrow keys select a choice. Any key without a
+        function closes the list.
         """
         if not self.is_open:
             if key == "Tab":
@@ -173,7 +173,7 @@ class LineCompletion:
         return self.is_open or key in ("Enter", "Tab")
 
     def insert_code(self) -> None:
-        """Replace the typed part of a code with the selected code."""
+        """Replace the partly typed code at the cursor with the selected code."""
         self.is_open, chosen = False, self.code_help.selected_entry
         if chosen is None:
             return
@@ -185,7 +185,7 @@ class LineCompletion:
 
 
 def _fit_entry(entry: CodeBookEntry, max_length: int) -> str:
-    """Return the text that completion inserts, with continuation lines joined into one line.
+    """Return the text that completion inserts for a code, with its continuation lines joined.
 
     If this text is longer than ``max_length``, only the code is returned. If the code is also too long, the
     result is an empty string.
@@ -222,7 +222,7 @@ class MdiModel:
     # --- page ----------------------------------------------------------------------------------------
 
     def can_open(self) -> bool:
-        """Return whether MDI can open now. If it cannot, show the reason."""
+        """Return whether the MDI page can open now. If it cannot, show the reason."""
         if why := find_mdi_refusal(self.read_snapshot()):
             self.show_message(why)
         return not why
@@ -230,7 +230,7 @@ class MdiModel:
     def on_open(self) -> None:
         """Prepare the model when the page opens.
 
-        Cycle Start then runs entered lines instead of a program.
+        Cycle Start then runs the entered lines instead of a program.
         """
         self.is_open = True
         self.mdi_input.reload_history()
@@ -291,7 +291,7 @@ class MdiModel:
         return taken
 
     def prove_entered_line(self) -> None:
-        """Prove the entered line from the current machine state, or show why it cannot be proved."""
+        """Prove the entered line from the current machine state, or show the reason if this is impossible."""
         snapshot = self.read_snapshot()
         self.clear_message()
         if snapshot.state is not MachineState.IDLE:
@@ -303,13 +303,13 @@ class MdiModel:
         self.prepared_line.prove_line(self.mdi_input.text, snapshot, self._failed)
 
     def toggle_choices(self) -> None:
-        """Open or close the choices for the typed text or the code at the cursor."""
+        """Open or close the list of codes that match the text at the cursor."""
         if self.accepts_input:
             self.clear_message()
             self.line_completion.toggle_choices()
 
     def insert_code(self) -> None:
-        """Insert the selected code into the line."""
+        """Insert the selected code into the input line."""
         self.line_completion.insert_code()
         self.clear_message()
         self.prepared_line.cancel_line()
@@ -324,7 +324,7 @@ class MdiModel:
         self.prepared_line.cancel_line()
 
     def handle_escape(self) -> bool:
-        """Close the choices, cancel a prepared line, or clear the text.
+        """Close the list of codes, cancel a prepared line, or clear the text.
 
         Returns False if there was nothing to close, cancel or clear.
         """
@@ -348,7 +348,7 @@ class MdiModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process the proof of the line. When the line starts, add it to the history.
+        """Process the result of proving the line. When the line starts, add it to the history.
 
         This method is called once per frame.
         """
@@ -371,7 +371,7 @@ class MdiModel:
         return self._make_line_prompt(start_instruction)
 
     def _make_line_prompt(self, start: str) -> str:
-        """Return the prompt for the current state of the line."""
+        """Return the prompt for the state of the entered line."""
         if self.prepared_line.is_proving:
             return tr("CHECKING THE LINE FOR ERRORS")
         if self.prepared_line.blocking_errors:
@@ -381,10 +381,7 @@ class MdiModel:
         return tr("TYPE A LINE   ENTER: PROVE   F1: EXIT, SPINDLE UNCHANGED")
 
     def barred(self) -> str:
-        """Return the reason why the start buttons have no effect now, or an empty string.
-
-        The result is empty if the start buttons can start a line.
-        """
+        """Return the reason why the start buttons cannot start a line now, or an empty string if they can."""
         if self.read_snapshot().state is MachineState.IDLE and self.prepared_line.ready_job is None:
             return tr("NO LINE IS READY. TYPE A LINE AND PRESS ENTER")
         return ""

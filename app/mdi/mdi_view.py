@@ -34,7 +34,7 @@ from core.language.diagnostics import Diagnostic, Severity
 
 
 class MdiLinePanel(Panel):
-    """Panel with the input line, its cursor, its proof findings, and a mark if the line is prepared.
+    """Panel with the input line, its cursor and its proof findings, highlighted if the line is ready.
 
     A touch shows or hides the letter keyboard.
     """
@@ -49,7 +49,10 @@ class MdiLinePanel(Panel):
 
     @property
     def finding_text(self) -> str:
-        """Return the text of the most important finding, errors before warnings, or an empty string."""
+        """Return the first proof finding as text, or an empty string if there are no findings.
+
+        Errors come before warnings.
+        """
         return f"{self._first.message} {self._first.hint}".strip() if self._first else ""
 
     @property
@@ -58,7 +61,7 @@ class MdiLinePanel(Panel):
         return next(errors, self.diagnostics[0] if self.diagnostics else None)
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the input line with its cursor and its first finding.
+        """Draw the input line with its cursor and its first proof finding.
 
         If the line is ready for Cycle Start, its frame is highlighted.
         """
@@ -102,7 +105,7 @@ ROW_HEIGHT = 3.4  # Units.
 
 
 class MdiHistoryPanel(RowPanel):
-    """Panel with the line history.
+    """Panel with the history of input lines.
 
     ``recall_index`` is the position of the recalled line, counted from 1, or 0 if no line is recalled.
     """
@@ -120,7 +123,7 @@ class MdiHistoryPanel(RowPanel):
         self._placed: object = None
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the history of lines, highlight the recalled line and mark rejected lines."""
+        """Draw the history of input lines, highlight the recalled line and mark rejected lines."""
         self.frame(painter, tr("HISTORY  ·  UP AND DOWN ARROWS"))
         u, room, count = self.theme.unit_px, self.inside(), len(self.history_lines)
         fits, refused = self.count_fitting_rows(room, ROW_HEIGHT * u, count), dict(self.error_columns)
@@ -161,7 +164,7 @@ LABEL_WIDTH_RATIO = 0.4  # Fraction of a row for its label.
 
 
 class ModalPanel(Panel):
-    """Panel with all rows of the modal state. The rows are as large as the available area permits."""
+    """Panel with all rows of the modal state, which are as large as the available area permits."""
 
     rows: RedrawingAttribute[tuple[ModalRow, ...]] = RedrawingAttribute(())
 
@@ -184,7 +187,7 @@ LINE, STATE = 15.6, 46.0  # Units: height of the line, width of the modal state.
 
 
 class MdiPage(ModelPage):
-    """MDI page.
+    """Screen page for MDI input.
 
     While no line is running, keys enter text. While a line is running, letters have their usual functions.
     """
@@ -207,7 +210,7 @@ class MdiPage(ModelPage):
         self.modal_panel = ModalPanel(self.theme, self)
 
     def make_key_actions(self) -> KeyActions:
-        """Return the key actions of this page."""
+        """Return the key actions of the MDI page."""
         return {
             "F2": partial(self.host.open_page, page_table.AUTOMATIC),
             "F3": self.model.toggle_choices,
@@ -221,7 +224,7 @@ class MdiPage(ModelPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return DRIVES and RESET if these keys have no function in the current state."""
+        """Return the disabled keys: DRIVES (F5) and RESET (F6) if they have no function in this state."""
         state = self.desk.read_snapshot().state
         found = {"F5": state in {MachineState.ESTOP, MachineState.FAULT}, "F6": state in MOVING_STATES}
         return frozenset(key for key, refused in found.items() if refused)
@@ -236,7 +239,7 @@ class MdiPage(ModelPage):
         self.letter_pad.raise_()
 
     def has_text_field(self) -> bool:
-        """Return whether the input line accepts text. It accepts text while no line is running."""
+        """Return whether the input line accepts text, which is the case while no line is running."""
         return self.model.accepts_input
 
     def prompt_text(self) -> str:
@@ -258,7 +261,7 @@ class MdiPage(ModelPage):
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the current line, its findings and the current modal state."""
+        """Show the input line, its proof findings and the current modal state."""
         model, typing = self.model, self.model.mdi_input
         model.update(snapshot)
         running = snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
@@ -279,7 +282,7 @@ class MdiPage(ModelPage):
         self.modal_panel.rows = make_modal_rows(point, self.desk.machine.program_language)
 
     def _show_first_move(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Draw the first move of a prepared line over the program path. The picture hides the history."""
+        """Draw the first move of a prepared line over the program path, in place of the history."""
         legs = make_drawn_legs(self.model.prepared_line.first_move_result)
         if legs:
             self.path_view.show_picture(loaded.picture)
@@ -293,7 +296,7 @@ class MdiPage(ModelPage):
         self.path_view.redraw()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the line above the history on the left, and the modal state on the right."""
+        """Arrange the input line above the history on the left, and the modal state on the right."""
         u = self.theme.unit_px
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap

@@ -1,4 +1,4 @@
-"""Conversion of stored offset rows to the values that the interpreter uses, for lathes and mills."""
+"""Conversion of stored offset rows to the offsets of the interpreter, for lathes and mills."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ R_PARAMETERS_SETTING = (
 
 
 def parse_r_parameters(stored: object) -> dict[int, float]:
-    """Return the R parameters from the stored setting. Invalid entries are ignored."""
+    """Return the R parameters from the value of a stored setting. Invalid entries are ignored."""
     if not stored or not isinstance(stored, dict):
         return {}
     from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER
@@ -35,7 +35,7 @@ def parse_r_parameters(stored: object) -> dict[int, float]:
 
 
 def find_active_preset(stored: object, presets: Mapping[int, PresetRow]) -> int:
-    """Return the number of the active preset, or 0 if it is not in the table."""
+    """Return the number of the active preset, or 0 if the stored number is not in the preset table."""
     return stored if isinstance(stored, int) and stored in presets else 0
 
 
@@ -51,7 +51,7 @@ def make_secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, Second
 
 @dataclass(frozen=True, slots=True)
 class MillOffsets:
-    """The tool table and the preset table of a mill, and the number of the active preset.
+    """Tool table, preset table and active preset number of a mill.
 
     Both tables are mappings by number. Preset 0 is the preset of the machine file.
     """
@@ -62,10 +62,10 @@ class MillOffsets:
 
 
 def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
-    """Return the job setup with the offset tables of a mill.
+    """Return the job setup with the offset tables of a mill added.
 
-    The setup of a lathe is returned unchanged. Only tools of the mill's table are used. Lathe tool offsets
-    in the same store are ignored. ``job_setup.kinematics`` must be unchanged from the machine file.
+    The setup of a lathe is returned unchanged. Only tools of the mill's tool table are used. Lathe tool
+    offsets in the same store are ignored. ``job_setup.kinematics`` must be unchanged from the machine file.
     """
     machine = job_setup.kinematics
     if machine is None:
@@ -95,7 +95,7 @@ def make_mill_rows(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
 
 
 def make_datum_preset(row: PresetRow) -> DatumPreset:
-    """Return a row of the preset table in the form that the calculations use."""
+    """Return a row of the preset table as the datum that the kinematics calculation uses."""
     from core.geometry.rotary_axes import DatumPreset
 
     return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(find_rotary_zeros(row).items()))
@@ -107,7 +107,7 @@ def find_rotary_zeros(row: PresetRow) -> dict[str, float]:
 
 
 def _make_tool_offset(row: MillRow) -> ToolOffset:
-    """Return the tool's length and radius, each increased by its oversize."""
+    """Return the length and radius of a mill tool, each increased by its oversize (DL, DR)."""
     return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
 
 

@@ -1,4 +1,4 @@
-"""Base class of the offset tables that the operator edits cell by cell, in mm and degrees."""
+"""Base class for offset tables that the operator edits cell by cell."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _PAGE_STEPS = {"Page up": -10, "Page down": 10}
 
 
 class CellTable(OffsetTable):
-    """A table with a selected cell and the text being entered in this cell.
+    """Table with a selected cell and the text that is being entered in this cell.
 
     A text cell accepts letters after the operator opens it with Enter.
     """
@@ -61,7 +61,7 @@ class CellTable(OffsetTable):
 
     @abstractmethod
     def find_active_row(self, snapshot: Snapshot) -> int:
-        """Return the number of the row that the machine uses now, or 0."""
+        """Return the number of the row that the machine currently uses, or 0 if it uses none."""
 
     def field_of(self, name: str) -> RowField:
         """Return the field definition of a column."""
@@ -70,8 +70,8 @@ class CellTable(OffsetTable):
     def value_at(self, number: int, name: str) -> FieldValue:
         """Return the saved value of a cell.
 
-        The value is 0 or an empty string if the row was never set, and ``UNKNOWN_VALUE`` if the offsets
-        could not be read.
+        If the row was never set, the value is 0 or an empty string. If the offsets could not be read, the
+        value is ``UNKNOWN_VALUE``.
         """
         row = self.offset_book.get_rows(self.kind).get(number)
         if self.offset_book.has_read_failed:
@@ -80,7 +80,7 @@ class CellTable(OffsetTable):
         return empty if row is None else getattr(row, name)
 
     def tone_at(self, _number: int, _name: str) -> Tone:
-        """Return the color tone of a cell, which shows how urgent its value is."""
+        """Return the color tone of a cell, which shows whether its value needs attention."""
         return Tone.OFF
 
     @property
@@ -90,7 +90,7 @@ class CellTable(OffsetTable):
 
     @property
     def selected_number(self) -> int | None:
-        """Return the number of the selected row. Undo applies to this row."""
+        """Return the number of the selected row, to which undo applies."""
         return self.number
 
     @property
@@ -130,7 +130,7 @@ class CellTable(OffsetTable):
 
     @property
     def change_text(self) -> str:
-        """Return the text of the change being entered, or of the last change if nothing is entered."""
+        """Return a description of the change being entered, or of the last change if nothing is entered."""
         if not self.text.strip():
             return self.offset_history.last_change_text
         try:
@@ -141,13 +141,13 @@ class CellTable(OffsetTable):
         return f"{self.row_name} {self.selected_field.label}   {before}  →  {after}"
 
     def make_hint(self, _snapshot: Snapshot) -> str:
-        """Return the hint on how to enter a value and how to select another cell."""
+        """Return the prompt that explains how to enter a value and how to select another cell."""
         if self.is_text_open:
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
         return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
     def find_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
-        """Return why this table cannot be changed now, or an empty string if it can.
+        """Return the reason why this table cannot be changed now, or an empty string.
 
         A change moves a zero point or a tool tip. Changes are therefore allowed only between cycles.
         """
@@ -161,10 +161,10 @@ class CellTable(OffsetTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered.
+        """Return whether a character can be entered in the selected cell.
 
-        Number characters are accepted, and also C if it clears the table. While a text cell is open, any
-        character is accepted.
+        The characters of numbers and expressions are accepted, and also the letter that clears the table.
+        While a text cell is open, any character is accepted.
         """
         return (
             (self.is_text_open and len(key) == 1)
@@ -173,11 +173,14 @@ class CellTable(OffsetTable):
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. While a text cell is open, every character is added to its text."""
+        """Handle a key, and return whether it was used.
+
+        While a text cell is open, every character is added to its text.
+        """
         return self.handle_entry_key(key) if self.is_text_open else super().handle_key(key)
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a key of the table.
+        """Handle a key that selects a cell or edits its value, and return whether it was used.
 
         The arrow keys select a cell, and Enter saves the entered value.
         """
@@ -212,7 +215,7 @@ class CellTable(OffsetTable):
         self.choose(at // wide, at % wide)
 
     def choose(self, row: int, column: int) -> None:
-        """Select a touched cell.
+        """Select the touched cell.
 
         A second touch opens a text cell or toggles a flag.
         """
@@ -224,7 +227,7 @@ class CellTable(OffsetTable):
             self._toggle_flag()
 
     def cancel_entry(self) -> bool:
-        """Discard the entered text. Return False if nothing was entered."""
+        """Discard the entered text, and return whether anything was entered."""
         typed = bool(self.text) or self.is_text_open
         self.discard_entry()
         return typed
@@ -234,7 +237,11 @@ class CellTable(OffsetTable):
         self.text, self.is_text_open = "", False
 
     def handle_enter(self) -> None:
-        """Handle Enter: save the entry, open a text cell, toggle a flag, or else select the next cell."""
+        """Handle Enter according to the selected cell.
+
+        Enter saves an entered value, opens a text cell or toggles a flag. Otherwise it selects the next
+        cell.
+        """
         if self.is_text_open:
             self.save_cell(self.text.strip, "")
         elif self.selected_field.field_type is FieldType.TEXT:
@@ -247,7 +254,7 @@ class CellTable(OffsetTable):
             self.move_selection(0, 1)
 
     def _toggle_flag(self) -> None:
-        """Toggle a flag, and save it."""
+        """Toggle the flag in the selected cell, and save it."""
         on = not self.stored_value
         self.save_cell(lambda: on, "1" if on else "0")
 
@@ -268,9 +275,9 @@ class CellTable(OffsetTable):
         )
 
     def check_range(self, value: float) -> float:
-        """Return the rounded value if it is in the range of the field.
+        """Return the rounded value if it is in the range of the selected field.
 
-        Raise EntryError otherwise.
+        Raises EntryError if the value is out of range.
         """
         field = self.selected_field
         if field.is_valid_value(value):
@@ -292,7 +299,7 @@ class CellTable(OffsetTable):
         entered_text: str,
         find_dependent_values: Callable[[FieldValue], Mapping[str, FieldValue]] = lambda _new: {},
     ) -> bool:
-        """Save the selected cell, and return whether this succeeded.
+        """Save a value in the selected cell, and return whether this succeeded.
 
         A rejected text remains in the cell for correction. ``entered_text`` is recorded in the history.
         ``find_dependent_values`` returns the other fields of the row that depend on the new value.
@@ -318,9 +325,9 @@ class CellTable(OffsetTable):
         return True
 
     def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
-        """Save fields of the selected row.
+        """Save several fields of the selected row.
 
-        Return why this was rejected, or an empty string on success.
+        Returns the reason if the change is rejected, or an empty string on success.
         """
         return self.offset_questions.change_fields(self.kind, self.number, values, reason)
 

@@ -1,4 +1,4 @@
-"""Views of the tables that are edited cell by cell.
+"""Views of the offset tables that are edited cell by cell.
 
 These are the zero offsets of a lathe, and the tools and presets of a mill.
 """
@@ -33,7 +33,7 @@ _NUMBER_SHARE = 0.07  # Fraction of the width for the row number.
 
 
 class CellPanel(RowPanel):
-    """A panel with a table whose cells are touch targets.
+    """Panel with a table whose cells are touch targets.
 
     The selected cell is filled, and the active row has a bar. On a small screen with the number pad, only
     the columns that fit are shown, including the selected column.
@@ -54,7 +54,7 @@ class CellPanel(RowPanel):
         self._wide = [_COLUMN_SHARES.get(name, 1.0) for name in cell_table.columns]
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the heading, the column heads and the visible rows of the table."""
+        """Draw the title, the column headings and the visible rows of the table."""
         self.frame(painter, self._heading)
         room, u, count = self.inside(), self.theme.unit_px, len(self._numbers)
         least = self.theme.find_row_height(HIGH, 10.0, is_touchable=True) + 0.5 * u
@@ -68,7 +68,7 @@ class CellPanel(RowPanel):
             self._row(painter, row.adjusted(0, 0, 0, -0.5 * u), number)
 
     def _find_cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
-        """Yield the index and rectangle of each visible column in this row."""
+        """Yield the column index and the rectangle of each visible cell in a row."""
         room, gap = row.width() * (1.0 - _NUMBER_SHARE), 0.5 * self.theme.unit_px
         shown = self._find_visible_columns(room * min(self._wide) / (FINGERTIP_PX + gap))
         one = room / sum(self._wide[column] for column in shown)
@@ -81,8 +81,8 @@ class CellPanel(RowPanel):
     def _find_visible_columns(self, available_width: float) -> range:
         """Return the indices of the visible columns.
 
-        The columns start at the first if the selected column then fits. Otherwise the selected column is
-        the last one shown. ``available_width`` is in the units of the column widths.
+        The first column is visible if the selected column then also fits. Otherwise the selected column is
+        the last visible column. ``available_width`` is in the units of the column widths.
         """
         first, end, used = 0, 0, 0.0
         while end < len(self._wide) and (
@@ -140,7 +140,8 @@ _ROW_LETTERS = {ZeroOffsetTable.kind: "G", MillToolTable.kind: "T", PresetTable.
 class CellTablePage(OffsetPage):
     """Base class of the three pages whose tables are edited cell by cell.
 
-    F2 sets the selected field by touch-off. These pages do not show the effect of a change on the path.
+    F2 sets the selected field from the current position (touch-off). These pages do not show the effect of
+    a change on the path.
     """
 
     model: CellTable
@@ -154,7 +155,7 @@ class CellTablePage(OffsetPage):
             self.number_pad.page_key = ("Tab", "→")
 
     def make_key_actions(self) -> KeyActions:
-        """Return the key actions of an offset page, without F6 and F10."""
+        """Return the key actions that all offset pages share, without F6 and F10."""
         return {key: act for key, act in super().make_key_actions().items() if key not in {"F6", "F10"}}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
@@ -169,7 +170,7 @@ class CellTablePage(OffsetPage):
 
 
 class ZeroOffsetsPage(CellTablePage):
-    """The page of the zero offsets G54 to G59, with one row for each offset."""
+    """Screen page of the zero offsets G54 to G59, with one row for each offset."""
 
     NAME = page_table.ZERO
     LABELS = ("MENU", "SET POS.", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
@@ -179,13 +180,16 @@ class ZeroOffsetsPage(CellTablePage):
         super().__init__(host, parent, ZeroOffsetTable(host.desk))
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the key labels. A SINUMERIK lathe has no key for secondary offsets."""
+        """Return the labels of the function keys.
+
+        A SINUMERIK lathe has no key for secondary offsets.
+        """
         return (
             (*self.LABELS[:8], "", "") if self.desk.machine.program_language == "sinumerik" else self.LABELS
         )
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why each key is disabled, including F2 (set from position)."""
+        """Return the reason why each function key is disabled, including F2 (set from position)."""
         return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
 
     def make_key_actions(self) -> KeyActions:
@@ -194,7 +198,7 @@ class ZeroOffsetsPage(CellTablePage):
 
 
 class MillToolsPage(CellTablePage):
-    """The page of the tool table of a mill (TOOL.T), with one row for each tool."""
+    """Screen page of the tool table of a mill (TOOL.T), with one row for each tool."""
 
     NAME = page_table.MILL_TOOLS
     LABELS = ("MENU", "TOUCH L", "", "UNDO", "HISTORY", "", "ALARMS", "", "PRESETS", "")
@@ -204,7 +208,7 @@ class MillToolsPage(CellTablePage):
         super().__init__(host, parent, MillToolTable(host.desk))
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why each key is disabled, including F2 (touch off the length)."""
+        """Return the reason why each function key is disabled, including F2 (touch off the length)."""
         return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
 
     def make_key_actions(self) -> KeyActions:
@@ -213,13 +217,13 @@ class MillToolsPage(CellTablePage):
         return {**rest, "F2": self.model.set_from_position, "F9": partial(self._go, page_table.PRESETS)}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Update the table, including the tool life, which changes while the page is open."""
+        """Update the table, and the used tool life, which can change while the page is open."""
         super().refresh(snapshot, status, loaded)
         self.table_panel.tool_lives = self.model.mill_lives.read_lives()
 
 
 class PresetsPage(CellTablePage):
-    """The page of the presets of a mill, with one row for each preset."""
+    """Screen page of the presets of a mill, with one row for each preset."""
 
     NAME = page_table.PRESETS
     LABELS = ("MENU", "TOUCH", "ACTIVATE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
@@ -229,7 +233,10 @@ class PresetsPage(CellTablePage):
         super().__init__(host, parent, PresetTable(host.desk))
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return why each key is disabled, including F2 (touch off) and F3 (activate)."""
+        """Return the reason why each function key is disabled, including F2 and F3.
+
+        F2 touches off, and F3 activates the selected preset.
+        """
         model = self.model
         return {
             **super().find_key_refusals(),

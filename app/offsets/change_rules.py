@@ -1,10 +1,11 @@
 """Rules for changes to offsets, used by the screen and the command line.
 
-The rules define which changes are suspicious, and which access right each change needs. A rule compares the
-new value with the value in use. The limits are larger than the usual size correction between two parts, and
-smaller than most errors of a digit, a sign or a decimal point. Zero offsets and presets are not checked,
-because a new setup can move them by any distance. Instead, the proof of the program checks the resulting
-path against the axis travel.
+The rules define which changes are suspicious, and which access right each change requires. A rule compares
+the new value with the value in use. The limits are larger than the usual size correction between two parts,
+but smaller than most errors of a digit, a sign or a decimal point.
+
+Zero offsets and presets are not checked, because a new setup can move them by any distance. Instead, the
+proof of the program checks the resulting path against the axis travel.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ TravelLimits = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from
 
 
 class SuspicionKind(StrEnum):
-    """The reasons why a change is suspicious, the most serious first."""
+    """Reason why an offset change is suspicious, with the most serious reason first."""
 
     OUTSIDE_TRAVEL = "travel"  # The tip cannot reach part zero.
     WRONG_SIDE = "side"  # The tool would cut on the other side of the part.
@@ -45,7 +46,7 @@ class SuspicionKind(StrEnum):
 
 
 class Suspicion(NamedTuple):
-    """One suspicious field of an offset, with its old and new values in mm.
+    """Suspicious change of one field of an offset, with the old and new values in mm.
 
     The old value is None if the field was not set.
     """
@@ -60,8 +61,8 @@ class Suspicion(NamedTuple):
 def find_travel_limits(machine: Machine | None) -> TravelLimits:
     """Return the travel limits of X and Z of a lathe in mm.
 
-    Return an empty mapping for a mill or if no machine is specified. The tool length of a mill is not a
-    machine position and is not compared with the travel.
+    The result is empty for a mill or without a machine. The tool length of a mill is not a machine position
+    and is not compared with the travel.
     """
     if machine is None or machine.kind != "lathe":
         return {}
@@ -78,7 +79,7 @@ def find_table_suspicions(
     changes: Mapping[int, Mapping[str, FieldValue]],
     travel: TravelLimits,
 ) -> tuple[Suspicion, ...]:
-    """Return the fields that would be suspicious if these changes were saved.
+    """Return the suspicious fields of several changes to an offset table.
 
     Rows with a value out of range are omitted, because the store rejects them.
     """
@@ -95,9 +96,9 @@ def find_table_suspicions(
 def _make_changed_row(
     kind: OffsetKind, old: OffsetRow | None, values: Mapping[str, FieldValue]
 ) -> OffsetRow | None:
-    """Return the row with these values.
+    """Return an offset row with changed values.
 
-    Return None if rows of this kind are not checked or a value is out of range.
+    Returns None if rows of this kind are not checked or a value is out of range.
     """
     fields = FIELDS_BY_KIND[kind]
     if not all(name in fields and fields[name].is_valid_value(value) for name, value in values.items()):
@@ -164,7 +165,7 @@ def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimits
 def _check_corrections(
     number: int, old: OffsetRow, new: OffsetRow, names: tuple[str, ...], doubled: str
 ) -> Iterator[Suspicion]:
-    """Yield the suspicious corrections.
+    """Yield the suspicious fields of a wear or secondary offset correction.
 
     ``doubled`` is the name of the field that the operator enters as a diameter.
     """
@@ -183,7 +184,10 @@ def _moved(
 
 
 def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]) -> Iterator[Suspicion]:
-    """Yield a suspicion for each tool that becomes the master while other tools follow the master."""
+    """Yield a suspicion for each tool that would become the master tool while other tools exist.
+
+    The other tools would then follow its touch-offs.
+    """
     for number, row in new.items():
         old = table.get(number)
         was = isinstance(old, ToolRow) and old.master
@@ -195,21 +199,21 @@ def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRo
 
 
 def apply_touch_off(tools: Mapping[int, ToolRow], tool_number: int, touch: TouchPosition) -> ToolRow:
-    """Return the row of a tool after this touch-off, as the store will save it."""
+    """Return the row of a tool as the store will save it after a touch-off."""
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     values: dict[str, FieldValue] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
     return replace_fields(tools.get(tool_number, ToolRow()), values)
 
 
 def find_followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
-    """Return the numbers of the tools that would move with this master tool when it is touched off."""
+    """Return the numbers of the tools that move with the master tool when it is touched off."""
     return tuple(number for number in sorted(tools) if number != master)
 
 
 def find_follower_suspicions(
     tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: TravelLimits
 ) -> tuple[Suspicion, ...]:
-    """Return a suspicion for each following tool that this touch-off would move outside the travel."""
+    """Return a suspicion for each tool that would move outside the travel with the master tool."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
     found: list[Suspicion] = []
@@ -224,7 +228,7 @@ def describe_suspicions(
     describe_field: Callable[[Suspicion], str],
     describe_reason: Callable[[Suspicion], str],
 ) -> str:
-    """Return one text that describes all suspicions.
+    """Return one text that describes all suspicious changes.
 
     Each field appears once, with its most serious reason.
     """
@@ -254,9 +258,9 @@ _RIGHTS_BY_KIND = {
 
 
 def find_required_right(kind: OffsetKind, fields: Collection[str] = ()) -> ProtectedChange:
-    """Return the access right that is needed to change these fields.
+    """Return the access right that is required to change fields of an offset table.
 
-    If no fields are given, return the right that is needed to clear the table or undo a change.
+    Without ``fields``, this is the right to clear the table or undo a change.
     """
     only = CORRECTION_FIELDS.get(kind, frozenset())
     return ProtectedChange.WEAR if fields and only.issuperset(fields) else _RIGHTS_BY_KIND[kind]

@@ -1,4 +1,4 @@
-"""The tool table of a mill (TOOL.T), with dimensions, oversizes, tool life and touch-off."""
+"""Tool table of a mill (TOOL.T), with dimensions, oversizes, tool life and touch-off."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ _LIFE_TONES = {ToolLifeState.WARNING: Tone.PAUSE, ToolLifeState.USED_UP: Tone.AL
 
 
 class MillToolTable(CellTable):
-    """The tool table with its selected cell and the text being entered in this cell."""
+    """Tool table of a mill, with the selected cell and the text that is being entered in this cell."""
 
     kind = OffsetKind.MILL_TOOL
     numbers = MILL_TOOL_NUMBERS
 
     @property
     def mill_lives(self) -> MillToolLives:
-        """Return the object that reads and sets the tool life of the mill's tools."""
+        """Return the tool life counters of the mill's tools."""
         return MillToolLives.find_for(self.desk)
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Return the field names of the columns. The cutting time follows the tool life limit."""
+        """Return the field names of the columns. The cutting time comes after the tool life limit."""
         *fields, stops = super().columns
         return (*fields, CUTTING_TIME_FIELD, stops)
 
@@ -60,7 +60,7 @@ class MillToolTable(CellTable):
     def tone_at(self, number: int, name: str) -> Tone:
         """Return the color tone of a cell.
 
-        The tone of CUR.TIME shows when the tool life is almost or completely used.
+        The tone of CUR.TIME shows when the tool life is almost or completely used up.
         """
         life = self.mill_lives.read_lives().get(number) if name == CUTTING_TIME_FIELD else None
         return Tone.OFF if life is None else _LIFE_TONES.get(life.state, Tone.OFF)
@@ -90,9 +90,9 @@ class MillToolTable(CellTable):
         return tr("F2: set L so that the current tip position becomes the typed height        Esc: exit")
 
     def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
-        """Save CUR.TIME in the tool life counter, or save other fields in the table.
+        """Save CUR.TIME in the tool life counter, or other fields in the tool table.
 
-        Return why this was rejected, or an empty string on success.
+        Returns the reason if the change is rejected, or an empty string on success.
         """
         if CUTTING_TIME_FIELD not in values:
             return super().save_fields(values, reason)
@@ -104,14 +104,14 @@ class MillToolTable(CellTable):
         return ""
 
     def find_position_refusal(self) -> str:
-        """Return why the tool length cannot be touched off now, or an empty string if it can."""
+        """Return the reason why the tool length cannot be touched off now, or an empty string."""
         if self.name != "length":
             return tr("SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH")
         nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
         return nose if isinstance(nose, str) else self.find_refusal(self.desk.read_snapshot())
 
     def set_from_position(self) -> None:
-        """Handle F2: set the tool length so that the tip is at the entered height.
+        """Set the tool length by touch-off, so that the tip is at the entered height (F2).
 
         The height is relative to the active preset. Without an entry, it is 0.
         """

@@ -1,4 +1,4 @@
-"""Calculation of touch-offs with the kinematics of a mill, and tool life for the tool table."""
+"""Calculation of touch-offs with the kinematics of a mill, and tool life counters of its tools."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 
 @dataclass(slots=True)
 class MillTouchCalculator:
-    """A calculator of positions on a mill.
+    """Calculator of tool tip positions on a mill, for touch-offs.
 
-    ``kinematics`` comes from the machine file. It is None if the machine file defines no kinematics.
+    ``kinematics`` is None if the machine file defines no kinematics.
     """
 
     desk: Desk
     kinematics: Kinematics | None
 
     def close(self) -> None:
-        """Do nothing, because nothing runs in the background."""
+        """Do nothing because the calculator has no worker to stop."""
 
     @classmethod
     def find_for(cls, desk: Desk) -> MillTouchCalculator:
-        """Return the calculator attached to TurnDesk, or a calculator without kinematics."""
+        """Return the calculator that is attached to TurnDesk, or else a calculator without kinematics."""
         found = desk.page_registry.find_model(cls)
         return found if found is not None else cls(desk, None)
 
     def find_tip_position(self, zero_positions: Mapping[str, float]) -> Vector | str:
-        """Return the machine position of the tip of the tool in the spindle in mm, or why it is unknown.
+        """Return the machine position of the active tool's tip in mm, or the reason why it is unknown.
 
         The position is calculated for the rotary axes at ``zero_positions``.
         """
@@ -62,10 +62,10 @@ class MillTouchCalculator:
     def find_moved_point(
         self, workpiece_point: Vector, angles_before: Mapping[str, float], angles_after: Mapping[str, float]
     ) -> Vector:
-        """Return the machine position in mm of a workpiece point with the rotary axes at ``angles_after``.
+        """Return the machine position in mm to which the rotary axes move a point of the workpiece.
 
-        ``workpiece_point`` is the machine position of the same point with the rotary axes at
-        ``angles_before``.
+        ``workpiece_point`` is the machine position of the point with the rotary axes at ``angles_before``.
+        The result is its machine position with the rotary axes at ``angles_after``.
         """
         if self.kinematics is None:
             return workpiece_point
@@ -81,15 +81,15 @@ class MillTouchCalculator:
         return tuple(sorted(axis.name for axis in self.kinematics.rotary_axes)) if self.kinematics else ()
 
     def find_angle(self, axis_name: str) -> float | str:
-        """Return the machine position of a rotary axis in degrees, or why it is unknown."""
+        """Return the machine position of a rotary axis in degrees, or the reason why it is unknown."""
         stationary_state = self._find_stationary_state()
         return stationary_state if isinstance(stationary_state, str) else stationary_state[1][axis_name]
 
     def find_nose_height(self) -> float | str:
-        """Return the height of the spindle nose above the zero of the active preset in mm.
+        """Return the height of the spindle nose above the zero point of the active preset in mm.
 
-        This height is the length L of a tool whose tip touches this zero. If the height is unknown, return
-        the reason as text.
+        This height is the length L of a tool whose tip touches the zero point. If the height is unknown,
+        the reason is returned as text.
         """
         stationary_state = self._find_stationary_state()
         if isinstance(stationary_state, str):
@@ -100,9 +100,9 @@ class MillTouchCalculator:
         return machine.make_transform(angles).convert_to_frame_point(slides)[2]
 
     def _find_stationary_state(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
-        """Return the kinematics with the active preset, the rotary angles and the linear axis positions.
+        """Return the kinematics with the active preset, the rotary angles and the linear positions.
 
-        If these are unknown, return the reason as text.
+        If these are unknown, for example while an axis moves, the reason is returned as text.
         """
         snapshot, book = self.desk.read_snapshot(), self.desk.offset_book
         if self.kinematics is None:
@@ -133,20 +133,20 @@ def _none() -> Mapping[int, ToolLife]:
 
 @dataclass(slots=True)
 class MillToolLives:
-    """Functions that read and set the tool life of a mill's tools.
+    """Access to the tool life counters of a mill's tools.
 
     ``read_lives`` returns the tool life by tool number. It returns the same object until something changes.
-    ``set_cutting_time`` sets the cutting time of a tool in seconds, 0 for a new tool.
+    ``set_cutting_time`` sets the cutting time of a tool in seconds, which is 0 for a new tool.
     """
 
     read_lives: Callable[[], Mapping[int, ToolLife]] = _none
     set_cutting_time: Callable[[int, float], None] = lambda _number, _seconds: None
 
     def close(self) -> None:
-        """Do nothing, because nothing runs in the background."""
+        """Do nothing because there is no worker to stop."""
 
     @classmethod
     def find_for(cls, desk: Desk) -> MillToolLives:
-        """Return the object attached to TurnDesk, or an object without tools."""
+        """Return the tool life counters that are attached to TurnDesk, or else counters without tools."""
         found = desk.page_registry.find_model(cls)
         return found if found is not None else cls()

@@ -1,4 +1,4 @@
-"""The current offsets of TurnDesk, with changes that are saved in the background."""
+"""Current offsets of TurnDesk, whose changes are saved in the background."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SAVE_IN_PROGRESS = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 
 
 class OffsetRows(NamedTuple):
-    """All offsets that a store contains at one moment."""
+    """Rows of all offset tables in a store, read at one time."""
 
     tool_offsets: dict[int, ToolRow]
     secondary_offsets: dict[int, SecondaryRow]
@@ -47,9 +47,9 @@ class OffsetRows(NamedTuple):
 
 
 def read_store_rows(store: Store) -> OffsetRows:
-    """Read all offsets of a store.
+    """Read the rows of all offset tables from a store.
 
-    Raise StoreError on failure.
+    Raises StoreError if they cannot be read.
     """
     tables = store.offsets
     presets = tables.presets.read_rows()
@@ -68,9 +68,9 @@ def read_store_rows(store: Store) -> OffsetRows:
 class OffsetBook:
     """Offsets and tool shapes by number, in mm and degrees, with X as a radius.
 
-    A change that the access level permits is posted to the store's writer. The new value is shown after it
-    has been written to the disk. ``poll_saving`` is called once a frame. Without ``store``, nothing can be
-    changed, and ``lock_reason`` gives the reason.
+    A change that the access level permits is queued for the writer of the store. The new value is shown
+    after it has been written to the disk. ``poll_saving`` is called once per frame. Without ``store``,
+    nothing can be changed, and ``lock_reason`` contains the reason.
     """
 
     store: Store | None = None
@@ -98,7 +98,7 @@ class OffsetBook:
     # --- present values ------------------------------------------------------------------------------
 
     def get_rows(self, kind: OffsetKind) -> Mapping[int, OffsetRow]:
-        """Return the offsets of one kind, by number."""
+        """Return the rows of one offset table, by number."""
         tables: dict[OffsetKind, Mapping[int, OffsetRow]] = {
             OffsetKind.TOOL: self.tool_offsets,
             OffsetKind.SECONDARY: self.secondary_offsets,
@@ -111,25 +111,25 @@ class OffsetBook:
 
     @property
     def master_number(self) -> int:
-        """Return the number of the master tool, or 0 without a master."""
+        """Return the number of the master tool, or 0 if there is no master tool."""
         return next((number for number, row in self.tool_offsets.items() if row.master), 0)
 
     def read_history(self, kind: OffsetKind, limit: int = 200) -> tuple[OffsetChange, ...]:
-        """Return the last changes, newest first, or an empty tuple without a store."""
+        """Return the last changes of an offset table, newest first, or an empty tuple without a store."""
         return () if self.store is None else self.store.offsets.get_table(kind).read_history(limit)
 
     def read_store(self) -> None:
-        """Read the values of the store.
+        """Read the offset tables from the store.
 
-        This call does not block, even while the store is being written.
+        Reading does not block, even while the store is being written.
         """
         if self.store is not None:
             self.show_rows(read_store_rows(self.store))
 
     def show_rows(self, rows: OffsetRows) -> None:
-        """Replace the shown values with these offsets.
+        """Replace the displayed offsets with these rows.
 
-        Without a store, the values can be shown but not changed.
+        Without a store, the offsets can be displayed but not changed.
         """
         self.tool_offsets, self.secondary_offsets, self.zero_offsets = (
             dict(rows.tool_offsets),
@@ -159,16 +159,16 @@ class OffsetBook:
     def change_fields(
         self, kind: OffsetKind, number: int, values: Mapping[str, FieldValue], reason: str
     ) -> str:
-        """Save some fields of an offset, and leave the other fields unchanged."""
+        """Save some fields of an offset row, and leave its other fields unchanged."""
         return self._post(
             find_required_right(kind, values),
             lambda store, who: store.offsets.get_table(kind).change_row(number, reason, values, who=who),
         )
 
     def touch_off(self, tool_number: int, touch: TouchPosition, reason: str) -> str:
-        """Set a tool by a touch-off.
+        """Set the offset of a tool by a touch-off.
 
-        If the tool is the master, all other tools follow.
+        If the tool is the master tool, the offsets of all other tools follow.
         """
         return self._post(
             ProtectedChange.TOOLS,
@@ -178,9 +178,9 @@ class OffsetBook:
         )
 
     def choose_master(self, tool_number: int, reason: str) -> str:
-        """Make this tool the master.
+        """Make a tool the master tool.
 
-        With 0, no tool is the master.
+        The tool number 0 means that no tool is the master tool.
         """
         return self._post(
             ProtectedChange.TOOLS,
@@ -210,7 +210,7 @@ class OffsetBook:
         )
 
     def clear_table(self, kind: OffsetKind, reason: str) -> str:
-        """Delete all offsets of this kind."""
+        """Delete all rows of an offset table."""
         return self._post(
             find_required_right(kind),
             lambda store, who: store.offsets.get_table(kind).remove_all_rows(reason, author=who),
@@ -219,19 +219,20 @@ class OffsetBook:
     def find_undoable_changes(self, kind: OffsetKind, number: int | None) -> tuple[OffsetChange, ...]:
         """Return the changes of the last step that undo would reverse.
 
-        ``number`` is a row, or None for the last step of the whole table. Raise StoreError on failure.
+        ``number`` is a row, or None for the last step of the whole table. Raises StoreError if the history
+        cannot be read.
         """
         return () if self.store is None else self.store.offsets.get_table(kind).find_undoable_changes(number)
 
     def undo_step(self, kind: OffsetKind, number: int | None, step_number: int) -> str:
-        """Undo this step only. Other steps remain unchanged."""
+        """Undo one step of the offset history. Other steps remain unchanged."""
         return self._post(
             find_required_right(kind),
             lambda store, who: store.offsets.get_table(kind).undo_step(number, step_number, author=who),
         )
 
     def barred(self, change: ProtectedChange) -> str:
-        """Return why this change cannot be posted now, or an empty string if it can."""
+        """Return the reason why a change of this type cannot be saved now, or an empty string."""
         if self.store is None or self.is_saving:
             return self.lock_reason or SAVE_IN_PROGRESS
         return self.user_access.find_refusal(change)
@@ -253,9 +254,9 @@ class OffsetBook:
         return self._saving is not None
 
     def poll_saving(self) -> str:
-        """Check whether the change has been saved.
+        """Check whether the pending change has been saved.
 
-        Return the error, or an empty string.
+        Returns the error message if saving failed, or an empty string.
         """
         if self._reopened is not None:
             return self._turn_to(*self._reopened)
@@ -269,10 +270,10 @@ class OffsetBook:
         return self._read_or_why() or (str(error) if error is not None else "")
 
     def use_store(self, store: Store | None, error_text: str, rows: OffsetRows | None = None) -> None:
-        """Use another store from the next poll on.
+        """Use another store from the next call of ``poll_saving`` on.
 
-        Any thread may call this. If ``store`` is None, ``error_text`` gives the reason. ``rows`` are the
-        offsets set by another TurnDesk that owns the store.
+        This method can be called from any thread. If ``store`` is None, ``error_text`` is the reason.
+        ``rows`` are the offsets of a second TurnDesk instance that owns the store.
         """
         self._reopened = store, error_text, rows
 

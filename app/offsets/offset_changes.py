@@ -1,6 +1,6 @@
 """Changes to offsets, with confirmation of suspicious changes, history and undo.
 
-Every page changes offsets through these classes. To confirm a change, the operator sees the old and the new
+Every page changes offsets through these classes. The question for confirmation shows the old and the new
 value. Y changes the offset. N and Esc leave it unchanged.
 """
 
@@ -57,10 +57,11 @@ NUMBER_PREFIXES = {
 
 
 def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
-    """Return why offsets cannot be changed now, or an empty string if they can.
+    """Return the reason why offsets cannot be changed now, or an empty string.
 
-    A correction (wear, secondary offset) may be entered while parts run, because the part being cut uses
-    the offsets with which it was proved. A change of a tip position must wait until no program is running.
+    A correction (wear, secondary offset) may be entered while parts are being cut, because the current part
+    uses the offsets with which it was proved. A change of a tool tip position must wait until no program is
+    running.
     """
     if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
@@ -70,7 +71,10 @@ def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
 
 
 def describe_effective_time(snapshot: Snapshot) -> str:
-    """Return when a change entered now takes effect, or an empty string if no cycle is running."""
+    """Return a text about when a change entered now takes effect.
+
+    The result is an empty string if no cycle is running.
+    """
     if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
@@ -79,7 +83,10 @@ def describe_effective_time(snapshot: Snapshot) -> str:
 
 
 def _describe_applied_next(snapshot: Snapshot) -> str:
-    """Return the text that follows the word SAVED in a message while parts run."""
+    """Return the addition to a SAVED message that says when the change applies.
+
+    The result is an empty string if no cycle is running.
+    """
     if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
@@ -89,9 +96,9 @@ def _describe_applied_next(snapshot: Snapshot) -> str:
 
 @dataclass(slots=True)
 class OffsetHistory:
-    """The history of changes to the table ``kind``.
+    """History of changes to the offset table ``kind``.
 
-    Every page that changes the table calls ``update`` once a frame.
+    Every page that changes the table calls ``update`` once per frame.
     """
 
     desk: Desk
@@ -112,18 +119,18 @@ class OffsetHistory:
 
     @property
     def offset_book(self) -> OffsetBook:
-        """Return the saved offsets."""
+        """Return the offset book, which contains the saved offsets."""
         return self.desk.offset_book
 
     def on_open(self) -> None:
-        """Do not report changes that were made before the page opened."""
+        """Mark all earlier changes as known when the page opens, so that they are not reported."""
         self._seen, self.last_changes = self.offset_book.changes, ()
         self._newest = max((change.id for change in self._read(1)), default=0)
 
     def update(self, snapshot: Snapshot) -> None:
         """Read the unit of the control, and report newly saved changes.
 
-        This is called once a frame.
+        This method is called once per frame.
         """
         self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
         if self.offset_book.changes == self._seen:
@@ -152,10 +159,10 @@ class OffsetHistory:
         return format_edge_name(change.number) if letter == "T" else f"{letter}{change.number}"
 
     def format_change(self, change: OffsetChange) -> tuple[str, str, str, str]:
-        """Return the texts of one change.
+        """Return the texts of one change in the history.
 
-        The texts are the local time, the name of the offset, its old and new values in the control's unit,
-        and the reason with the user.
+        The texts are the local time, the name of the offset, its old and new values in the unit of the
+        control, and the reason with the user.
         """
         at = format_local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
@@ -164,9 +171,9 @@ class OffsetHistory:
 
     @property
     def last_change_text(self) -> str:
-        """Return the last change in one line.
+        """Return a description of the last change in one line.
 
-        Return an empty string if nothing has changed since the page opened.
+        The result is an empty string if nothing has changed since the page opened.
         """
         if len(self.last_changes) == 1:
             _at, which, change, _why = self.format_change(self.last_changes[0])
@@ -184,11 +191,11 @@ class OffsetHistory:
         )
 
     def toggle_list(self) -> None:
-        """Switch between the history and the table."""
+        """Show the history instead of the table, or the table again."""
         self.listed_changes = None if self.listed_changes is not None else self._read()
 
     def can_undo(self, number: int | None) -> bool:
-        """Return whether a change of this row can be undone.
+        """Return whether a change of a row can be undone, or of the table if ``number`` is None.
 
         The result is cached until the next change.
         """
@@ -200,7 +207,7 @@ class OffsetHistory:
         return self._undoable
 
     def show_refusal(self, reason: str) -> None:
-        """Show why something was rejected, or nothing if the reason is empty."""
+        """Show the reason why a change was rejected. Do nothing if the reason is empty."""
         if reason:
             self.desk.say(reason)
 
@@ -219,7 +226,7 @@ _MAX_NAMES = 6  # Followers that a question lists by name.
 class ConfirmedOffsetChanges:
     """Changes to offsets, which the operator must confirm if they are suspicious.
 
-    Each method returns why the change was rejected, or an empty string.
+    The methods that make a change return the reason if it is rejected, or an empty string.
     """
 
     offset_history: OffsetHistory
@@ -229,7 +236,7 @@ class ConfirmedOffsetChanges:
     def change_fields(
         self, kind: OffsetKind, number: int, values: Mapping[str, FieldValue], reason: str
     ) -> str:
-        """Save some fields of an offset, and ask first if a value is suspicious."""
+        """Save some fields of an offset row. If a value is suspicious, ask for confirmation first."""
         book = self.offset_history.offset_book
         table = book.get_rows(kind)
         return self._ask_if_intended(
@@ -243,7 +250,7 @@ class ConfirmedOffsetChanges:
     def touch_off(
         self, tool_number: int, touch: TouchPosition, reason: str, tip_x_mm: float | None = None
     ) -> str:
-        """Set a tool by a touch-off, and ask first if the result is suspicious.
+        """Set the offset of a tool by a touch-off, after confirmation if the result is suspicious.
 
         ``tip_x_mm`` is X of the tip relative to part zero as a radius in mm, or None if X was not touched
         off.
@@ -262,7 +269,7 @@ class ConfirmedOffsetChanges:
     def find_touch_suspicions(
         self, tool_number: int, touch: TouchPosition, tip_x_mm: float | None = None
     ) -> tuple[Suspicion, ...]:
-        """Return the suspicious fields of this touch-off."""
+        """Return the suspicious fields of a touch-off."""
         tools, travel = self.offset_history.offset_book.tool_offsets, self._travel()
         old, new = tools.get(tool_number), apply_touch_off(tools, tool_number, touch)
         found = find_suspicions(tool_number, old, new, travel)
@@ -276,16 +283,16 @@ class ConfirmedOffsetChanges:
         return found
 
     def _describe_followers(self, number: int, touch: TouchPosition) -> str:
-        """Return the names of the tools that follow this touch-off.
+        """Return the names of the tools that follow a touch-off of the master tool.
 
-        Return an empty string if no other tool moves.
+        The result is an empty string if no other tool moves.
         """
         tools = self.offset_history.offset_book.tool_offsets
         moves_all = number in tools and tools[number].master and not touch.moves_only_this_tool
         return format_followers(tools, number) if moves_all else ""
 
     def _is_other_side(self, number: int, tip: float, new_x: float) -> bool:
-        """Return whether the tool would now cut on the opposite side of the part."""
+        """Return whether the tool would cut on the opposite side of the part after a touch-off."""
         book = self.offset_history.offset_book
         old, shape = book.tool_offsets.get(number), book.tool_shapes.get(number)
         if old is not None:
@@ -304,7 +311,7 @@ class ConfirmedOffsetChanges:
         unchanged: Callable[[], bool],
         others: str = "",
     ) -> str:
-        """Save at once, or ask first and save after Y if there are suspicions.
+        """Save a change immediately, or after the operator's confirmation (Y) if it is suspicious.
 
         The change is rejected if the offsets have changed since the question was asked.
         """
@@ -324,7 +331,7 @@ class ConfirmedOffsetChanges:
         return ""
 
     def _describe_field(self, kind: OffsetKind, each: Suspicion) -> str:
-        """Return the text of a change, for example "T1 X Ø +0.50000 → −1.20000"."""
+        """Return the text of a suspicious change, for example "T1 X Ø +0.50000 → −1.20000"."""
         title, shown = self._find_format(kind, each.name)
         old = describe_unset() if each.old_value is None else shown(each.old_value)
         return f"{_row_name(kind, each.row_number)} {title} {old} → {shown(each.new_value)}"
@@ -342,9 +349,9 @@ class ConfirmedOffsetChanges:
     # --- the master ----------------------------------------------------------------------------------
 
     def ask_master(self, tool_number: int) -> str:
-        """Ask whether to make this tool the master, or to remove the master if this tool is the master.
+        """Ask whether to make a tool the master tool, or to have no master tool if it already is.
 
-        The question names the tools that follow.
+        The question names the tools that follow the master tool.
         """
         book = self.offset_history.offset_book
         tools, before = book.tool_offsets, book.master_number
@@ -384,9 +391,9 @@ class ConfirmedOffsetChanges:
     # --- undo ----------------------------------------------------------------------------------------
 
     def ask_undo(self, kind: OffsetKind, number: int | None, on_done: str = "") -> str:
-        """Ask whether to undo the last change of this row, or of the table if ``number`` is None.
+        """Ask whether to undo the last change of a row, or of the table if ``number`` is None.
 
-        ``on_done`` is the message after the undo. It is for pages that do not report changes to the table.
+        ``on_done`` is the message after the undo, for pages that do not report changes to the table.
         """
         book = self.offset_history.offset_book
         if why := book.barred(find_required_right(kind)):
@@ -447,11 +454,11 @@ def _table_or_row(kind: OffsetKind, number: int | None) -> str:
 
 
 def format_followers(tools: Mapping[int, ToolRow], master: int) -> str:
-    """Return the names of the tools that follow this master, shortened if there are many."""
+    """Return the names of the tools that follow the master tool, shortened if there are many."""
     return ", ".join(_shorten_names([format_edge_name(number) for number in find_followers(tools, master)]))
 
 
 def _shorten_names(names: list[str]) -> list[str]:
-    """Return the first names, followed by the number of names that are left out."""
+    """Return the first names, followed by a text with the number of omitted names."""
     more = len(names) - _MAX_NAMES
     return names if more <= 0 else [*names[:_MAX_NAMES], tr(Message("{count} MORE", count=more))]

@@ -1,7 +1,7 @@
-"""Effect of an offset change on the path: the loaded program drawn with the old and new offsets.
+"""Effect of an offset change on the loaded program: its path with the old and the new offsets.
 
-A changed tool offset moves the real tip. Both paths are therefore drawn in the frame of the old offsets, so
-that the distance between them equals the distance that the tip will move.
+A changed tool offset moves the real tip. Both paths are therefore drawn in the coordinate frame of the old
+offsets, so that the distance between them equals the distance that the tip will move.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ DrawPaths = Callable[[Job, Mapping[int, ToolOffset], ProgressCallback], "Program
 
 @dataclass(frozen=True, slots=True)
 class ComparedPaths:
-    """The path with the old offsets and the path with the new offsets, in one frame."""
+    """Paths of a program with the old and the new offsets, in one coordinate frame."""
 
     picture_before: ProgramPicture
     picture_after: ProgramPicture
@@ -57,12 +57,12 @@ class ComparedPaths:
 
     @property
     def has_no_effect(self) -> bool:
-        """Return whether the change has no effect on this program."""
+        """Return whether the offset change has no effect on the path of the program."""
         return self.largest_distance_mm <= EQUALITY_TOLERANCE_MM
 
 
 def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
-    """Return the paths of both pictures and the largest distance between them in mm."""
+    """Return the paths of two program pictures with the largest distance between them in mm."""
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return ComparedPaths(before, after, float("inf"))
     if not len(before.z):
@@ -73,7 +73,7 @@ def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedP
 
 @dataclass(slots=True)
 class OffsetEffect:
-    """A worker that draws the paths in the background.
+    """Calculation of the effect of an offset change, which runs on a worker.
 
     The screen reads only ``compared_paths``, ``compared_part``, ``is_busy`` and ``error_text``.
     """
@@ -87,17 +87,17 @@ class OffsetEffect:
 
     @property
     def is_busy(self) -> bool:
-        """Return whether the worker is still drawing.
+        """Return whether the worker is still calculating.
 
-        After an error, ``error_text`` gives the reason.
+        After an error, ``error_text`` contains the reason.
         """
         self.worker.deliver_results()
         return self.worker.is_busy
 
     def request_paths(self, job: Job, before: OffsetTables, after: OffsetTables) -> None:
-        """Draw this program with the old and new offsets.
+        """Start calculating the paths of a program with the old and the new offsets.
 
-        Any drawing in progress is canceled.
+        A calculation in progress is canceled.
         """
 
         def pair(watch: ProgressCallback) -> ComparedPaths:
@@ -111,9 +111,9 @@ class OffsetEffect:
     def request_part(
         self, compare_part: ComparePart, job: Job, before: OffsetTables, after: OffsetTables
     ) -> None:
-        """Compare the parts that the old and new offsets produce.
+        """Start comparing the parts that a program makes with the old and the new offsets.
 
-        Any work in progress is canceled.
+        A calculation in progress is canceled.
         """
         self.compared_part, self.error_text = None, ""
         work = partial(compare_part, _with(job, before), _with(job, after))
@@ -130,12 +130,12 @@ class OffsetEffect:
         self.error_text = why
 
     def clear_results(self) -> None:
-        """Cancel the drawing in progress, and discard the results."""
+        """Cancel the calculation in progress, and discard the results."""
         self.worker.cancel_request()
         self.compared_paths, self.compared_part, self.error_text = None, None, ""
 
     def close(self) -> None:
-        """Cancel the drawing in progress, and end the worker."""
+        """Cancel the calculation in progress, and stop the worker."""
         self.worker.close()
 
 
@@ -150,9 +150,10 @@ def _with(job: Job, tables: OffsetTables) -> Job:
 
 @dataclass(slots=True)
 class EffectDisplay:
-    """The views of the effect of a change.
+    """Display of the effect of an offset change, with several views.
 
-    F6 shows them in this order: whole path, close-up of the largest change, part features, table.
+    F6 shows the views in this order: whole path, close-up of the largest change, part features, offset
+    table.
     """
 
     offset_table: OffsetTable
@@ -163,11 +164,11 @@ class EffectDisplay:
 
     @property
     def offset_effect(self) -> OffsetEffect | None:
-        """Return the worker that draws, or None if effects cannot be drawn."""
+        """Return the calculation of effects, or None if effects cannot be displayed."""
         return self.offset_table.desk.page_registry.find_model(OffsetEffect)
 
     def show_next_view(self) -> None:
-        """Handle F6: show the next view of the effect."""
+        """Show the next view of the effect (F6)."""
         if not self.is_open:
             self._open()
         elif self.is_part_shown or self.compared_paths is None or self.compared_paths.has_no_effect:
@@ -189,9 +190,9 @@ class EffectDisplay:
             self.is_part_shown = True
 
     def find_refusal(self) -> str:
-        """Return why no effect can be shown now.
+        """Return the reason why no effect can be displayed now.
 
-        Return an empty string if an effect can be shown or is already shown.
+        The result is an empty string if an effect can be or is already displayed.
         """
         if self.is_open:
             return ""
@@ -232,22 +233,22 @@ class EffectDisplay:
         return _tables(book.tool_offsets, _restore_rows(book.secondary_offsets, last, SecondaryRow)), now
 
     def close_view(self) -> None:
-        """Close the view of the effect, and show the table again."""
+        """Close the view of the effect, and show the offset table again."""
         self.is_open = self.is_close_up = self.is_part_shown = False
         if self.offset_effect is not None:
             self.offset_effect.clear_results()
 
     @property
     def compared_paths(self) -> ComparedPaths | None:
-        """Return the paths to draw now, or None while the worker is drawing."""
+        """Return the paths to draw, or None if the view is closed or the paths are not available yet."""
         effect = self.offset_effect
         return None if not self.is_open or effect is None or effect.is_busy else effect.compared_paths
 
     @property
     def compared_part(self) -> ComparedPart | None:
-        """Return the comparison of the parts with the old and new offsets.
+        """Return the comparison of the parts that result from the old and the new offsets.
 
-        Return None while the worker is calculating.
+        The result is None if this view is not shown or the comparison is not available yet.
         """
         effect = self.offset_effect
         return None if not self.is_part_shown or effect is None or effect.is_busy else effect.compared_part
@@ -272,7 +273,7 @@ class EffectDisplay:
 
     @property
     def words(self) -> str:
-        """Return the prompt text that describes the view."""
+        """Return the prompt text that describes the displayed view."""
         effect = self.offset_effect
         return (
             self._words_of_part(effect)
@@ -308,7 +309,7 @@ def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow])
 def _restore_rows(
     rows: Mapping[int, OffsetRowT], changes: tuple[OffsetChange, ...], kind: type[OffsetRowT]
 ) -> dict[int, OffsetRowT]:
-    """Return the rows as they were before these changes."""
+    """Return offset rows as they were before some changes."""
     undone = dict(rows)
     for change in changes:
         undone.pop(change.number, None)

@@ -1,4 +1,4 @@
-"""Base class of the offset tables that the operator edits, and entry of tool fields.
+"""Base class of the offset tables that the operator edits, and editor of tool fields.
 
 A page shows the table, the entry line below the table, the history, and the effect of a change on the path.
 """
@@ -36,7 +36,7 @@ ProposedOffsets = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
 class OffsetTable(ABC):
     """Base class of the models of offset pages.
 
-    Each subclass has its own method of entry.
+    Each subclass implements its own method of entering values.
     """
 
     kind: ClassVar[OffsetKind]
@@ -53,29 +53,29 @@ class OffsetTable(ABC):
 
     @property
     def offset_book(self) -> OffsetBook:
-        """Return the saved offsets."""
+        """Return the offset book, which contains the saved offsets."""
         return self.desk.offset_book
 
     @property
     def value_mode(self) -> ValueMode:
-        """Return the control's unit, and whether its X values are diameters."""
+        """Return the unit of length of the control, and whether X values are diameters."""
         return self.offset_history.value_mode
 
     @property
     def offset_questions(self) -> ConfirmedOffsetChanges:
-        """Return the changes that the operator confirms before they take effect."""
+        """Return the object that changes offsets and asks the operator to confirm suspicious changes."""
         return ConfirmedOffsetChanges(self.offset_history)
 
     @property
     def selected_number(self) -> int | None:
-        """Return the number of the selected row, on which undo acts, or None if no row is selected."""
+        """Return the number of the selected row, to which undo applies, or None if no row is selected."""
         return None
 
     # --- members that each table defines -------------------------------------------------------------
 
     @property
     def heading(self) -> str:
-        """Return the name of the offset being entered, or an empty string if the question contains it."""
+        """Return the name of the offset being entered, or an empty string if it is in the question."""
         return ""
 
     @property
@@ -85,7 +85,7 @@ class OffsetTable(ABC):
 
     @property
     def is_editing_text(self) -> bool:
-        """Return whether a text that accepts letters is being edited."""
+        """Return whether the operator is editing a text, in which letters are accepted."""
         return False
 
     @property
@@ -96,33 +96,33 @@ class OffsetTable(ABC):
     @property
     @abstractmethod
     def change_text(self) -> str:
-        """Return the text of the change being entered, or of the last change if nothing is entered."""
+        """Return a description of the change being entered, or of the last change if nothing is entered."""
 
     @property
     @abstractmethod
     def footer_text(self) -> str:
-        """Return the hint about other keys."""
+        """Return the hint about further keys, which is shown below the table."""
 
     @abstractmethod
     def make_hint(self, snapshot: Snapshot) -> str:
-        """Return the hint for the prompt line: how to enter a value, or when the value takes effect."""
+        """Return the prompt that explains how to enter a value or when the value takes effect."""
 
     @abstractmethod
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered."""
+        """Return whether a character can be entered in the table."""
 
     @abstractmethod
     def handle_entry_key(self, key: str) -> bool:
         """Handle a key of the entry.
 
-        Return False if the key has no meaning here.
+        Returns False if the key has no function in the entry.
         """
 
     @abstractmethod
     def cancel_entry(self) -> bool:
-        """Discard the entry, and show that it was discarded.
+        """Discard the entry, and show a message that it was discarded.
 
-        Return False if nothing was entered.
+        Returns False if nothing was entered.
         """
 
     @abstractmethod
@@ -130,7 +130,7 @@ class OffsetTable(ABC):
         """Discard the entry without a message."""
 
     def make_proposed_offsets(self) -> ProposedOffsets:
-        """Return the tool and secondary offsets as they would be with the current entry."""
+        """Return the tool and secondary offsets that would result from the current entry."""
         return self.offset_book.tool_offsets, self.offset_book.secondary_offsets
 
     # --- conditions: each returns the reason for a refusal, or an empty text --------------------------
@@ -141,17 +141,17 @@ class OffsetTable(ABC):
         return True
 
     def find_refusal(self, snapshot: Snapshot, *, is_correction: bool) -> str:
-        """Return why the table cannot be changed now, or an empty string if it can."""
+        """Return the reason why the table cannot be changed now, or an empty string."""
         return self.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=is_correction)
 
     def find_undo_refusal(self) -> str:
-        """Return why the last change cannot be undone now, or an empty string if it can."""
+        """Return the reason why the last change cannot be undone now, or an empty string."""
         return self.find_refusal(self.desk.read_snapshot(), is_correction=self.kind is OffsetKind.SECONDARY)
 
     # --- the page ------------------------------------------------------------------------------------
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt of the page, or why the table cannot be changed."""
+        """Return the prompt of the page, or the reason why the table cannot be changed."""
         if why := self.find_refusal(snapshot, is_correction=self.is_correction):
             return why
         if self.offset_history.listed_changes is not None:
@@ -159,30 +159,27 @@ class OffsetTable(ABC):
         return self.make_hint(snapshot)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Read the unit of the control, and report saved changes.
+        """Read the unit of the control, and report newly saved changes.
 
-        This is called once a frame.
+        This method is called once per frame.
         """
         self.offset_history.update(snapshot)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key.
-
-        Return False to let the window handle the key.
-        """
+        """Handle a key, and return False if the window must handle the key."""
         if key in {"c", "C"} and self.clear_question:
             self.clear_table()
             return True
         return self.handle_entry_key(key)
 
     def edit_entry(self, key: str, max_length: int = MAX_LENGTH) -> None:
-        """Edit the entered text with one key."""
+        """Apply one key press to the entered text."""
         self.text = edit_text(self.text, key, max_length)
 
     def handle_undo(self) -> None:
         """Discard the entry, or ask whether to undo the last change if there is no entry.
 
-        This is the last change of the selected row.
+        The last change is that of the selected row.
         """
         why = self.find_undo_refusal()
         if why or not self.cancel_entry():
@@ -191,7 +188,7 @@ class OffsetTable(ABC):
             )
 
     def clear_table(self) -> None:
-        """Handle C: clear the whole table after the operator confirms."""
+        """Clear the whole table after confirmation (C)."""
         if why := self.find_refusal(self.desk.read_snapshot(), is_correction=False):
             self.desk.say(why)
         else:
@@ -202,9 +199,9 @@ class OffsetTable(ABC):
         self.offset_history.show_refusal(why or self.offset_book.clear_table(self.kind, self.clear_reason))
 
     def handle_escape(self) -> bool:
-        """Handle Esc: close the history, a question or the entry.
+        """Close the history, or cancel a question or the entry, when Esc is pressed.
 
-        Return False if nothing was open.
+        Returns False if there was nothing to close or cancel.
         """
         if self.offset_history.listed_changes is not None:
             self.offset_history.listed_changes = None
@@ -215,11 +212,11 @@ class OffsetTable(ABC):
         return True
 
     def on_open(self) -> None:
-        """Do not report changes that were made before the page opened."""
+        """Mark all earlier changes as known when the page opens, so that they are not reported."""
         self.offset_history.on_open()
 
     def on_close(self) -> None:
-        """Discard unfinished entries before the page closes."""
+        """Discard the entry and close the history before the page closes."""
         self.discard_entry()
         self.desk.clear_prompt_line()
         self.offset_history.listed_changes = None
@@ -227,10 +224,9 @@ class OffsetTable(ABC):
 
 @dataclass(slots=True)
 class IncompleteTool:
-    """The X or Z value of a new tool that still lacks the other value.
+    """Entered X or Z value of a new tool whose other value has not been entered yet.
 
-    A value is saved only together with the other value, because a tool with only one of them could run into
-    the part.
+    Both values are saved together, because a tool with only one of them could run into the part.
     """
 
     tool_number: int = 0
@@ -251,31 +247,31 @@ class IncompleteTool:
 
     @property
     def missing_axis(self) -> str:
-        """Return the axis that still needs a value."""
+        """Return the axis whose value has not been entered yet, x or z."""
         return "x" if "z" in self.known_values else "z"
 
 
 @dataclass(slots=True)
 class ToolFieldEditor:
-    """An editor that saves single fields of tools. F8 and the Jog page use it.
+    """Editor that saves single fields of tools, used by the tool table (F8) and the Jog page.
 
-    Each method returns why the change was rejected, or an empty string.
+    The methods that make a change return the reason if it is rejected, or an empty string.
     """
 
     offset_history: OffsetHistory
     incomplete_tool: IncompleteTool = field(default_factory=IncompleteTool)
 
     def describe_unset_tool(self, tool_number: int) -> str:
-        """Return the message that this tool has no offset yet."""
+        """Return the message that a tool has no offset yet."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
         return tr(Message(text, number=format_edge_suffix(tool_number)))
 
     def save_field(
         self, tool_number: int, field_name: str, entered_text: str, *, is_increment: bool = False
     ) -> str:
-        """Set a field to the entered value, or add the entered value to the field.
+        """Set a field of a tool to the entered value, or increase it by this value.
 
-        Raise EntryError for an invalid value.
+        ``is_increment`` means that the value is added. Raises EntryError if the value is invalid.
         """
         mode, row = (
             self.offset_history.value_mode,
@@ -328,14 +324,14 @@ class ToolFieldEditor:
         return why
 
     def ask_master(self, tool_number: int) -> str:
-        """Ask whether to make this tool the master, or to remove the master if this tool is the master."""
+        """Ask whether to make a tool the master tool, or to have no master tool if it already is."""
         if tool_number not in self.offset_history.offset_book.tool_offsets:
             return self.describe_unset_tool(tool_number)
         return ConfirmedOffsetChanges(self.offset_history).ask_master(tool_number)
 
 
 class ToolFieldTable(OffsetTable):
-    """A tool table with a field under the cursor and the text entered for this field.
+    """Tool table with a selected field and the text that is entered for this field.
 
     A text field accepts letters after the operator opens it with Enter.
     """
@@ -350,7 +346,7 @@ class ToolFieldTable(OffsetTable):
 
     @property
     def selected_number(self) -> int | None:
-        """Return the number of the selected tool. Undo applies to this tool."""
+        """Return the number of the selected tool, to which undo applies."""
         return self.tool_number
 
     @property
@@ -361,31 +357,31 @@ class ToolFieldTable(OffsetTable):
     @property
     @abstractmethod
     def name(self) -> str:
-        """Return the name of the field under the cursor."""
+        """Return the name of the selected field."""
 
     @property
     @abstractmethod
     def stored_value_text(self) -> str:
-        """Return the saved value of the field as text."""
+        """Return the saved value of the selected field as text."""
 
     def find_cell_refusal(self) -> str:
-        """Return why the field under the cursor cannot be changed now, or an empty string if it can."""
+        """Return the reason why the selected field cannot be changed now, or an empty string."""
         return self.find_refusal(self.desk.read_snapshot(), is_correction=self.is_correction)
 
     @property
     def accepts_any_text(self) -> bool:
-        """Return whether the field accepts any text after the operator opens it with Enter."""
+        """Return whether the selected field accepts any text after it is opened with Enter."""
         field = TOOL_FIELDS[self.name]
         return field.field_type is FieldType.TEXT and not field.choices
 
     @property
     def question_text(self) -> str:
-        """Return the prompt with the tool and the field under the cursor."""
+        """Return the prompt for a value, with the name of the tool and of the selected field."""
         return f"{format_edge_name(self.tool_number)}  {make_field_heading(self.name, self.value_mode)}?"
 
     @property
     def change_text(self) -> str:
-        """Return the field's old and entered values, or the last change if nothing is entered."""
+        """Return the old and the entered value of the field, or the last change if nothing is entered."""
         if not (self.text or self.is_text_open):
             return self.offset_history.last_change_text
         try:
@@ -395,16 +391,17 @@ class ToolFieldTable(OffsetTable):
         return f"{self.stored_value_text}  →  {new}"
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered.
+        """Return whether a character can be entered in the selected field.
 
-        Number characters are accepted. While a text field is open, any character is accepted.
+        The characters of numbers and expressions are accepted. While a text field is open, any character is
+        accepted.
         """
         return self.is_text_open or key in EXPRESSION_CHARACTERS
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle Enter and the keys that edit the text.
+        """Handle Enter and the keys that edit the text, and return whether the key was used.
 
-        Subclasses handle the keys that move the cursor.
+        Subclasses handle the keys that select a field.
         """
         if key == "Enter":
             self.handle_enter()
@@ -418,7 +415,7 @@ class ToolFieldTable(OffsetTable):
 
     @abstractmethod
     def handle_enter(self) -> None:
-        """Handle Enter for the field under the cursor."""
+        """Handle Enter for the selected field."""
 
     def _add(self, key: str) -> None:
         if self.accepts_any_text and not self.is_text_open:
@@ -429,13 +426,13 @@ class ToolFieldTable(OffsetTable):
         self.edit_entry(key, int(TOOL_FIELDS[self.name].maximum) if self.is_text_open else MAX_LENGTH)
 
     def is_entry_unfinished(self) -> bool:
-        """Return whether an unfinished entry prevents the cursor from moving, and show a message if so."""
+        """Return whether an entry must be accepted or canceled first, and show a message in this case."""
         if self.text or self.is_text_open:
             self.desk.say(tr("ENTER: SET   ESC: CANCEL"))
         return bool(self.text or self.is_text_open)
 
     def save_field(self, save_value: Callable[[], str]) -> bool:
-        """Save the field with ``save_value``, and return whether this succeeded.
+        """Save the selected field by calling ``save_value``, and return whether this succeeded.
 
         If the value is rejected, show the reason and leave the text in the field for correction.
         """
@@ -457,9 +454,9 @@ class ToolFieldTable(OffsetTable):
         return bool(self.text or self.is_text_open)
 
     def cancel_entry(self) -> bool:
-        """Discard the entry or close an open text.
+        """Discard the entry or close an open text field.
 
-        Return False if there is neither.
+        Returns False if there is neither an entry nor an open text field.
         """
         if not self.has_entry:
             return False

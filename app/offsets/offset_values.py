@@ -37,19 +37,19 @@ ZERO_OFFSET_DECIMALS = 3
 
 @dataclass(frozen=True, slots=True)
 class ValueMode:
-    """The control's unit, and whether X is a diameter, as read from one snapshot."""
+    """Length unit of the control, and whether X values are diameters, at one moment."""
 
     is_metric: bool = False
     is_diameter: bool = False
 
     @property
     def unit_mm(self) -> float:
-        """Return the length of the entry unit in millimeters."""
+        """Return the length of 1 inch (25.4) or 1 mm (1.0) in millimeters, as selected on the control."""
         return 1.0 if self.is_metric else MM_PER_INCH
 
     @property
     def name(self) -> str:
-        """Return the name of the unit, as used in messages."""
+        """Return the abbreviation of the length unit, mm or in."""
         return "mm" if self.is_metric else "in"
 
 
@@ -57,7 +57,7 @@ UNKNOWN_VALUE = "?"  # Replaces a value that could not be read.
 
 
 def describe_unset(*, is_unreadable: bool = False) -> str:
-    """Return the text for an offset that was never entered, or that could not be read."""
+    """Return "not set" for an offset that was never entered, or "unreadable"."""
     return tr("unreadable") if is_unreadable else tr("not set")
 
 
@@ -94,7 +94,7 @@ def add_correction(mm: float, value: float, is_metric: bool) -> float:
 
 
 def describe_range_error(field: str, value: str, unit: str, low: float, high: float) -> str:
-    """Return the message for a value out of range, in the unit of the entry."""
+    """Return the message that a field would be out of range, in the given unit."""
     text = tr("{field} would become {value} {unit}; allowed range is {low}…{high}")
     return tr(Message(text, field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}"))
 
@@ -103,9 +103,9 @@ def describe_range_error(field: str, value: str, unit: str, low: float, high: fl
 
 
 def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
-    """Return an offset in one line.
+    """Return the values of an offset as one line of text.
 
-    X of a tool follows the control's diameter mode. Other X values are radii.
+    X of a tool offset is a diameter or a radius, as on the control. All other X values are radii.
     """
     if offset is None:
         return describe_unset()
@@ -129,7 +129,7 @@ def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
 
 
 def format_set_fields(row: MillRow | PresetRow) -> str:
-    """Return the fields of a mill's tool or preset that are set, with the control's field names."""
+    """Return the specified fields of a mill tool or preset as text, with the control's field names."""
     fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillRow) else OffsetKind.PRESET]
     values: tuple[FieldValue, ...] = tuple(row)
     field_texts = [
@@ -141,7 +141,7 @@ def format_set_fields(row: MillRow | PresetRow) -> str:
 
 
 def format_cell(field: RowField, value: FieldValue) -> str:
-    """Return a cell value of a mill's table as text in mm, degrees or minutes."""
+    """Return a value of a milling tool table or preset table as text, in mm, degrees or minutes."""
     if isinstance(value, str):
         return value
     if field.field_type is FieldType.BOOLEAN:
@@ -159,7 +159,7 @@ def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
 
 
 def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
-    """Return the text of a tool's remaining fields, if they are set."""
+    """Return the text of a tool's remaining fields that have a value."""
     parts = [f"  R {formats.format_length(tool.nose_radius, mode.is_metric)}"]
     if tool.wear_x or tool.wear_z:
         parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.is_metric, True)}")
@@ -181,9 +181,9 @@ def _format_shape(shape: ShapeRow, mode: ValueMode) -> str:
 
 
 def format_change(old: OffsetRow | None, new: OffsetRow | None, mode: ValueMode) -> str:
-    """Return the old and the new offset as text.
+    """Return the change from the old to the new offset as text.
 
-    For a tool that was already set, the text contains only the changed fields.
+    For a tool that already had an offset, the text contains only the changed fields.
     """
     if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
         return f"{format_offset(old, mode)}  →  {format_offset(new, mode)}"
@@ -222,7 +222,7 @@ def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
 
 
 def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMode) -> FieldValue:
-    """Return the field's length in mm, increased by the entered value.
+    """Return the field's current length plus the entered increment, in mm.
 
     Raise EntryError with the reason if the text is invalid.
     """
@@ -255,7 +255,7 @@ def _taken(field: RowField, value: FieldValue, mode: ValueMode) -> FieldValue:
 
 
 def _find_factor(name: str, mode: ValueMode) -> float:
-    """Return the factor between an entered X and the stored radius.
+    """Return the factor that converts an entered X (diameter or radius) to the stored radius.
 
     Wear is always a diameter, because it is measured on the part. The control's diameter mode can change
     between two parts.

@@ -1,10 +1,11 @@
-"""The offsets file that users write.
+"""Reader of the offsets file and the tools file, which users write in TOML.
 
-[tool.1] and [secondary.1] are in inches, and [zero.54] is in mm and degrees. The file is part of an export.
-A tools file contains the tool shapes in the same tables [tool.1], which are also allowed in the offsets
-file. Lengths are in inches, and angles are in degrees. Outlines (holder, profile) are texts in mm.
-Additional cutting edges of a tool are [tool.1.d2] to [tool.1.d9]. All mistakes of a file are reported
-together.
+- Offsets file: tables [tool.1] and [secondary.1] in inches, and [zero.54] in mm and degrees. An export
+  contains this file.
+- Tools file: tool shapes in tables [tool.1], which the offsets file may also contain. Lengths are in
+  inches and angles in degrees. Outlines (holder, profile) are texts in mm.
+
+Additional cutting edges of a tool are [tool.1.d2] to [tool.1.d9]. All mistakes are reported together.
 """
 
 from __future__ import annotations
@@ -141,7 +142,7 @@ def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
 
 
 class _ToolTables(NamedTuple):
-    """The tools of a file: all offsets, the offsets with a specified position, and the shapes."""
+    """The tools of a file: all tool offsets, those with a specified position, and the tool shapes."""
 
     rows: dict[int, ToolRow]
     placed_rows: dict[int, ToolRow]
@@ -248,7 +249,7 @@ def _table(
 
 
 def _read_edges(entry: dict[str, object]) -> dict[str, object]:
-    """Return the additional cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by key."""
+    """Return the additional cutting edges of a tool, from the tables [tool.1.d2] to [tool.1.d9]."""
     return {key: value for key, value in entry.items() if key in _EDGE_KEYS}
 
 
@@ -318,7 +319,7 @@ def format_value(value: object) -> str:
 
 
 def find_range_error(name: str, field: RowField, value: FieldValue, entered_value: object) -> str:
-    """Return the message for a value out of range, or an empty string.
+    """Return the message for a value out of range, or an empty string if it is in range.
 
     Lengths are in mm. NaN is always out of range. ``entered_value`` is the value in the file.
     """

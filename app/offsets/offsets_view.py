@@ -48,7 +48,7 @@ class EffectView(PathView):
         self.hide()
 
     def update_effect(self) -> None:
-        """Show the finished paths, and continue to draw the view."""
+        """Show the paths that are ready, and continue to draw the view."""
         pair = self._model.compared_paths
         self.show_compared(pair.picture_before if pair else None, pair.picture_after if pair else None)
         if pair is not None and self._model.is_close_up != self._near:
@@ -68,7 +68,7 @@ HistoryEntry = tuple[str, str, str, str]
 
 
 class ChangeHistoryList(RowPanel):
-    """The list of changes, newest first, with two lines for each change."""
+    """List of all offset changes, newest first, with two lines for each change."""
 
     title = "HISTORY  ·  NEWEST FIRST"
 
@@ -160,7 +160,7 @@ class OffsetPage(ModelPage):
         return frozenset(key for key, why in self.find_key_refusals().items() if why)
 
     def find_key_refusals(self) -> dict[str, object]:
-        """Return the reason why each key is disabled.
+        """Return, for each key, the reason why it is disabled.
 
         The reason is empty if the key is enabled.
         """
@@ -188,9 +188,9 @@ class OffsetPage(ModelPage):
         self.effect_display.show_next_view()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the entry.
+        """Handle a key of the entry line.
 
-        While the effect is shown, characters are rejected with a message.
+        While the effect on the path is shown, characters are rejected with a message.
         """
         if self.history_list.isVisible() and key in {"Page up", "Page down"}:
             self.history_list.scroll_by((1 if key == "Page down" else -1) * self.history_list.rows)
@@ -201,14 +201,11 @@ class OffsetPage(ModelPage):
         return self.model.handle_key(key)
 
     def has_text_field(self) -> bool:
-        """Return whether values can be entered.
-
-        This is always possible except while the effect is shown.
-        """
+        """Return True unless the effect on the path is shown, because values cannot be entered then."""
         return not self.effect_display.is_open
 
     def prompt_text(self) -> str:
-        """Return the prompt of the model, or the description of the effect while it is shown."""
+        """Return the prompt of the table or, while the effect on the path is shown, its description."""
         if self.effect_display.is_open:
             return self.effect_display.words
         return self.model.prompt_text(self.desk.read_snapshot())
@@ -224,11 +221,11 @@ class OffsetPage(ModelPage):
         return True
 
     def is_esc_stop_key(self) -> bool:
-        """Return False, because Esc goes back one step even while the machine moves."""
+        """Return False, because Esc closes a part of this page even while the machine moves."""
         return False
 
     def handle_escape(self) -> bool:
-        """Go back one step, or open the Automatic page if there is no step to go back."""
+        """Close the effect, the history, a question or an entry, or else open the Automatic page."""
         if self.effect_display.is_open:
             self.effect_display.close_view()
         elif not self.model.handle_escape():
@@ -236,9 +233,9 @@ class OffsetPage(ModelPage):
         return True
 
     def refresh(self, snapshot: Snapshot, _status: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update the visible part and the entry line.
+        """Update the entry line and the visible table, history or effect.
 
-        Subclasses also update their table.
+        Subclasses also update their own table.
         """
         model, effect = self.model, self.effect_display
         model.update(snapshot)

@@ -1,7 +1,7 @@
-"""Model of the secondary offsets (F9 SECCMP). It prompts for a number, and then for X, Z and R.
+"""Model of the secondary offsets (F9 SECCMP), which asks for a number and then for X, Z and R.
 
-The prompts are those of the original control. X is a diameter correction: half of it is added to the
-offset. Z is added. R replaces the value. Enter without a value leaves the current value unchanged.
+The prompts are those of the original control. Half of an entered X, a diameter correction, is added to the
+stored X. An entered Z is added. An entered R replaces the value. Enter alone keeps the value.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter"}
 
 
 class SecondaryOffsetStep(IntEnum):
-    """The steps of the dialog, in order."""
+    """Steps of the dialog that edits a secondary offset, in order."""
 
     NUMBER = 0
     X = 1
@@ -59,7 +59,7 @@ def apply_correction(
 
 
 class SecondaryOffsetEntry(OffsetTable):
-    """The entry dialog, with its offset number, step, entered text and previous answers."""
+    """Dialog that edits one secondary offset, with its current step and the previous answers."""
 
     kind = OffsetKind.SECONDARY
     page_key = "C"
@@ -82,16 +82,16 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def question_text(self) -> str:
-        """Return the prompt of this step.
+        """Return the prompt of the current dialog step.
 
-        All prompts except R are those of the original control.
+        All prompts except the one for R are those of the original control.
         """
         words = (tr("Offset Number?"), tr("X DIAMETER CORRECTION?"), tr("Z CORRECTION?"), tr("R?"))
         return words[self.entry_step]
 
     @property
     def present_row(self) -> SecondaryRow | None:
-        """Return the saved values of the offset that is being changed, or None if it is not set."""
+        """Return the saved values of the offset that is being edited, or None if it has no values."""
         return self.offset_book.secondary_offsets.get(self.offset_number) if self.offset_number else None
 
     @property
@@ -104,7 +104,7 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def preview_row(self) -> SecondaryRow | None:
-        """Return the offset as it would be with the entered text, or None if no number is selected."""
+        """Return the offset as it would be after the current entry, or None if no offset is selected."""
         if not self.offset_number:
             return None
         old = self.present_row or SecondaryRow()
@@ -134,7 +134,7 @@ class SecondaryOffsetEntry(OffsetTable):
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
     def make_hint(self, snapshot: Snapshot) -> str:
-        """Return how to answer the question, or when a correction takes effect."""
+        """Return how to answer the current prompt, or when a correction takes effect."""
         if self.entry_step is SecondaryOffsetStep.NUMBER and not describe_effective_time(snapshot):
             return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
         return describe_effective_time(snapshot) or tr(
@@ -142,7 +142,7 @@ class SecondaryOffsetEntry(OffsetTable):
         )
 
     def make_proposed_offsets(self) -> ProposedOffsets:
-        """Return the offsets as they would be with the current entry."""
+        """Return all offsets as they would be after the current entry."""
         tools, secondary = super().make_proposed_offsets()
         preview = self.preview_row
         return tools, {**secondary, **({self.offset_number: preview} if preview else {})}
@@ -196,7 +196,7 @@ class SecondaryOffsetEntry(OffsetTable):
             )
 
     def clear_table(self) -> None:
-        """Handle C: clear the table, unless an offset is being entered."""
+        """Handle the C key: clear the table, unless an offset is being edited."""
         whole = self.find_refusal(self.desk.read_snapshot(), is_correction=False)
         if not whole and self.entry_step is not SecondaryOffsetStep.NUMBER:
             self.desk.say(tr("C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST"))

@@ -34,11 +34,10 @@ _NUMBER, _X, _Z = 0.09, 0.42, 0.73
 
 
 class SecondaryOffsetTable(Panel):
-    """The table of the secondary offsets.
+    """Table of the secondary offsets, with a filled row for the offset that is being edited.
 
-    The row being changed is filled, and the last changed row has a bar. A row of the full table is only a
-    third as high as a fingertip. The first touch therefore enlarges eight offsets, and the second touch
-    selects one of them.
+    A bar marks the last changed row. A row of the full table is only a third as high as a fingertip. The
+    first touch therefore enlarges eight offsets, and the second touch selects one of them.
     """
 
     offsets: RedrawingAttribute[Mapping[int, SecondaryRow]] = RedrawingAttribute({})
@@ -61,7 +60,10 @@ class SecondaryOffsetTable(Panel):
         changed_numbers: Collection[int],
         value_mode: ValueMode,
     ) -> None:
-        """Show the offsets, the number being changed (0 for none), the last changed rows and the unit."""
+        """Show the offsets in the given unit, and mark the edited and the last changed rows.
+
+        ``number`` is the offset that is being edited, or 0 if no offset is being edited.
+        """
         if number:
             self.enlarge_rows(0)
         self.offsets, self._number, self._marked, self._mode = (

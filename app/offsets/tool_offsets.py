@@ -25,9 +25,9 @@ _CURSOR_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1)
 
 
 class ToolOffsetTable(ToolFieldTable):
-    """The tool offset table with its cursor and the entered text.
+    """Table of tool offsets, with its cursor and the entered text.
 
-    A remark accepts letters after the operator opens it with Enter.
+    A cell with a remark accepts letters after the operator opens it with Enter.
     """
 
     kind = OffsetKind.TOOL
@@ -74,7 +74,7 @@ class ToolOffsetTable(ToolFieldTable):
     def format_cell(self, number: int, name: str) -> str:
         """Return a cell of the table as text.
 
-        X and Z are relative to the master if the operator has selected this display.
+        X and Z are relative to the master tool if the operator has selected that display.
         """
         book, mode, new = self.offset_book, self.value_mode, self.tool_fields.incomplete_tool
         row = book.tool_offsets.get(number)
@@ -170,7 +170,7 @@ class ToolOffsetTable(ToolFieldTable):
     def select_cell(self, number: int, column: int) -> None:
         """Select a touched cell.
 
-        A second touch opens a remark or sets the master.
+        A second touch opens a remark for editing, or makes the tool the master tool.
         """
         again = (number, column) == (self.tool_number, self.column_index)
         self._select_cell(number, column)
@@ -185,19 +185,19 @@ class ToolOffsetTable(ToolFieldTable):
         self._save_entry(is_increment=True)
 
     def find_add_refusal(self) -> str:
-        """Return why no value can be added now, or an empty string if it can."""
+        """Return why F2 cannot add a value now, or an empty string if it can."""
         if self.tool_row is None or not self.text.strip():
             return tr("TYPE THE VALUE TO ADD, THEN PRESS F2")
         return ""
 
     def find_relative_refusal(self) -> str:
-        """Return why X and Z cannot be shown relative to the master, or an empty string if they can."""
+        """Return why X and Z relative to the master are not possible, or an empty string if they are."""
         if not self.is_relative and not self.offset_book.master_number:
             return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
     def toggle_relative_display(self) -> None:
-        """Handle F3: show X and Z relative to the master, or relative to home again."""
+        """Handle F3: show X and Z relative to the master tool, or relative to home again."""
         if why := self.find_relative_refusal():
             self.desk.say(why)
             return
@@ -253,7 +253,7 @@ class ToolOffsetTable(ToolFieldTable):
             self.discard_entry()
 
     def handle_enter(self) -> None:
-        """Handle Enter: save the entry, choose the master, open a remark, or else go to the next cell."""
+        """Handle Enter: save the entry, set the master tool, open a remark, or go to the next cell."""
         if self.name == "master":
             self.offset_history.show_refusal(
                 self.find_cell_refusal() or self.tool_fields.ask_master(self.tool_number)
@@ -273,9 +273,9 @@ class ToolOffsetTable(ToolFieldTable):
         self.is_text_open, self.text = True, self.tool_row.remark
 
     def _save_entry(self, *, is_increment: bool) -> None:
-        """Save the cell.
+        """Save the entered value of the cell.
 
-        For a new tool, move the cursor to the missing value.
+        For a new tool, then move the cursor to X or Z, whichever is missing.
         """
         saved = self.save_field(
             lambda: self.tool_fields.save_field(

@@ -219,7 +219,7 @@ FIELDS_WIDTH_FRACTION = 0.6  # Fraction of the width for both columns.
 
 
 class ToolShapePanel(Panel):
-    """Two columns of fields that are touch targets, with the drawing on their right."""
+    """Panel with two columns of touchable fields, and a drawing of the tool on their right."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(())
 
@@ -282,7 +282,7 @@ class ToolShapePanel(Panel):
     # --- drawing -------------------------------------------------------------------------------------
 
     def _draw_picture(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the outline with X down, as in the path view, and the assumed values below it."""
+        """Draw the tool outline with X+ down, as in the path view, above the assumed values."""
         u, model = self.theme.unit_px, self._model
         words = QRectF(area.x(), area.bottom() - 2.6 * u, area.width(), 2.4 * u)
         painter.fill_rect(area, "panel")
@@ -339,7 +339,7 @@ class ToolShapePage(OffsetPage):
         self.table_panel.update_fields()
 
     def handle_escape(self) -> bool:
-        """Go back one step, or open the tool table if there is no step to go back."""
+        """Close the history, a question or an entry, or else open the tool table."""
         if not self.model.handle_escape():
             self.host.open_page(page_table.TOOLS)
         return True

@@ -58,7 +58,7 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def field_names(self) -> tuple[str, ...]:
-        """Return the names of the fields that apply to a tool of this kind."""
+        """Return the names of the fields that apply to the kind of the selected tool."""
         row = self.shape_row
         if row is None:
             return ("kind",)
@@ -106,7 +106,7 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def stored_value_text(self) -> str:
-        """Return the saved value of the field as text."""
+        """Return the saved value of the field under the cursor as text."""
         return self.format_field(self.name)
 
     @property
@@ -141,7 +141,7 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def field_choices(self) -> tuple[str, ...]:
-        """Return the choices of the field under the cursor, or an empty tuple if any value is allowed."""
+        """Return the choices of the field under the cursor, or an empty tuple if it has none."""
         field = TOOL_FIELDS[self.name]
         return ("no", "yes") if field.field_type is FieldType.BOOLEAN else field.choices
 
@@ -202,7 +202,7 @@ class ToolShapeTable(ToolFieldTable):
         self.text = choices[(choices.index(now) + step) % len(choices)] if now in choices else choices[0]
 
     def _find_choice(self) -> str:
-        """Return the value of the field as one of its choices, or an empty string if it is not specified."""
+        """Return the field's value as one of its choices, or an empty string if it has no value."""
         value = self.read_value(self.name)
         return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 

@@ -84,7 +84,7 @@ class PresetTable(CellTable):
         return super().cancel_entry() or begun
 
     def set_from_position(self) -> None:
-        """Handle F2: set the selected field so that the current position reads the entered value, or 0.
+        """Handle F2: set the selected field so that the position display shows the entered value, or 0.
 
         A basic rotation needs two points of an edge.
         """
@@ -102,7 +102,7 @@ class PresetTable(CellTable):
         return self.text.strip() or "0"
 
     def _touch_linear_axis(self) -> None:
-        """Set a linear axis so that the tip reads the entered value."""
+        """Set a linear axis so that the displayed tip position is the entered value."""
         tip, reads = self._tip(), self._reads
         if tip is not None:
             at = tip["xyz".index(self.name)]
@@ -121,7 +121,7 @@ class PresetTable(CellTable):
         return tip
 
     def _touch_rotary_axis(self) -> None:
-        """Set a rotary axis so that it reads the entered value.
+        """Set a rotary axis of the preset so that its position display shows the entered value.
 
         The workpiece zero remains at the same point of the part.
         """
@@ -136,7 +136,7 @@ class PresetTable(CellTable):
         )
 
     def _find_linear_offsets(self, zero: FieldValue) -> Mapping[str, FieldValue]:
-        """Return new X, Y and Z that retain the workpiece zero when a rotary axis gets this zero."""
+        """Return X, Y and Z that keep the workpiece zero in place when a rotary axis gets this zero."""
         row = self.selected_preset
         if self.stored_row is None:
             return {}
@@ -163,7 +163,7 @@ class PresetTable(CellTable):
             self.first_edge_point = None
 
     def _find_rotation(self, first: Vector, last: Vector, reads: float) -> float:
-        """Return the basic rotation in degrees that puts the edge at ``reads`` degrees from X.
+        """Return the basic rotation in degrees with which the edge is at ``reads`` degrees from X.
 
         An edge has no direction, so half revolutions are ignored. Raise EntryError if the points are too
         close.
@@ -244,7 +244,7 @@ class ZeroOffsetTable(CellTable):
 
     @property
     def footer_text(self) -> str:
-        """Return the hint about the keys F2, C and Esc."""
+        """Return the hint about the F2, C and Esc keys."""
         return tr(
             "F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit"
         )
@@ -271,7 +271,7 @@ class ZeroOffsetTable(CellTable):
         return self.find_refusal(snapshot)
 
     def set_from_position(self) -> None:
-        """Handle F2: set the offset so that the current position reads the entered value, or 0."""
+        """Handle F2: set the offset so that the position display shows the entered value, or 0."""
         if why := self.find_position_refusal():
             self.desk.say(why)
             return

@@ -32,7 +32,7 @@ _CHOICE_STEPS = {"Left": -1, "Right": 1}
 
 
 class PartSection(StrEnum):
-    """The tables that the page can show."""
+    """Tables of the PART page: findings and stock."""
 
     FINDINGS = "findings"
     STOCK = "stock"
@@ -89,7 +89,7 @@ class PartModel:
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
-        """Return all findings in the order of their lines."""
+        """Return all findings, sorted by program line."""
         return self.loaded_program.diagnostics
 
     @property
@@ -274,7 +274,7 @@ class PartModel:
         self.selected_rows.clear()
 
     def prompt_text(self) -> str:
-        """Return the prompt for the keys that are available now."""
+        """Return the prompt that names the keys that are available now."""
         if self.check_to_disable:
             return tr("TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON")
         if self.is_entering_file_name:
@@ -290,13 +290,13 @@ class PartModel:
     # --- entries -------------------------------------------------------------------------------------
 
     def _is_refused(self) -> bool:
-        """Return whether changes are not possible now, and show the reason."""
+        """Return whether the part data cannot be changed now, and show the reason."""
         if why := self._find_lock_reason():
             self.desk.say(why)
         return bool(why)
 
     def _find_lock_reason(self) -> str:
-        """Return why changes are not possible now, or an empty string."""
+        """Return why the part data cannot be changed now, or an empty string if it can."""
         if not self.program_name:
             return tr("LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM")
         if self.desk.machine.machine is not None and self.desk.machine.machine.kind != "lathe":
@@ -382,7 +382,7 @@ class PartModel:
     # --- checks that are turned off ------------------------------------------------------------------
 
     def _find_silence_refusal(self) -> str:
-        """Return why the check of the finding cannot be turned off, or an empty string."""
+        """Return why the selected finding's check cannot be turned off, or an empty string."""
         found = self.selected_finding
         if found is None:
             return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF")
@@ -432,7 +432,7 @@ class PartModel:
     # --- store ---------------------------------------------------------------------------------------
 
     def _save_part(self, stored: StoredPart, on_done: str) -> None:
-        """Write the data on the worker, then prove the program again."""
+        """Store the data on the worker thread, then prove the program again."""
         name = self.program_name
         if self.desk.is_refused(ProtectedChange.STOCK):
             return

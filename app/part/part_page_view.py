@@ -1,4 +1,7 @@
-"""The PART page, with findings or stock on the left and the part after the selected block on the right."""
+"""The PART page, with findings or stock on the left and a picture of the part on the right.
+
+The picture shows the part as it is after the selected block.
+"""
 
 from __future__ import annotations
 
@@ -28,13 +31,13 @@ SHARE, PAD, LETTERS = 0.5, 28.4, 24.0
 
 
 class PartPathView(PathView):
-    """View of the part after the block of the selected finding, or at the time on the timeline."""
+    """View of the part after the block of the selected finding, or at the timeline's time."""
 
     title = "PART"
 
 
 class PartPage(ListPage):
-    """The PART page, which shows its model and passes the keys to the model."""
+    """The PART page, which displays its model and passes key presses to it."""
 
     NAME = page_table.PART
     model: PartModel

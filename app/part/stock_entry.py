@@ -124,7 +124,7 @@ class StockEntry:
 
     @property
     def missing_field(self) -> StockField | None:
-        """Return the first required field without a value, or None if the stock is complete."""
+        """Return the first required field without a value, or None if no value is missing."""
         wanted = {
             StockKind.BAR: (StockField.DIAMETER,),
             StockKind.TUBE: (StockField.DIAMETER, StockField.BORE),
@@ -135,7 +135,7 @@ class StockEntry:
 
     @property
     def words(self) -> str:
-        """Return the stock in the syntax of the option ``--stock``.
+        """Return the stock in the syntax of the command-line option ``--stock``.
 
         Return an empty string if no stock is specified. Raise StockError if the stock is not possible.
         """

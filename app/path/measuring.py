@@ -1,4 +1,4 @@
-"""Measuring in the path view: snap points, the nearest point, and distances between points.
+"""Measuring in the path view: snap points, nearest points and distances.
 
 Each function scans the points only once, so that a key press is handled fast even with a million points.
 """
@@ -29,7 +29,7 @@ class PointKind(IntEnum):
 
 
 class SnapPoint(NamedTuple):
-    """Point of a polyline in the plane of the view, in millimeters."""
+    """Point to which the measuring cursor snaps, in the plane of the view, in millimeters."""
 
     z: float
     x: float
@@ -111,7 +111,7 @@ class SnapPoints:
         return best[1] if best else None
 
     def find_next_along_path(self, z: float, x: float, steps: int) -> SnapPoint | None:
-        """Return the end point that is ``steps`` points further along the path.
+        """Return the end point that is ``steps`` end points further along the path.
 
         After the last end point, the search continues with the first. Return None if the path has no
         points.
@@ -143,7 +143,7 @@ def _find_end_points(polyline: Polyline) -> FloatArray:
 
 
 def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
-    """Return the intersections of the chords within a box, as an array of shape (n, 2).
+    """Return the intersections of the path's chords within a box, as an array of shape (n, 2).
 
     The result is empty if more than ``MAX_CROSSING_CHORDS`` chords are in the box.
     """
@@ -166,9 +166,10 @@ def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
 
 
 def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance_mm: float) -> int | None:
-    """Return the index of the end point of the chord that is nearest to a position.
+    """Return the index of the nearest chord (line between two path points) to a position.
 
-    Return None if no chord is within ``max_distance_mm`` millimeters.
+    The index is that of the chord's end point. Return None if no chord is within ``max_distance_mm``
+    millimeters.
     """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
     near = polyline.stroke[1:] != Stroke.JUMP
@@ -222,7 +223,7 @@ def measure_on_face(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[M
 def measure_on_side(
     start: SnapPoint, end: SnapPoint, is_metric: bool, mm_per_degree: float
 ) -> list[MeasurementRow]:
-    """Return the table rows for the distance between two points on the unrolled side.
+    """Return the table rows for the distance between two points on the unrolled side of the part.
 
     ``mm_per_degree`` is the circumferential length per degree of C, in millimeters.
     """
@@ -257,7 +258,7 @@ def locate_on_face(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
 
 
 def locate_on_side(point: SnapPoint, is_metric: bool, mm_per_degree: float) -> list[MeasurementRow]:
-    """Return the table rows for the position of a point on the unrolled side, with Z, and C in degrees."""
+    """Return the table rows for Z and C (degrees) of a point on the unrolled side of the part."""
     return [
         ("Z", formats.format_length(point.z, is_metric)),
         ("C", f"{formats.format_angle(-point.x / mm_per_degree)}°"),
@@ -276,7 +277,7 @@ def _straight(right: float, across: float, metric: bool, to: str) -> list[Measur
 
 
 class LargestDistance(NamedTuple):
-    """Largest distance between corresponding cutting points of two pictures, with its position, in mm."""
+    """Largest distance between corresponding cutting points of two paths, and its position, in mm."""
 
     distance_mm: float
     z: float
@@ -284,9 +285,9 @@ class LargestDistance(NamedTuple):
 
 
 def find_largest_distance(before: Polyline, after: Polyline) -> LargestDistance | None:
-    """Return the largest distance between corresponding cutting points of two pictures.
+    """Return the largest distance between corresponding cutting points of two paths.
 
-    Return None if the pictures do not consist of the same strokes, or if nothing is cut.
+    Return None if the paths do not consist of the same strokes, or if nothing is cut.
     """
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return None

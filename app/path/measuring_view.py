@@ -23,7 +23,7 @@ TABLE_SIZE = (22.0, 2.5)  # units: width of the table, height of a row
 
 
 class Measurement:
-    """Measurement in one pane, with the cursor and the two measured points."""
+    """Measurement in one pane of the path view, with the cursor and the two measured points."""
 
     def __init__(self, pane: PathPane) -> None:
         self.pane = pane
@@ -59,12 +59,12 @@ class Measurement:
         return True
 
     def end_measuring(self) -> None:
-        """End measuring. Show the whole path again if it was shown before measuring."""
+        """End measuring, and show the whole path again if it was shown before measuring."""
         if self._free:
             self.pane.fit_view()
 
     def move_cursor(self, position: QPointF) -> None:
-        """Move the cursor to the snap point near a widget position, or to the position itself."""
+        """Move the cursor to a widget position, or to a snap point near it."""
         z, x = self.pane.map_to_plane(position)
         self._features.update_intersections(self.pane.find_visible_area())
         near = self._features.find_nearest(z, x)

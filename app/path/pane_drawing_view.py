@@ -1,4 +1,4 @@
-"""Drawing of one pane of the path view, and of the view's title over the panes."""
+"""Drawing of one pane of the path view, and of the title above all panes."""
 
 from __future__ import annotations
 

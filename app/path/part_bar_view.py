@@ -1,4 +1,4 @@
-"""Timeline below the part, with play, pause, fast playback and single steps.
+"""Timeline below the picture of the part, with play, pause, fast playback and single steps.
 
 Errors are marked in red.
 """
@@ -51,7 +51,7 @@ class PartTimeline:
         return True
 
     def handle_drag(self, pixels: QPointF) -> None:
-        """Seek by the horizontal distance of a drag in pixels."""
+        """Change the displayed time by the horizontal distance of a drag in pixels."""
         self._at += pixels.x()
         self._seek()
 

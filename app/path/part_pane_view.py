@@ -1,4 +1,4 @@
-"""Panes of the part, which show a section with collisions in red, or the solid part."""
+"""Panes that show the part as a section with collisions in red, or as a solid."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ class PartPane(PathPane):
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
-        """Set the projection, and request a section without a 3D image."""
+        """Set the projection, and make the player calculate a section instead of a 3D image."""
         self.projection = projection
         self.part_player.set_solid_request(None)
 
@@ -118,7 +118,7 @@ class PartPane(PathPane):
         tip_position: PlanePosition | None,
         stop_position: PlanePosition | None = None,
     ) -> None:
-        """Make the player follow the run while a block is active.
+        """Make the player follow the running program while a block is active.
 
         ``tip_position`` is the position of the tool. ``stop_position`` is the position where an interrupted
         block stopped.
@@ -185,7 +185,7 @@ class PartPane(PathPane):
                 painter.drawPolyline(edge)
 
     def draw_run(self, painter: QPainter) -> None:
-        """Draw over the section: the tool, the scales, the travel limits and the outlines of collisions."""
+        """Draw the tool, the scales, the travel limits and the outlines of collisions over the section."""
         shown, projection = self.part_player.result, self.projection
         if shown is None or projection is None:
             return
@@ -370,7 +370,7 @@ class SolidPane(PartPane):
         self.part_player.set_solid_request(SolidRequest(view, projection.width_px, projection.height_px))
 
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
-        """Return the position of the tool, and turn the part to the position of a locked C axis."""
+        """Return the position of the tool, and rotate the picture to the position of a locked C axis."""
         if tip.c is not None and tip.c != self._roll:
             self._roll = tip.c
             self._want()
@@ -379,11 +379,11 @@ class SolidPane(PartPane):
     # --- navigation ----------------------------------------------------------------------------------
 
     def handle_drag(self, pixels: QPointF) -> None:
-        """Turn the part by a drag in pixels."""
+        """Rotate the 3D picture by a drag in pixels."""
         self._turn(pixels.x() * _DEGREES_PER_PIXEL, pixels.y() * _DEGREES_PER_PIXEL)
 
     def pan_view(self, steps_right: int, steps_down: int) -> None:
-        """Turn the part by a number of steps of the pan keys."""
+        """Rotate the 3D picture by a number of steps of the pan keys."""
         self._turn(-steps_right * _DEGREES_PER_KEY, -steps_down * _DEGREES_PER_KEY)
 
     def pan_to_point(self, z: float, x: float) -> None:
@@ -397,7 +397,7 @@ class SolidPane(PartPane):
     def magnify(self, factor: float, position: QPointF) -> None:
         """Magnify the view by a factor.
 
-        The axis and the column of ``position`` do not move.
+        The part axis and the pixel column of ``position`` do not move.
         """
         if self.projection is not None:
             self.is_adjusted = True
@@ -440,7 +440,7 @@ class SolidPane(PartPane):
 
 
 def find_removed_quarter(tilt_deg: float) -> tuple[float, float]:
-    """Return the start and end angles of the removed quarter.
+    """Return the start and end angles of the quarter that is removed from the displayed solid.
 
     The angles are in degrees from the viewer towards the top. One edge is in the turning plane on the
     operator's side, where the tool is. The other edge is perpendicular to the first, on the visible side.

@@ -1,7 +1,7 @@
 """Player of the part view, which shows the part at a selected moment of the program.
 
-The moment follows the run, or the operator selects it on a timeline. A worker thread removes the material.
-The screen polls the result once a frame and never waits.
+The moment follows the running program, or the operator selects it on a timeline. A worker thread calculates
+the material removal. The screen polls the result once a frame and never waits.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ ZRadius = tuple[float, float]
 
 
 class SolidRequest(NamedTuple):
-    """3D view of the part and the image size in pixels.
+    """Request for a 3D image: the view of the part and the image size in pixels.
 
     ``is_coarse`` selects a coarser image.
     """
@@ -49,9 +49,9 @@ class SolidRequest(NamedTuple):
 
 
 class ProgramMoment(NamedTuple):
-    """Position in the program: the number of finished blocks and the finished fraction of the next block.
+    """Moment of a program: the finished blocks and the finished fraction of the next block.
 
-    If ``offset_from_end_mm`` is set, it replaces ``block_fraction``. It is the offset of the tool from the
+    ``offset_from_end_mm``, if not None, replaces ``block_fraction``. It is the offset of the tool from the
     end of the block as (Z, radius), in millimeters.
     """
 
@@ -62,7 +62,7 @@ class ProgramMoment(NamedTuple):
 
 
 class PlayedInstant(NamedTuple):
-    """Result of the worker, with the part at one instant and the findings of the whole program."""
+    """Result of the worker thread: the part at one instant, and the findings of the whole program."""
 
     part_instant: PartInstant
     findings: tuple[Diagnostic, ...] = ()
@@ -71,9 +71,9 @@ class PlayedInstant(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class PartPlayer:
-    """Player of one view.
+    """Player of one part view.
 
-    While ``follows_run`` is set, the run determines the moment, and the timeline keys do nothing.
+    While ``follows_run`` is True, the view shows the running program, and the timeline keys have no effect.
     """
 
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("part"))
@@ -99,9 +99,9 @@ class PartPlayer:
     # --- selection of the program --------------------------------------------------------------------
 
     def load_picture(self, picture: ProgramPicture | None) -> None:
-        """Load a picture.
+        """Load the picture of a program, or None for no program.
 
-        The part is shown at the end of the program until the operator plays the program.
+        The part is shown at the end of the program until the operator starts playback.
         """
         if picture is self._picture:
             return
@@ -133,7 +133,7 @@ class PartPlayer:
 
     @property
     def is_outdated(self) -> bool:
-        """Return whether the displayed part is not the requested part."""
+        """Return whether the display does not yet show the requested state of the part."""
         return self.worker.is_busy or (self._picture is not None and self._asked != self._wanted)
 
     # --- update once per frame -----------------------------------------------------------------------
@@ -151,7 +151,7 @@ class PartPlayer:
         return self._played is not shown or self.is_playing
 
     def wait_for_result(self, timeout_s: float) -> None:
-        """Wait for the requested part.
+        """Wait until the requested state of the part is calculated.
 
         This call blocks. Use it only in scripts and tests.
         """
@@ -181,7 +181,7 @@ class PartPlayer:
     # --- following the run ---------------------------------------------------------------------------
 
     def follow_run(self, block_number: int, end_offset_mm: ZRadius) -> None:
-        """Show the part at the current position of the run.
+        """Show the part at the current position of the running program.
 
         ``end_offset_mm`` is the offset (Z, radius) of the tool from the end of the block, in mm.
         """
@@ -250,7 +250,7 @@ class PartPlayer:
             self.request_time(float(self._picture.ends[min(block_number, len(self._picture.ends) - 1)]))
 
     def find_error_times(self) -> npt.NDArray[np.float64]:
-        """Return the program times of the errors of the part, in seconds."""
+        """Return the program times at which the part simulation found errors, in seconds."""
         if self._played is None or self._picture is None:
             return np.zeros(0)
         ends = self._picture.ends
@@ -286,7 +286,7 @@ class PartPlayer:
     def _make_result(
         self, picture: ProgramPicture, wanted: ProgramMoment, request: WorkRequest
     ) -> PlayedInstant:
-        """Calculate the requested instant on the worker.
+        """Calculate the requested instant on the worker thread.
 
         A new program is first simulated to its end, so that all findings are known.
         """
@@ -306,7 +306,7 @@ class PartPlayer:
     def _find_instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
     ) -> PartInstant:
-        """Return the instant, and reuse the previous instant if only the view has turned."""
+        """Return the requested instant of the part, without recalculation if only the view was rotated."""
         if self._solid is not None:
             last = self._solid[0]
             if (last.block_count, last.next_block_fraction) == (block, share) and history.is_current(last):

@@ -1,4 +1,4 @@
-"""View directions of the path view, position of the tool tip, and moves of an approach."""
+"""Views of the path view, the tool tip position in them, and the moves of an approach."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ PART_ASPECTS = SPATIAL_ASPECTS | {PathAspect.SECTION}
 
 
 class TipPosition(NamedTuple):
-    """Active block (0 for none), and the position of the tool tip relative to the part in millimeters.
+    """Active block (0 if no block is active) and the tool tip position relative to the part, in mm.
 
-    ``c`` is the programmed C position in degrees while C is locked, and otherwise None. ``center_height_mm``
-    is the height of the center line of a mill. ``stop_position`` is the position at which an interrupted
-    block stopped.
+    ``c`` is the programmed C position in degrees while C is locked, and otherwise None.
+    ``center_height_mm`` is the height of the center line of a mill. ``stop_position`` is the position at
+    which an interrupted block stopped.
     """
 
     active_block: int = 0
@@ -83,10 +83,10 @@ def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyl
 
 
 def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[AspectView]:
-    """Return the views through which the view key steps.
+    """Return the views of a program, in the order in which the view key selects them.
 
     The first views show the path next to a face or side that is machined with the C axis. After them, the
-    face and the side are shown alone. If ``has_part`` is set, the views of the part come last.
+    face and the side are shown alone. If ``has_part`` is True, the views of the part come last.
     """
     more = [
         aspect
@@ -107,7 +107,7 @@ def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[Aspec
 
 @dataclass(frozen=True, slots=True)
 class ApproachLeg:
-    """One straight move of an approach to (z, x) in the frame of the part, in mm, with X as a radius.
+    """One straight move of an approach to (z, x), relative to the part, in mm, with X as a radius.
 
     The position is the machine position minus the tool offset. ``label`` is the number and the axis, for
     example ``1 X``. The first leg is the current tool position, and its ``is_rapid`` has no meaning.

@@ -50,7 +50,7 @@ _map_memory = cast("Callable[[object, int, bool], bytes]", shiboken6.VoidPtr)
 
 
 class LineStyle(Enum):
-    """The styles of a polyline, each with a color for cuts, a line width in screen units, and a pen style."""
+    """Styles of a polyline: the color of cuts, the line width in screen units, and the pen style."""
 
     REMAINING = ("todo", 0.15, PenStyle.SolidLine)
     FINISHED = ("done", 0.26, PenStyle.SolidLine)
@@ -59,7 +59,7 @@ class LineStyle(Enum):
     MARKED = ("lit", 1.2, PenStyle.SolidLine)  # a band along the blocks of the line under the cursor
 
     def make_pens(self, theme: ScreenTheme) -> dict[int, QPen]:
-        """Return the pen of each stroke.
+        """Return the pen of each kind of stroke.
 
         A comparison of two programs has pens only for cuts.
         """
@@ -78,7 +78,7 @@ class LineStyle(Enum):
         return {Stroke.RAPID: cut if self is LineStyle.MARKED else rapid, Stroke.TURN: cut, Stroke.MILL: cut}
 
     def make_colors(self, theme: ScreenTheme) -> dict[int, QColor]:
-        """Return the color of each stroke, for lines with a width of one pixel."""
+        """Return the color of each kind of stroke, for lines that are one pixel wide."""
         return {stroke: pen.color() for stroke, pen in self.make_pens(theme).items()}
 
 
@@ -170,7 +170,7 @@ class PathLayers:
         self._done = end
 
     def _find_slice_end(self, polyline: Polyline, begin: int, maximum: int) -> int:
-        """Return the end of the next slice.
+        """Return the end index of the next slice of points to draw.
 
         A slice of long chords is limited by its pixels, and a slice of short chords by its points.
         """

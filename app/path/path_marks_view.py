@@ -30,10 +30,7 @@ BUTTON_SIZE = (6.6, 6.6, 0.4)  # units: width, height and gap; the size is at le
 
 
 class ViewButton(NamedTuple):
-    """Button of the view.
-
-    ``is_lit`` is set while the button's function is active.
-    """
+    """Button of the path view. ``is_lit`` is True while the button's function is active."""
 
     symbol: str
     on_press: OnPress
@@ -298,17 +295,14 @@ def describe_difference(difference: LargestDistance, is_metric: bool) -> str:
 
 
 def find_pane_errors(pane: PathPane) -> list[Diagnostic]:
-    """Return the errors of the part that occur up to the displayed moment of a pane."""
+    """Return the part errors that occur before or at the moment that a pane displays."""
     shown = pane.part_player.result if pane.part_player is not None else None
     found = shown.part_instant.findings if shown is not None else ()
     return [each for each in found if is_serious(each)]
 
 
 def make_part_title(pane: PathPane) -> str:
-    """Return the title of a part pane.
-
-    The title is the latest error, or the tool that is cutting if there is no error.
-    """
+    """Return the title of a part pane: the latest error, or else the tool that is cutting."""
     shown = pane.part_player.result if pane.part_player is not None else None
     if pane.part_player is None or shown is None:
         error_text = pane.part_player.error_text if pane.part_player is not None else ""
@@ -343,9 +337,9 @@ MIN_C_LINE_DISTANCE = 9.0  # units: minimum distance between the C lines of the 
 def draw_center_lines(
     painter: QPainter, theme: ScreenTheme, aspect: PathAspect, projection: Projection, polyline: Polyline
 ) -> None:
-    """Draw the center lines, the C circle of a face, and the C lines of a side.
+    """Draw the center lines, and the C angles as a circle on a face or as lines on a side.
 
-    Marks that move are drawn over these lines. The origin of the painter is the corner of the pane.
+    Moving marks are drawn over these lines later. The origin of the painter is the corner of the pane.
     """
     if aspect in SPATIAL_ASPECTS:
         return

@@ -82,15 +82,16 @@ class PathPane:
             self.fit_view()
 
     def _blank_below(self) -> Blank | None:
-        """Return the stock and clamping that are drawn below the path, or None if there are none."""
+        """Return the stock and clamping to draw below the path, or None if neither is specified."""
         picture = self.polyline
         wanted = self.aspect is PathAspect.PATH and self.polyline_before is None
         return find_blank(picture) if wanted and isinstance(picture, ProgramPicture) else None
 
     def make_full_projection(self) -> Projection:
-        """Return the projection that shows the part, all cuts near it, and any path before a change.
+        """Return the projection that shows the part and all cuts near it.
 
-        The chuck is shown as far as the remaining width allows.
+        In a comparison, the path before the change is also visible. The chuck is shown as far as the
+        remaining width allows.
         """
         fit = fit_bounds if self.aspect is PathAspect.SIDE else fit_mirrored
         bounds, blank = self.polyline.bounds, self._blank
@@ -182,7 +183,7 @@ class PathPane:
         self.handle_drag(QPointF(-steps_right * step, -steps_down * step))
 
     def handle_drag(self, pixels: QPointF) -> None:
-        """Move the picture by a drag in pixels."""
+        """Pan the view by a drag in pixels."""
         if self.projection is not None:
             self.is_adjusted = True
             self.set_projection(self.projection.shift(pixels.x(), pixels.y()))
@@ -252,9 +253,9 @@ class PathPane:
         )
 
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
-        """Return the position of the machine's tool tip in this pane.
+        """Return the position of the tool tip in the plane of this pane.
 
-        While C turns as the spindle, a face view retains the last position.
+        A face view returns the last position while C turns as the spindle.
         """
         if self.aspect is PathAspect.PATH or self.aspect in PART_ASPECTS:
             return tip.z, tip.x
@@ -265,7 +266,7 @@ class PathPane:
         return tip.z, -tip.c * self.polyline.mm_per_degree
 
     def mark(self, block_ranges: list[tuple[int, int]]) -> None:
-        """Draw blocks as thick lines.
+        """Draw the given blocks as thick lines.
 
         Each range is (first block, last block), inclusive and counted from 1.
         """
@@ -360,7 +361,8 @@ MIN_LAYOUT_WIDTH_PX = 40  # pixels: minimum width of a layout
 class PaneSet:
     """Panes of the displayed picture and, in a comparison, of the picture before the change.
 
-    ``keeps_view`` retains adjusted projections if the picture changes. ``make_pane`` creates a pane.
+    If ``keeps_view`` is True, a new picture is shown with the user's zoom and pan. ``make_pane`` creates a
+    pane.
     """
 
     def __init__(self, keeps_view: bool, make_pane: MakePane, *, has_part: bool = False) -> None:

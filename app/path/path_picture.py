@@ -1,4 +1,4 @@
-"""Path of a program as polylines, including face and side with C locked.
+"""Path of a program as polylines, seen from above, and on the face and side if C is locked.
 
 The polylines are built once, on a worker thread. Coordinates are relative to the part: machine position
 minus the offset of the active tool. Work shifts (G10) and presets (G92) therefore appear where the cuts are
@@ -42,9 +42,9 @@ MIN_UNROLL_RADIUS_MM = 1.0  # mm: radius for unrolling a side whose radius is un
 
 
 def map_to_face(x: float, c: float, center_height_mm: float = 0.0) -> tuple[float, float]:
-    """Return the position (right, down) on the face for a tool tip at lathe X (a radius).
+    """Return the position (right, down) on the face of the part for a tool tip at lathe X (a radius).
 
-    C is turned by ``c`` degrees, and ``center_height_mm`` is the height of the center line.
+    ``c`` is the angle of the C axis in degrees. ``center_height_mm`` is the height of the center line.
     """
     at = math.atan2(center_height_mm, -x) - math.radians(c)
     rho = math.hypot(x, center_height_mm)
@@ -52,7 +52,7 @@ def map_to_face(x: float, c: float, center_height_mm: float = 0.0) -> tuple[floa
 
 
 class FaceBuilder:
-    """Builder that collects the moves that are visible on the face."""
+    """Builder of the face view, which collects the moves that are visible on the face of the part."""
 
     def __init__(self, block_count: int) -> None:
         self.polyline_builder = PolylineBuilder(block_count)
@@ -94,7 +94,7 @@ class FaceBuilder:
 
 
 class SideBuilder:
-    """Builder that collects the moves that are visible on the side.
+    """Builder of the side view, which collects the moves that are visible on the side of the part.
 
     ``x`` is minus C in degrees until the radius is known.
     """
@@ -136,9 +136,9 @@ class SideBuilder:
         self.polyline_builder.add_point(block.z + dz, -block.c, stroke)
 
     def build_polyline(self) -> Polyline:
-        """Return the collected moves, unrolled at a diameter.
+        """Return the collected moves on the cylinder of the part, unrolled into a plane.
 
-        The diameter is that of the first plane, or the largest cut diameter if there is no plane.
+        The diameter is that of the first milling plane, or the largest cut diameter without a plane.
         """
         z, x, stroke, first = self.polyline_builder.make_arrays()
         scale = math.pi * (self._diameter or 2 * max(self._reach, MIN_UNROLL_RADIUS_MM)) / 360.0
@@ -200,12 +200,13 @@ TimedBlocks = tuple[Block, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProgramPicture(Polyline):
-    """Path seen from above, with X+ down.
+    """Path of a program seen from above, with X+ down, and the times of its blocks.
 
-    ``face`` and ``side`` show the cuts with C locked. ``ends`` (blocks + 1,) is the program time in seconds
-    at the end of each block, starting with 0. ``chord`` (blocks,) is the distance from start to end of a
-    block in mm. ``line`` (blocks,) is the source line of each block. ``metric`` is set if the program ends
-    in G71.
+    - ``face`` and ``side``: cuts with C locked.
+    - ``ends`` (blocks + 1,): program time in seconds at the end of each block, starting with 0.
+    - ``chord`` (blocks,): distance from start to end of each block in mm.
+    - ``line`` (blocks,): source line of each block.
+    - ``metric``: whether the program ends in G71.
     """
 
     ends: npt.NDArray[np.float64]
@@ -219,7 +220,7 @@ class ProgramPicture(Polyline):
     no_part: str = ""  # reason why the part is not calculated
 
     def find_block_for_line(self, line_number: int) -> int:
-        """Return the number of the block that ends the first execution of a source line.
+        """Return the number of the last block of the first execution of a source line.
 
         If the line has no blocks, the nearest earlier line with blocks is used. Return 0 if no such line
         exists. Blocks and lines are counted from 1.
@@ -267,7 +268,7 @@ class ProgramPicture(Polyline):
 
 
 class PictureBuilder:
-    """Builder that collects blocks into a picture.
+    """Builder of a program picture from blocks.
 
     ``is_metric`` sets the unit of a picture that has no blocks.
     """

@@ -70,7 +70,7 @@ class PathPointer:
             self.on_touch(pane, position)
 
     def handle_touch_event(self, event: QEvent) -> bool:
-        """Handle a touch or gesture event, and return whether the event was used."""
+        """Handle a touch or gesture event, and return whether the event was processed."""
         if isinstance(event, QNativeGestureEvent):
             if event.gestureType() == Qt.NativeGestureType.ZoomNativeGesture:
                 self.on_magnify(1.0 + event.value(), event.position())
@@ -88,9 +88,9 @@ class PathPointer:
         return True
 
     def _handle_one_touch(self, kind: QEvent.Type, at: QPointF) -> None:
-        """Handle a single touch like the mouse.
+        """Handle a single touch like a press of the mouse button.
 
-        After a pinch, the touch that remains has no effect.
+        After a pinch, the finger that remains on the screen has no effect.
         """
         if self._spread is not None:
             return

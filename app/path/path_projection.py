@@ -1,7 +1,7 @@
 """Projection of a path and of the section of a part onto pixels.
 
-The result is reduced to the visible points. All functions process whole arrays without a Python loop over
-the points.
+Only the visible points are calculated. All functions process whole arrays without a Python loop over the
+points.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """Visible area of a drawing.
+    """Mapping of the viewed plane to pixels: the middle of the view (z, x), its size and its scale.
 
-    It is given by its middle (z, x), its size in pixels, and ``pixels_per_mm``, the scale in pixels per mm.
+    The size is in pixels, and ``pixels_per_mm`` is the scale in pixels per mm.
     """
 
     z: float
@@ -63,7 +63,10 @@ class Projection:
 def fit_mirrored(
     bounds: tuple[float, float, float, float], width: int, height: int, margin: float
 ) -> Projection:
-    """Return a projection that shows all cuts and their mirror image across X0, with a margin in pixels."""
+    """Return a projection that shows all cuts and their mirror image on the other side of X0.
+
+    The margin is in pixels.
+    """
     z0, z1, x0, x1 = bounds
     reach = max(abs(x0), abs(x1), 0.5)
     across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
@@ -82,7 +85,7 @@ def fit_bounds(
 
 
 class Shape(NamedTuple):
-    """Points in pixels, with the stroke that ends at each point."""
+    """Polyline points in pixels, each with the kind of the stroke that ends at the point."""
 
     columns: FloatArray
     rows: FloatArray
@@ -91,7 +94,7 @@ class Shape(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StrokeRun:
-    """Consecutive points of one stroke, in pixels."""
+    """Consecutive points of the same kind of stroke, in pixels."""
 
     stroke_kind: int
     columns: FloatArray
@@ -145,7 +148,7 @@ def _find_outside(columns: FloatArray, rows: FloatArray, projection: Projection)
 def project_progress(
     polyline: Polyline, projection: Projection, block_number: int, z: float, x: float
 ) -> StrokeRun | None:
-    """Return the finished part of a block, or None if nothing is drawn.
+    """Return the finished part of a block in pixels, or None if nothing is drawn.
 
     The finished part consists of the points of the block up to the tip at (z, x).
     """
@@ -173,7 +176,7 @@ def _find_nearest_chord(zs: FloatArray, xs: FloatArray, z: float, x: float) -> i
 
 
 def find_scale_length(maximum_mm: float, is_metric: bool) -> tuple[float, str]:
-    """Return the longest round length up to ``maximum_mm`` mm, with its text in the current unit."""
+    """Return the longest round length up to ``maximum_mm``, and its text in the current unit."""
     unit, name = (1.0, "mm") if is_metric else (25.4, "in")
     decade = 10.0 ** np.floor(np.log10(max(maximum_mm / unit, 1e-9)))
     step = max((k for k in (1.0, 2.0, 5.0) if k * decade <= maximum_mm / unit * (1 + 1e-9)), default=1.0)
@@ -181,7 +184,7 @@ def find_scale_length(maximum_mm: float, is_metric: bool) -> tuple[float, str]:
 
 
 class ChordEnds(NamedTuple):
-    """Start and end points of chords as columns and rows, in pixels."""
+    """Start and end points of chords (lines between path points) as columns and rows, in pixels."""
 
     start_columns: FloatArray
     start_rows: FloatArray
@@ -234,14 +237,14 @@ _OVERDRAW_PX = 40.0  # pixels outside the frame that are still drawn
 
 
 class PixelLine(NamedTuple):
-    """Points in pixels. Both arrays have the shape (n,)."""
+    """Points of a line in pixels. Both arrays have the shape (n,)."""
 
     columns: FloatArray
     rows: FloatArray
 
 
 class SectionArea(NamedTuple):
-    """One area of a section, with the edges that are drawn as lines."""
+    """One area of the section of a part, with the edges that are drawn as lines."""
 
     outline_line: PixelLine
     edge_lines: tuple[PixelLine, ...]
@@ -263,7 +266,7 @@ def project_section(half: SectionHalf, projection: Projection, *, is_upper: bool
 
 
 def project_collision(collision: MaterialHit, projection: Projection) -> list[PixelLine]:
-    """Return the areas of a collision, both above and below the axis."""
+    """Return the areas of a collision in pixels, both above and below the part axis."""
     gaps = np.flatnonzero(np.diff(collision.z_positions) > 1.5 * collision.column_width_mm) + 1
     found = []
     for run in np.split(np.arange(len(collision.z_positions)), gaps):
@@ -359,7 +362,7 @@ def _ring(there: PixelLine, back: PixelLine) -> PixelLine:
 
 
 def _thin_line(line: PixelLine) -> PixelLine:
-    """Return the line without inner points of horizontal runs and without repeated points on a pixel."""
+    """Return the line without points inside horizontal runs and repeated points on a pixel."""
     c, r = np.rint(line.columns * 2.0), np.rint(line.rows * _ROWS_PER_PIXEL)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (r[1:-1] != r[:-2]) | (r[1:-1] != r[2:])

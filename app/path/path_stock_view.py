@@ -1,4 +1,4 @@
-"""Drawing of the stock and clamping under the path, and the visible area that they need."""
+"""Drawing of the stock and clamping below the path, and the visible area that they need."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ class PathView(Panel):
     # --- content -------------------------------------------------------------------------------------
 
     def show_picture(self, picture: ProgramPicture | None) -> None:
-        """Show the path of another program, or no path."""
+        """Show the path of another program, or no path if ``picture`` is None."""
         self._show(picture, None)
 
     def show_compared(self, before: ProgramPicture | None, after: ProgramPicture | None) -> None:
@@ -145,7 +145,7 @@ class PathView(Panel):
             self.update()
 
     def mark(self, block_ranges: list[tuple[int, int]]) -> None:
-        """Draw blocks as thick lines.
+        """Draw the given blocks as thick lines.
 
         Each range is (first block, last block), inclusive and counted from 1.
         """
@@ -234,9 +234,9 @@ class PathView(Panel):
         self._lay_out()
 
     def find_panes_area(self) -> QRectF:
-        """Return the area inside the frame.
+        """Return the area inside the frame of the view.
 
-        The panes use the part of it that the buttons do not cover.
+        The panes use the part of this area that the buttons do not cover.
         """
         u = self.theme.unit_px
         bar = TIMELINE_HEIGHT if self.is_part_shown else FOOTER_HEIGHT
@@ -333,7 +333,7 @@ class PathView(Panel):
         return ruler
 
     def _find_touch_target(self, at: QPointF) -> PathPane | PartTimeline | None:
-        """Return the timeline or pane at a position, or None if the press was on a button."""
+        """Return the timeline or pane at a position, or None if a button of the view is there."""
         if self.press_at(at):
             return None
         if self._bar is not None and self.is_part_shown and self._bar.handle_touch(at):
@@ -368,14 +368,14 @@ class PathView(Panel):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Handle the keys of measuring, and pass all other keys to the window."""
+        """Handle the keys for measuring, and pass all other keys to the window."""
         if self.measurement is not None and self.measurement.key(event):
             self.update()
         else:
             event.ignore()
 
     def focusNextPrevChild(self, _next: bool) -> bool:
-        """Prevent Tab from moving the focus, because Tab is a key of measuring."""
+        """Prevent Tab from moving the focus, because Tab moves the measuring cursor."""
         return False
 
     def focusOutEvent(self, event: QFocusEvent) -> None:

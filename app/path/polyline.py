@@ -21,7 +21,7 @@ SAME_POINT_MM = 1e-7  # mm
 
 
 class Stroke(IntEnum):
-    """The kinds of chord, each assigned to the point at which the chord ends.
+    """Kinds of stroke. Each point of a polyline has the kind of the chord that ends there.
 
     ``TURN`` strokes cut on both sides of X0.
     """
@@ -34,14 +34,14 @@ class Stroke(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polyline:
-    """Points ``z``, ``x`` (p,), with the stroke that ends at each point.
+    """Polyline with points ``z``, ``x`` (p,) in mm, each with the kind of the stroke that ends there.
 
-    Block n ends with point ``first[n] - 1``. ``z`` is to the right and ``x`` is down, in mm. Seen from
-    above, they are Z and X. On the face they are face X and minus face Y. On the unrolled side they are Z
-    and minus the circumferential length. ``first`` has the shape (blocks + 1,). ``bounds`` is (minimum z,
-    maximum z, minimum x, maximum x) of all cuts, or of all points if there are no cuts. ``arc_centers``
-    (arcs, 2) contains z and x of arc centers. ``mm_per_degree`` is the length of ``x`` in mm per degree of
-    C, or 0 if ``x`` is not a circumferential length.
+    - ``z`` is to the right and ``x`` is down. Seen from above, they are Z and X. On the face, they are face X
+      and minus face Y. On the unrolled side, they are Z and minus the circumferential length.
+    - ``first`` (blocks + 1,): block n ends with point ``first[n] - 1``.
+    - ``bounds``: (minimum z, maximum z, minimum x, maximum x) of all cuts, or of all points without cuts.
+    - ``arc_centers`` (arcs, 2): z and x of arc centers.
+    - ``mm_per_degree``: mm of ``x`` per degree of C, or 0 if ``x`` is not a circumferential length.
     """
 
     z: FloatArray
@@ -58,11 +58,14 @@ class Polyline:
         return len(self.first) - 1
 
     def count_finished_points(self, block_count: int) -> int:
-        """Return the number of points of the first ``blocks`` blocks."""
+        """Return the number of points of the first ``block_count`` blocks."""
         return int(self.first[max(0, min(block_count, self.blocks))])
 
     def find_block(self, point: int) -> int:
-        """Return the number of the block (from 1) with the chord that ends at a point (from 0)."""
+        """Return the number of the block whose chord ends at a point.
+
+        Blocks are counted from 1, and points from 0.
+        """
         return int(np.searchsorted(self.first, point, side="right"))
 
 
@@ -84,7 +87,7 @@ class PolylineBuilder:
         self.add_point(z, x, Stroke.JUMP)
 
     def add_point(self, z: float, x: float, stroke: int) -> None:
-        """Append a point with its stroke."""
+        """Append a point with the kind of the stroke that ends there."""
         self.z.append(z)
         self.x.append(x)
         self.strokes.append(stroke)
@@ -132,7 +135,7 @@ MAX_TURN_POINTS = 720  # maximum number of points of one turning move
 
 
 def count_arc_chords(radius_mm: float, sweep_rad: float) -> int:
-    """Return the number of chords for an arc.
+    """Return the number of chords that approximate an arc.
 
     The chords deviate from the arc by at most ``MAX_CHORD_ERROR_MM``.
     """
@@ -143,14 +146,14 @@ def count_arc_chords(radius_mm: float, sweep_rad: float) -> int:
 
 
 def count_turn_chords(degrees: float) -> int:
-    """Return the number of chords of a move during which C turns by ``degrees``."""
+    """Return the number of chords that approximate a move during which C rotates by ``degrees``."""
     return max(1, min(MAX_TURN_POINTS, math.ceil(abs(degrees) / TURN_STEP_DEG)))
 
 
 def sample_mill_move(move: PlaneMove, c_rotation_deg: float) -> list[MillPoint]:
-    """Return the points of a mill move in the frame of the plane, without its start point.
+    """Return the points of a milling move in the coordinates of its plane, without the start point.
 
-    ``degrees`` is the rotation of C during the move.
+    ``c_rotation_deg`` is the rotation of C during the move, in degrees.
     """
     if move.center is None:
         pieces = count_turn_chords(c_rotation_deg)

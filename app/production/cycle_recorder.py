@@ -1,4 +1,4 @@
-"""Recorder of cycle times and stops from the executor's events, with one row per part and per stop."""
+"""Recorder of cycle times and stops from the executor's events, one row per part and stop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FAULT_STATES = frozenset({MachineState.FAULT.value, MachineState.ESTOP.value})
 
 @dataclass(slots=True)
 class _Cycle:
-    """Cycle of the current part, with its row, its start time, and its stopped time in seconds."""
+    """Cycle of the current part: its row, its start time, and its total stopped time in seconds."""
 
     row: CycleRow
     start_time: float
@@ -37,11 +37,11 @@ class _Stop:
 
 
 class CycleRecorder:
-    """Recorder of cycles.
+    """Recorder of cycles and stops.
 
     ``hear`` receives every event in order, and posts the rows to the store without waiting. The time of day
-    of a row is the time of the call. Durations are calculated from the event times. The reason that ends a
-    cycle counts as a stop until the next cycle starts.
+    of a row is the time of the call. Durations are calculated from the event times. The time from an alarm
+    or E-stop that ends a cycle to the next start is recorded as a stop with this reason.
     """
 
     def __init__(self, read_clock: Callable[[], str] = get_utc_now_text) -> None:
@@ -76,7 +76,7 @@ class CycleRecorder:
     def resume_part(self, program: str, time_s: float, cycles: CycleRecords) -> None:
         """Record the remainder of a part that was started before this process was started.
 
-        The part counts as restarted.
+        The part is recorded as restarted.
         """
         self._program = Path(program).name
         self._begin(LogEvent(time_s, "start", program), cycles)
@@ -134,10 +134,7 @@ class CycleRecorder:
             self._end_stop(event, cycles)
 
     def _interrupt_cycle(self, event: LogEvent, cycles: CycleRecords) -> None:
-        """End the cycle after an alarm or E-stop.
-
-        Production is stopped until the next start.
-        """
+        """End the cycle after an alarm or E-stop, and begin a stop that lasts until the next start."""
         self._end(event, cycles, event.text)
         if self._stop is not None and self._stop.row.reason == BETWEEN_CYCLES:
             self._end_stop(event, cycles)

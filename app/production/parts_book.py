@@ -1,4 +1,4 @@
-"""Production data as the pages see it: tool life, stops and data of optional features, with changes."""
+"""Production data for the pages: tool life, stops, data of optional features, and changes."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class PartsBook:
     """Access to stored production data.
 
     ``update`` is called once a frame, and ``current_data`` is the latest data. A worker reads the data, and
-    the store writes it. Without ``store``, nothing is stored. ``no_store_reason`` is the reason, and
+    the store writes it. If ``store`` is None, nothing is stored, and ``no_store_reason`` is the reason.
     ``lock_reason`` is the message on the pages of measured parts.
     """
 
@@ -122,7 +122,7 @@ class PartsBook:
             self.worker.request_work(lambda _watch: work(), self._read, self._failed)
 
     def _is_reload_due(self, store: Store) -> bool:
-        """Return whether data must be read again and no earlier change still has to be written."""
+        """Return whether data must be read again and all earlier changes have been written."""
         if self._stale and self._behind is None:
             self._stale = False
             try:
@@ -163,7 +163,7 @@ class PartsBook:
                 failed(str(error))
 
     def request_reload(self) -> None:
-        """Request that the data is read again, because data was stored without this object."""
+        """Request that the data is read again, because other code has changed the store."""
         self._stale = True
 
     @property
@@ -209,7 +209,7 @@ class PartsBook:
             on_failed(str(error))
 
     def save_tool_use(self, lives: Iterable[ToolLifeRow], totals: ToolTotals | None = None) -> None:
-        """Store the use of tools, and in the same transaction the control's totals that include it."""
+        """Store tool use and, in the same transaction, the control's totals that include it."""
         store, tools = self.store, self.tool_kind
         if store is None:
             return

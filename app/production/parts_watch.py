@@ -1,4 +1,4 @@
-"""Monitor of tools and parts: tool life, due measurements, and the block of the next part."""
+"""Monitor that checks tool life and due measurements, and can prevent the start of the next part."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.message import Message, join_messages
 
 
 class ProductionPlan(Protocol):
-    """Plan that an optional feature makes for the next parts."""
+    """Plan of an optional feature for the next parts, which can prevent their start."""
 
     def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return why the next part must not start, or an empty string."""
@@ -28,7 +28,7 @@ class ProductionPlan(Protocol):
 
 @dataclass(slots=True)
 class PartsWatch:
-    """Monitor of production.
+    """Monitor of production: tool life, due measurements and reasons to prevent the next part.
 
     ``observe`` is called once a frame. The prompt line calls ``find_reminder``, which does not wait.
     """
@@ -63,7 +63,7 @@ class PartsWatch:
         self._update_block(snapshot, loaded)
 
     def _update_block(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Send the lock reason to the executor before the part ends, so that the next part does not start."""
+        """Send the block reason to the executor before the part ends, to prevent the next part."""
         tools = loaded.proof.tool_numbers if loaded.proof is not None else ()
         bars = (
             self.tool_life_watch.find_block_reason(snapshot, tools),

@@ -31,8 +31,8 @@ def make_tool_life(row: ToolLifeRow) -> ToolLife:
 class ToolLifeWatch:
     """Monitor of tool life.
 
-    After the store has been read, the counts are maintained in this object. The limits are in the store. On
-    a mill, the counts apply to a whole tool instead of an insert.
+    The store is read once. After that, this object counts the use of the tools. The limits are in the
+    store. On a mill, the counts apply to a whole tool instead of an insert.
     """
 
     parts_book: PartsBook
@@ -97,9 +97,9 @@ class ToolLifeWatch:
         self._report(show_message)
 
     def _begin(self, snapshot: Snapshot, control: str) -> None:
-        """Start counting from the stored totals of this control.
+        """Start counting from the totals that are stored for this control.
 
-        If none are stored, start from the totals of the snapshot.
+        If no totals are stored, start from the totals of the snapshot.
         """
         self._control, self._ends, self._cut = control, snapshot.ends, snapshot.cutting
         stored = (
@@ -228,7 +228,7 @@ class ToolLifeWatch:
         return self._due[1]
 
     def find_block_reason(self, snapshot: Snapshot, tools: Collection[int]) -> str:
-        """Return why no part with these tools may start.
+        """Return why no part with these tools may start, or an empty string if it may.
 
         The use by the current part is included.
         """

@@ -1,4 +1,4 @@
-"""Totals of the tool use already stored, so that a restarted screen adds only the difference."""
+"""Control's totals when tool use was last stored, so that a restart adds only the difference."""
 
 from __future__ import annotations
 

@@ -19,11 +19,10 @@ from core.message import CodedError, Message, get_error_code
 
 
 class FileOperationError(CodedError):
-    """A failed file operation, with a message that states the reason.
+    """Failed file operation, with a message that states the reason.
 
-    Each file is either unchanged or completely written. An operation with several steps may have completed
-    some of them: a renamed program may already have its new name, and some files of a transfer may already
-    be written.
+    Each file is either unchanged or completely written. Of an operation with several steps, some may be
+    complete. For example, a program may already have its new name, or some files may already be copied.
     """
 
 

@@ -1,4 +1,4 @@
-"""The prompt ``FILE TO BE PROCESSED``: a name is typed, or selected in a list by keys or touch."""
+"""The prompt ``FILE TO BE PROCESSED``, in which a program name is typed or selected from a list."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROW_HEIGHT = 6.6  # units: a fingertip
 
 
 class FilePrompt(RowPanel):
-    """Prompt for a program.
+    """Prompt for the name of a program.
 
     Typing filters the list. Enter opens the program with exactly this name, or the selected row.
     """
@@ -67,9 +67,9 @@ class FilePrompt(RowPanel):
         return self.name_edit.text().strip()
 
     def prompt_text(self) -> str:
-        """Return the prompt.
+        """Return the text for the prompt line.
 
-        The prompt does not mention Cycle Start, because its keys enter text while the prompt is open.
+        The text does not mention Cycle Start, because its keys enter characters while the prompt is open.
         """
         return FILE_NOT_FOUND_TEXT if self.is_not_found else CHOOSE_FILE_TEXT
 
@@ -92,9 +92,9 @@ class FilePrompt(RowPanel):
             self._closed()
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Handle keys of the list, Enter and Esc.
+        """Handle the keys that select a row, and Enter and Esc.
 
-        All other keys are text.
+        All other keys enter text.
         """
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             return self._key(event)

@@ -45,7 +45,7 @@ OPEN_LOCATION_FIRST = "OPEN A LOCATION FIRST   ARROWS: SELECT   ENTER: OPEN"
 
 @dataclass(frozen=True, slots=True)
 class TransferResult:
-    """Result of a transfer.
+    """Result of an import or export.
 
     It contains the copied names, the names that exist with different content, and the errors of the proof.
     """
@@ -67,8 +67,8 @@ def import_programs(
 ) -> TransferResult:
     """Copy programs into the operator's folder, and prove each of them.
 
-    Drawings are copied but not proved. Nothing is written while a program with the same name and other
-    content exists, unless ``may_overwrite`` is set. Raise FileOperationError on failure.
+    Drawings are copied but not proved. If a program with the same name and other content exists, nothing is
+    copied unless ``may_overwrite`` is True. Raise FileOperationError on failure.
     """
     texts = {
         complete_name(path.name, path, lambda name: is_program_name(name) or is_drawing(name)): (
@@ -98,11 +98,11 @@ def export_programs(
     medium: TargetMedium | None = None,
     report_progress: ReportProgress = lambda _done, _of: None,
 ) -> TransferResult:
-    """Copy programs to a folder or stick, and return after they have been written to the medium.
+    """Copy programs to a folder or USB stick, and return after they have been written to the medium.
 
-    ``medium`` is the medium that was present when the folder was opened. Another medium is rejected.
-    Nothing is written while a different program with the same name exists, unless ``may_overwrite`` is set.
-    Raise FileOperationError on failure.
+    ``medium`` is the medium that was present when the folder was opened. Another medium is rejected. If a
+    different program with the same name exists, nothing is copied unless ``may_overwrite`` is True. Raise
+    FileOperationError on failure.
     """
     texts = {path.name: _bytes(path) for path in sources}
     medium = medium or TargetMedium.from_folder(folder)
@@ -124,7 +124,7 @@ def export_programs(
 
 @contextmanager
 def _copy_context(medium: TargetMedium, count: int, total: int) -> Iterator[None]:
-    """Convert an error of a stick into an operator message with the number of copied programs."""
+    """Convert an error of a USB stick into an operator message with the number of copied programs."""
     try:
         yield
     except FileOperationError as error:
@@ -196,7 +196,7 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
 
 @dataclass(slots=True)
 class ImportExport:
-    """Import and export through a folder chooser.
+    """Import and export of programs through a folder chooser.
 
     ``check_program`` proves an imported program. ``on_finished`` is called when the program list must be
     read again.
@@ -220,7 +220,7 @@ class ImportExport:
     def open_chooser(
         self, listed_paths: tuple[Path, ...], selected_path: Path | None, is_export: bool
     ) -> None:
-        """Open the chooser at the list of locations."""
+        """Open the folder chooser with the list of locations."""
         if not is_export and self.desk.is_refused(ProtectedChange.PROGRAMS):
             return
         self.is_open, self.is_export, self.listed_paths, self.selected_path = (
@@ -235,7 +235,7 @@ class ImportExport:
         self._look()
 
     def close_chooser(self) -> None:
-        """Close the chooser, and discard an open question."""
+        """Close the folder chooser, and discard an unanswered question."""
         self.is_open, self._asked = False, ()
 
     def _look(self) -> None:
@@ -269,7 +269,7 @@ class ImportExport:
         }
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key.
+        """Handle a key of the folder chooser.
 
         Arrow keys select a line, and Enter opens a folder or imports a program.
         """
@@ -378,7 +378,7 @@ class ImportExport:
 
     @staticmethod
     def _run_transfer(work: Callable[[], TransferResult], medium: TargetMedium | None) -> TransferResult:
-        """Run a transfer on the worker, and report a missing stick as the cause of a failure.
+        """Run a transfer on the worker, and report an unplugged USB stick as the cause of a failure.
 
         Raise FileOperationError on failure.
         """

@@ -52,7 +52,7 @@ def complete_name(name: str, reference_name: Path, accepts_name: AcceptsName = i
 
 
 def remove_extension(name: str) -> str:
-    """Return the name without its extension.
+    """Return a program name without its extension.
 
     If the remaining name ends in another program extension, return the whole name.
     """
@@ -61,7 +61,10 @@ def remove_extension(name: str) -> str:
 
 
 def find_same_name(folder: Path, name: str) -> str:
-    """Return the file name in the folder that differs at most in case, or an empty string."""
+    """Return the name of a file in the folder that is equal except for upper and lower case.
+
+    Return an empty string if there is no such file.
+    """
     try:
         names = [path.name for path in folder.iterdir()]
     except OSError:
@@ -145,7 +148,7 @@ def _read(path: Path) -> bytes:
 
 @dataclass(slots=True)
 class ProgramCommands:
-    """Commands for the selected program.
+    """Commands that copy, rename and delete the selected program.
 
     After the list has been read again, ``on_changed`` is called with the name to select.
     """
@@ -160,7 +163,7 @@ class ProgramCommands:
     name_field: InputField = field(default_factory=lambda: InputField(words=True))
 
     def ask_name(self, question: str) -> None:
-        """Ask for the name of a copy, or for a new name."""
+        """Ask for the name of a copy, or for the new name of a program."""
         here = self.find_selected()
         if here is None:
             self.desk.say(NO_SELECTION)
@@ -180,7 +183,7 @@ class ProgramCommands:
         return here is None or bool(self._find_protection(here))
 
     def _find_protection(self, program: ListedFile) -> str:
-        """Return why a program cannot be changed, or an empty string."""
+        """Return why a program cannot be changed, or an empty string if it can."""
         if program.is_sample:
             return SAMPLE_READ_ONLY
         found = self.desk.read_snapshot().interrupted

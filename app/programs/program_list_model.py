@@ -146,16 +146,16 @@ class ProgramListModel:
         }
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of a name.
+        """Return whether a character is part of a program name.
 
-        This is False for all characters while the folder chooser is open.
+        Return False for all characters while the folder chooser is open.
         """
         return not self.import_export.is_open and self.search_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key.
+        """Handle a key of the program list.
 
-        Arrow keys select a row, Enter loads or submits, and letters filter the list.
+        Arrow keys select a row, Enter loads the program or accepts the name, and letters filter the list.
         """
         if self.import_export.is_open:
             return self.import_export.handle_key(key)
@@ -223,7 +223,7 @@ class ProgramListModel:
         )
 
     def load_selected(self) -> bool:
-        """Load the selected program, or ask for confirmation first.
+        """Load the selected program, after the operator confirms if necessary.
 
         Return False if loading is not possible.
         """

@@ -1,4 +1,4 @@
-"""Programs of the list, with their data, their sort order, and previews of the selected program."""
+"""Rows of the program list with their data and sort order, and previews of the selected program."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ListedFile:
-    """Program file with its size in bytes and its modification time in seconds since 1970.
+    """Program file in the list, with its size in bytes and its modification time.
 
-    Samples are read-only.
+    The time is in seconds since 1970. Sample programs are read-only.
     """
 
     name: str
@@ -42,9 +42,9 @@ class ListedFile:
 
     @property
     def content_key(self) -> tuple[str, float, int]:
-        """Return the key of the file content.
+        """Return a key that changes when the content of the file changes.
 
-        Previews remain valid until the key changes.
+        A preview remains valid until the key changes.
         """
         return str(self.path), self.modified_time_s, self.size_bytes
 
@@ -54,8 +54,8 @@ def list_programs(
 ) -> tuple[ListedFile, ...]:
     """Return all programs and drawings of the folders, each with the run record of its text.
 
-    Files whose text is not known yet are read. Call this function on a worker. Raise StoreError if the
-    store cannot be read.
+    The function reads files whose text is not yet known. Call it on a worker. Raise StoreError if the store
+    cannot be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -102,7 +102,7 @@ def _backwards(at: str | None) -> float:
 
 
 def sort_programs(order: str, programs: Sequence[ListedFile]) -> tuple[ListedFile, ...]:
-    """Return the programs, sorted by the order with this name."""
+    """Return the programs, sorted by the criterion with the name ``order``."""
     return tuple(sorted(programs, key=SORT_ORDERS[order]))
 
 
@@ -122,9 +122,9 @@ ContentKey = tuple[str, float, int]
 
 
 class Thumbnail(NamedTuple):
-    """Small picture with 32 bits per pixel.
+    """Small picture with 32 bits per pixel: from the highest bits, alpha, red, green and blue.
 
-    From the highest bits down, these are alpha, red, green and blue. The first row is at the top.
+    The first row is at the top.
     """
 
     pixels: bytes

@@ -1,6 +1,6 @@
-"""The PROGRAMS page, with the list on the left.
+"""The PROGRAMS page, with the list on the left and the selected program on the right.
 
-Preview and details of the selected program are on the right.
+A preview and details of the selected program are shown.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ FULL_WIDTH_ROWS = 2  # rows at the end that use the whole width
 
 
 class ProgramDetailPanel(Panel):
-    """Panel of details in two columns, a label and a value."""
+    """Panel of a program's details in two columns, the labels and the values."""
 
     title = "DETAILS"
     program: RedrawingAttribute[ListedFile | None] = RedrawingAttribute(None)
@@ -71,7 +71,7 @@ class ProgramDetailPanel(Panel):
             painter.draw_text_line(value, text, 1.9, "text")
 
     def _draw_part(self, painter: ThemedPainter, height: float) -> None:
-        """Draw the finished part on the right, next to the short rows."""
+        """Draw the finished part on the right, next to the rows with short texts."""
         if self.part_thumbnail is None or height <= 0.0:
             return
         pixels, columns, rows = self.part_thumbnail
@@ -93,13 +93,13 @@ class PreviewPathView(PathView):
 
 
 class PreviewPlaneView(WorkingPlaneView):
-    """Preview of a mill program, with table, workpiece and path."""
+    """Preview of a mill program, with machine table, workpiece and path."""
 
     title = "PREVIEW"
 
 
 class ProgramsPage(ListPage):
-    """The PROGRAMS page, which shows its model and passes the keys to the model."""
+    """The PROGRAMS page, which displays its model and passes key presses to it."""
 
     NAME = page_table.PROGRAMS
     model: ProgramListModel

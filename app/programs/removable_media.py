@@ -1,4 +1,4 @@
-"""USB sticks and folders as sources of programs, with mounted media, free space and write errors.
+"""USB sticks and folders from which programs are imported, with free space and write errors.
 
 The list of mounts comes from the kernel (``/proc/self/mountinfo``). On systems without this list, each
 folder is tested for being a mount point.
@@ -31,9 +31,9 @@ _DISK_FULL_ERRORS = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 @dataclass(frozen=True, slots=True)
 class UsbStick:
-    """Mounted medium with its label, path and free space.
+    """Mounted removable medium, with its label and path.
 
-    ``free_bytes`` is the free space in bytes. ``is_read_only`` is set for a read-only medium.
+    ``free_bytes`` is the free space in bytes. ``is_read_only`` is True for a read-only medium.
     """
 
     label: str
@@ -197,7 +197,7 @@ MAX_LINES = 2000
 
 @dataclass(frozen=True, slots=True)
 class FolderLine:
-    """Line of the chooser, which is a location, a folder, the parent folder or a program."""
+    """Line of the folder chooser: a location, a folder, the parent folder or a program."""
 
     name: str
     path: Path
@@ -208,10 +208,10 @@ class FolderLine:
 
 @dataclass(slots=True)
 class FolderChooser:
-    """Chooser of folders.
+    """Chooser of a folder.
 
-    ``current_folder`` is the open folder, or None for the list of locations. ``list_lines`` can take a
-    while.
+    ``current_folder`` is the open folder, or None while the list of locations is shown. ``list_lines`` can
+    take a while.
     """
 
     home_folder: Path

@@ -1,4 +1,4 @@
-"""Run history, recorded from snapshots: runs with outcomes, cycle times, proofs and part counts."""
+"""History of program runs from snapshots: outcomes, cycle times, proofs and part counts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _FINAL_PHASES = frozenset({LoadingPhase.READY, LoadingPhase.REFUSED})
 
 @dataclass(slots=True)
 class RunHistory:
-    """Recorder of runs.
+    """Recorder of program runs.
 
     It examines every snapshot and posts to the store without waiting.
     """
@@ -44,7 +44,7 @@ class RunHistory:
     def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Record the runs and proofs that a snapshot shows.
 
-        This is called once a frame. TurnDesk reports separately if the store rejects a record.
+        This is called once a frame. If the store rejects a record, the error is reported elsewhere.
         """
         try:
             self._run(snapshot)
@@ -106,7 +106,7 @@ def _outcome(snapshot: Snapshot) -> str:
 
 
 def mark_interrupted_runs(run_records: RunRecords) -> None:
-    """Mark runs without an end as interrupted by a shutdown.
+    """Mark stored runs that have no end time as interrupted by a shutdown.
 
     This is called at startup.
     """
@@ -146,9 +146,9 @@ class PartCounter:
 
     @property
     def final_count(self) -> int:
-        """Return the count at which production ends, or 0 if it does not end.
+        """Return the count at which production ends, or 0 without a target.
 
-        This is the target of the active job if there is one, and otherwise the target of the program.
+        This is the target of the active job if it has one, and otherwise the target of the program.
         """
         return self.job_target_count or self.target_count
 
@@ -186,7 +186,7 @@ class PartCounter:
         self._stop_at(snapshot, post_command, show_message)
 
     def _send_count(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
-        """Send the count to the executor, which numbers the parts."""
+        """Send the part count to the executor, which numbers the parts."""
         if self.program_name and self.part_count not in {snapshot.made, self._made}:
             post(SetPartCount(self.part_count))
         self._made = self.part_count
@@ -239,7 +239,7 @@ class PartCounter:
         )
 
     def correct_count(self, change: int) -> None:
-        """Change the count by the number of parts that were made elsewhere or scrapped.
+        """Add to the count parts that were made elsewhere, or subtract scrapped parts.
 
         The count changes immediately and is written to the disk later. A later write error is not raised,
         and without an open store the count is not stored. Raise StoreError if the store is closed or

@@ -1,4 +1,4 @@
-"""HTML tables, drawings, style and page frame for reports and setup sheets."""
+"""HTML tables, drawings, styles and page head for reports and setup sheets."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ HTML_END = "</body></html>\n"
 
 
 def make_page_head(title: str, date_text: str, language: str) -> str:
-    """Return the HTML that precedes the first section.
+    """Return the HTML of a page up to its first section.
 
     ``language`` is an ISO 639-1 code.
     """
@@ -119,7 +119,7 @@ def make_drawing_block(drawing: str, caption: str) -> str:
 
 
 def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
-    """Return an HTML table of names and values.
+    """Return an HTML table with two columns, names and values.
 
     Names and values are escaped.
     """

@@ -1,4 +1,4 @@
-"""Drawings of a report as inline SVG: part before and after, path, location of a finding, and tool."""
+"""Drawings of a report as inline SVG: part before and after, path, place of a finding, and tool."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ PointMm = tuple[float, float]
 
 @dataclass(slots=True)
 class SvgDrawing:
-    """SVG drawing of a window in mm, at most ``max_width_px`` × ``max_height_px`` pixels in size.
+    """SVG drawing of a rectangular region in mm, at most ``max_width_px`` × ``max_height_px`` pixels.
 
-    ``lower_corner`` and ``upper_corner`` are the corners (z, radius) of the window.
+    ``lower_corner`` and ``upper_corner`` are the corners (z, radius) of the region.
     """
 
     lower_corner: PointMm
@@ -96,9 +96,9 @@ class SvgDrawing:
 def find_window(
     points: Sequence[PointMm], margin_mm: float, min_size_mm: float = 1.0
 ) -> tuple[PointMm, PointMm]:
-    """Return the window around the points with a margin in mm.
+    """Return the corners of the region that contains the points and a margin in mm.
 
-    The window is at least ``min_size_mm`` wide and high.
+    The region is at least ``min_size_mm`` wide and high.
     """
     zs, rs = [z for z, _ in points], [r for _, r in points]
     low, high = (min(zs) - margin_mm, min(rs) - margin_mm), (max(zs) + margin_mm, max(rs) + margin_mm)
@@ -151,10 +151,7 @@ def path(
 def draw_finding(
     move: TipMove, material: PartedPiece, tool: ToolShape | None, clamping: Clamping | None
 ) -> str:
-    """Return the drawing of a finding.
-
-    It shows the material before the move, the move, and the tool at its end.
-    """
+    """Return the drawing of a finding: the previous material, the move, and the tool at its end."""
     near = _find_bounds(move.points, material.outside_profile)
     drawing = SvgDrawing(
         *find_window(near, 3.0, 8.0), max_width_px=_FINDING_WIDTH, max_height_px=_FINDING_WIDTH
@@ -237,7 +234,7 @@ def _part(drawing: SvgDrawing, after: PartedPiece | None, sides: MilledSides | N
 def _draw_material(
     drawing: SvgDrawing, outside: Sequence[PointMm], bore: Sequence[PointMm] | None, css_class: str
 ) -> None:
-    """Draw both halves of a section."""
+    """Draw the material on both sides of the axis in a section."""
     for across in (1.0, -1.0):
         _half(drawing, outside, bore, css_class, across)
 
@@ -271,7 +268,7 @@ def _group_moves(moves: Sequence[TipMove]) -> Iterator[tuple[list[PointMm], str]
 
 
 def _find_bounds(points: Sequence[PointMm], outside: Sequence[PointMm]) -> list[PointMm]:
-    """Return the points of a move, limited to the vicinity of the material."""
+    """Return the points of a move, moved to the vicinity of the material if they are far away."""
     if not outside:
         return list(points[-1:])
     back, front = outside[-1][0] - _MAX_MARGIN_MM, outside[0][0] + _MAX_MARGIN_MM

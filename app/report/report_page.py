@@ -35,7 +35,7 @@ _MM_PER_INCH = 25.4
 
 
 class ProgramReport:
-    """Report section about one program."""
+    """Section of a report about one program."""
 
     def __init__(
         self,
@@ -286,12 +286,12 @@ class ProgramReport:
 
 
 def make_program_section(name: str, section: str) -> str:
-    """Return the section of one program with its heading."""
+    """Return the HTML section of one program with its heading."""
     return f"<section><h2>{escape(name)}</h2>{section}</section>\n"
 
 
 def make_unproved_section(reason: str) -> str:
-    """Return the section of a program that could not be proved."""
+    """Return the HTML section of a program that could not be proved."""
     return make_result_line("bad", "Not proved") + f"<p>{escape(reason)}</p>"
 
 

@@ -20,7 +20,7 @@ _MAX_STOPS = 500
 
 @dataclass(slots=True)
 class ToolTimes:
-    """Times of one tool in seconds, divided into cutting, rapid and remaining time."""
+    """Times of one tool in seconds: cutting, rapid and other time."""
 
     cutting_s: float = 0.0
     rapid_s: float = 0.0
@@ -34,7 +34,7 @@ class ToolTimes:
 
 @dataclass(frozen=True, slots=True)
 class PlannedStop:
-    """Program stop M00, or M01 if ``is_optional`` is set.
+    """Program stop M00, or M01 if ``is_optional`` is True.
 
     It has a line number, a time in seconds and a message to the operator.
     """

@@ -1,1 +1,1 @@
-"""Scope page that shows machine signals as curves over time, live and from records."""
+"""Scope page that shows machine signals as curves over time, live or from recordings."""

@@ -1,4 +1,4 @@
-"""Points of the scope's curves, reduced to one column per pixel, and the round ranges of the lanes."""
+"""Points of the scope's curves, reduced to pixel columns, and round ranges of the lanes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ MIN_SAMPLES_PER_COLUMN = 2.0  # number of samples per column above which columns
 
 @dataclass(frozen=True, slots=True)
 class CurvePoints:
-    """Points of a curve.
+    """Points of a curve to draw.
 
-    ``times_s`` are in seconds of the record's clock. If ``has_line_pairs`` is set, each pair of points is one
-    line. Otherwise ``is_joined_to_next`` marks the points that are connected to the next point.
+    ``times_s`` are in seconds of the record's clock. If ``has_line_pairs`` is True, each pair of points is
+    one line. Otherwise ``is_joined_to_next`` marks the points that are connected to the next point.
     """
 
     times_s: FloatArray
@@ -28,7 +28,7 @@ class CurvePoints:
 
 @dataclass(slots=True)
 class CurveColumns:
-    """Minimum and maximum of a curve in each column.
+    """Minimum and maximum of a curve in each column of time.
 
     Column n of ``column_numbers`` starts at n · ``width_s`` seconds.
     """
@@ -85,7 +85,7 @@ class CurveColumns:
         self.minima, self.maxima = self.minima[cut:], self.maxima[cut:]
 
     def make_points(self) -> CurvePoints:
-        """Return a vertical line for each column, and a horizontal line for each gap of a joined curve."""
+        """Return a vertical line per column, and lines that bridge the gaps of a continuous curve."""
         at = (self.column_numbers + 0.5) * self.width_s
         later = 1 + np.flatnonzero(
             (np.diff(self.column_numbers) > 1) & np.isfinite(self.preceding_samples[1:])

@@ -1,4 +1,4 @@
-"""Listing, saving, opening and exporting of scope records on the disk.
+"""Listing, saving, opening and exporting of scope recordings on the disk.
 
 All functions run on a worker. A full disk and an invalid file raise an error with a message for the
 operator.
@@ -28,14 +28,11 @@ _RESERVED_BYTES = 20_000_000  # bytes of disk space reserved for the store and t
 
 
 class RecordingFileError(CodedError):
-    """Failed file operation.
-
-    The message states the reason and the remedy.
-    """
+    """Failed file operation, with a message that states the reason and the remedy."""
 
 
 class RecordingFile(NamedTuple):
-    """Record file with its path, modification time and size in bytes."""
+    """File of a scope recording, with its path, modification time and size in bytes."""
 
     path: Path
     modified_time_s: float
@@ -63,7 +60,7 @@ WriteCsvTable = Callable[[ScopeRecord, Callable[[str], object]], None]
 
 @dataclass(slots=True)
 class RecordingStore:
-    """Folder of scope records, with functions that read and write records.
+    """Folder of scope recordings, with functions that read and write them.
 
     Errors are raised as RecordingFileError, or as an error whose text is a message for the operator.
     """
@@ -115,7 +112,7 @@ class RecordingStore:
         return path
 
     def write_picture(self, png: bytes) -> Path:
-        """Save a picture of the page and return its path.
+        """Save a PNG picture of the scope page and return its path.
 
         Raise RecordingFileError on failure.
         """
@@ -196,9 +193,9 @@ class _DraftFile:
 
 
 def find_zero_instant(record: ScopeRecord) -> float:
-    """Return the time of instant 0 of a record, in seconds of the record's clock.
+    """Return the zero time of a record (its trigger or alarm), in seconds of the record's clock.
 
-    This is the trigger or alarm, or the last sample if there is neither.
+    Without a trigger or alarm, the zero time is the last sample.
     """
     instant_text = record.about.get(ZERO_INSTANT_KEY, "")
     if not len(record.times_s):

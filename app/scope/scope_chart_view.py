@@ -1,4 +1,4 @@
-"""Chart of the scope, with one lane per quantity, one below the other, over a common time axis."""
+"""Chart of the scope, with one plot (lane) per quantity, stacked over a common time axis."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ _ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 class ScopeChart(Chart):
     """Chart of the scope.
 
-    ``show_picture`` draws a picture. The lanes are rebuilt if the picture contains different quantities.
+    ``show_picture`` draws a picture. If the picture contains other quantities than before, the lanes are
+    created again.
     """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
@@ -135,7 +136,7 @@ class ScopeChart(Chart):
         return rooms[0].united(rooms[-1]) if rooms else QRectF()
 
     def find_time(self, position: QPointF) -> float:
-        """Return the time at a chart position, in seconds of the window."""
+        """Return the time at a chart position, in seconds relative to the zero time of the picture."""
         room, sight = self.curve_area, self.picture
         share = (position.x() - room.x()) / max(1.0, room.width())
         return sight.begin_s + share * (sight.end_s - sight.begin_s)
@@ -155,7 +156,7 @@ class ScopeChart(Chart):
     # --- over the curves -----------------------------------------------------------------------------
 
     def drawForeground(self, painter: QPainter, rect: QRectF) -> None:
-        """Draw the names of the lanes, instant 0 of a record, and the cursors."""
+        """Draw the names of the lanes, the zero time of a record, and the cursors."""
         super().drawForeground(painter, rect)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
         if not self.plots or not self.curve_area.width():

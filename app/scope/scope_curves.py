@@ -25,7 +25,7 @@ ALARM_STATES = (MachineState.FAULT.value, MachineState.ESTOP.value)
 
 
 class LiveSamples(Protocol):
-    """Ring buffer of the samples of the last minutes, which any thread can read."""
+    """Ring buffer of the samples of the last few minutes, which any thread can read."""
 
     @property
     def channels(self) -> tuple[Channel, ...]:
@@ -69,10 +69,10 @@ class ScopeCurve:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScopePicture:
-    """Prepared picture of the scope.
+    """Prepared picture of the scope, with times relative to ``zero_s``, in seconds.
 
-    The times of the curves and of the window are in seconds relative to ``zero_s``. ``lane_ranges`` are the
-    ranges of the lanes in displayed units. ``cursor_values`` contains the values at both cursors by signal.
+    ``lane_ranges`` are the ranges of the lanes in displayed units. ``cursor_values`` contains the values at
+    both cursors by signal.
     """
 
     curves: tuple[ScopeCurve, ...] = ()
@@ -91,10 +91,10 @@ class ScopePicture:
 
 @dataclass(frozen=True, slots=True)
 class PictureRequest:
-    """Request for a picture, with signals, time window, width in pixels and units.
+    """Request for a picture: signals, time window, width in pixels and units.
 
-    ``begin`` and ``end`` are in seconds, relative to instant 0 of a record, or to the newest sample if the
-    curves are live.
+    ``begin`` and ``end`` are in seconds, relative to the zero time of a record or, if the curves are live,
+    to the newest sample.
     """
 
     signals: tuple[ScopeSignal, ...]
@@ -128,7 +128,7 @@ def convert_to_displayed(points: CurvePoints, scale: float, zero_s: float) -> Cu
 def find_lane_ranges(
     curves: Sequence[ScopeCurve], present_ranges: Mapping[Quantity, ValueRange], request: PictureRequest
 ) -> dict[Quantity, ValueRange]:
-    """Return the range of each lane.
+    """Return the vertical range of each lane.
 
     This is the range that the user has set, or a range that contains the curves.
     """
@@ -174,9 +174,9 @@ def find_constant_values(
 
 @dataclass(slots=True, eq=False)
 class RecordingCurves:
-    """Curves of one record, with a cache of derived columns.
+    """Curves of one record, with a cache of derived signal values.
 
-    ``zero_s`` is the time of instant 0 on the record's clock.
+    ``zero_s`` is the zero time of the record, in seconds of its clock.
     """
 
     record: ScopeRecord
@@ -210,9 +210,9 @@ class RecordingCurves:
         return tuple(found)
 
     def make_picture(self, request: PictureRequest, overlay: RecordingCurves | None = None) -> ScopePicture:
-        """Return the picture of a window.
+        """Return the picture of a time window.
 
-        An overlaid record is shifted so that both records have the same instant 0.
+        An overlaid record is shifted so that the zero times of both records coincide.
         """
         curves = self.make_curves(request)
         earlier = overlay.make_curves(request) if overlay is not None else ()
@@ -264,7 +264,7 @@ class RecordingCurves:
 
 @dataclass(slots=True, eq=False)
 class LiveCurves:
-    """Live curves that are extended with each picture.
+    """Curves of live samples, which are extended with each picture.
 
     The curves restart when the window, the size or the signals change.
     """

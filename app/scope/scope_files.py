@@ -16,12 +16,15 @@ from core.records.record import ScopeRecord
 
 @dataclass(slots=True)
 class ScopeFiles:
-    """Actions on the files of one scope."""
+    """File actions on the recordings of one scope."""
 
     scope_model: ScopeModel
 
     def make_visible_record(self) -> ScopeRecord | None:
-        """Return the record of the visible window. If the curves are live, return None with a message."""
+        """Return the record of the visible window, or None if the curves are live.
+
+        In that case, a message is shown.
+        """
         frozen = self.scope_model.frozen_curves
         if frozen is None:
             self.scope_model.desk.say(CURVES_ARE_LIVE_MESSAGE)
@@ -62,7 +65,7 @@ class ScopeFiles:
         self.reload_files()
 
     def reload_files(self) -> None:
-        """Update the list of files."""
+        """Update the list of recordings on the disk."""
         self.scope_model.file_worker.enqueue_work(
             self.scope_model.recording_store.list_files, self._listed, self.scope_model.desk.show_refusal
         )
@@ -101,9 +104,9 @@ class ScopeFiles:
         )
 
     def overlay_file(self, file: RecordingFile) -> None:
-        """Overlay an earlier record, aligned at instant 0.
+        """Overlay an earlier recording, with both zero times aligned.
 
-        If this record is already overlaid, remove it.
+        If this recording is already overlaid, remove it.
         """
         self.scope_model.desk.clear_prompt_line()
         if self.scope_model.overlay_name == file.path.name:

@@ -40,7 +40,7 @@ NO_SAMPLES_MESSAGE = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD"
 
 
 class SidePanel(Enum):
-    """The kinds of content for the area next to the curves."""
+    """Tables and values that the area next to the curves can show."""
 
     READINGS = "readings"
     CURVES = "curves"
@@ -101,12 +101,12 @@ class ScopeModel:
 
     @property
     def shown(self) -> tuple[ScopeSignal, ...]:
-        """Return the displayed signals in the order of the list."""
+        """Return the displayed signals in the order of the signal list."""
         return tuple(each for each in self.signals if each.key in self.selected_keys)
 
     @property
     def selected_signal(self) -> ScopeSignal | None:
-        """Return the signal on which the keys act, or None if no signal is displayed."""
+        """Return the signal to which the keys apply, or None if no signal is displayed."""
         shown = self.shown
         return shown[min(self.marked, len(shown) - 1)] if shown else None
 
@@ -149,7 +149,7 @@ class ScopeModel:
         )
 
     def _request_picture(self, wanted: PictureRequest) -> None:
-        """Request the next live picture, or freeze the curves when the window of the trigger is full."""
+        """Request the next live picture, or freeze the curves when all samples after the trigger exist."""
         carried, live, overlay = self._carried, self.live_samples, self.overlay_curves
         if carried is None or live is None:
             return
@@ -178,7 +178,7 @@ class ScopeModel:
         return recent and asked == wanted and snapshot.equals_except_time(self.desk.read_snapshot())
 
     def _accept_picture(self, sight: ScopePicture, of: tuple[Trigger, float] | None = None) -> None:
-        """Store a picture.
+        """Store a picture from the worker.
 
         ``of`` is the trigger of the request. The picture is ignored if the trigger has changed since then.
         """
@@ -247,9 +247,9 @@ class ScopeModel:
     def show_recording(
         self, record: ScopeRecord, recording_name: str, window: tuple[float, float] | None = None
     ) -> None:
-        """Show a record.
+        """Show a recorded period instead of live curves.
 
-        ``window`` is in seconds relative to instant 0 of the record. None shows the whole record.
+        ``window`` is in seconds relative to the zero time of the record. None shows the whole record.
         """
         if not len(record.times_s):
             self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
@@ -294,7 +294,7 @@ class ScopeModel:
         self.selected_keys = (*self.selected_keys, signal.key)
 
     def mark(self, index: int) -> None:
-        """Select the curve on which the keys act."""
+        """Select the curve to which the keys apply."""
         self.marked = max(0, min(index, len(self.shown) - 1))
 
     def stretch_lane(self, steps: int, quantity: Quantity | None = None) -> None:
@@ -309,7 +309,7 @@ class ScopeModel:
         self._change_range(quantity, lambda low, high: _about(low, high, 1.0 / factor))
 
     def shift_lane(self, steps: float, quantity: Quantity | None = None) -> None:
-        """Move the range of a lane up by a number of steps of 10 %."""
+        """Move the range of a lane up by a number of steps of 10 % of the range."""
 
         def change(low: float, high: float) -> ValueRange:
             by = PAN_STEP_FRACTION * steps * (high - low)
@@ -341,11 +341,11 @@ class ScopeModel:
         self.time_window.zoom_window(steps, 0.0 if self.is_live else time_s)
 
     def magnify_window(self, factor: float, time_s: float) -> None:
-        """Magnify the window by the factor of a pinch gesture, around a time."""
+        """Magnify the time window by the factor of a pinch gesture, around a time."""
         self.time_window.magnify(factor, 0.0 if self.is_live else time_s)
 
     def pan_window(self, shift_s: float) -> None:
-        """Move the window by a number of seconds.
+        """Move the time window by a number of seconds.
 
         If the curves are live, freeze them instead.
         """
@@ -355,7 +355,7 @@ class ScopeModel:
         self.time_window.pan_window(shift_s)
 
     def pan_by_steps(self, step_count: int) -> None:
-        """Move the window by a number of steps of 10 %."""
+        """Move the time window by a number of steps of 10 % of its width."""
         self.pan_window(step_count * PAN_STEP_FRACTION * self.time_window.span_s)
 
     # --- cursors -------------------------------------------------------------------------------------

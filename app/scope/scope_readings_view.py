@@ -25,7 +25,7 @@ _UPDATE_INTERVAL_S = 0.1  # seconds between two updates of a live value
 
 
 class ScopeReadings(RowPanel):
-    """List with one row per curve.
+    """List of the current values, with one row per curve.
 
     A touch selects a row.
     """
@@ -79,10 +79,7 @@ class ScopeReadings(RowPanel):
         return (f"{formats.format_fixed(value, places)} {unit}" if math.isfinite(value) else "",)
 
     def scroll_by(self, rows: int) -> None:
-        """Select the curve that is a number of rows further down.
-
-        Negative numbers move the selection up.
-        """
+        """Select the curve a number of rows further down, or further up if it is negative."""
         self._choose(self.scope_model.marked + rows)
 
     @property

@@ -1,4 +1,4 @@
-"""Tables next to the curves of the scope: all signals, the trigger, and the stored records."""
+"""Tables next to the curves of the scope: all signals, the trigger, and the stored recordings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _RELEASE, _SIGNAL, _LEVEL, _PLACE = range(4)  # rows of the trigger
 class ScopeTables:
     """Tables of the scope page.
 
-    Enter or a second touch executes the selected row.
+    Enter or a second touch executes the action of the selected row.
     """
 
     scope_model: ScopeModel
@@ -180,9 +180,9 @@ class ScopeTables:
         return self.needs_value and self.input_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key.
+        """Handle a key of the table.
 
-        Arrow keys select a row, Enter executes the row, and digits edit the entry.
+        Arrow keys select a row, Enter executes the action of the row, and digits edit the entry.
         """
         if self.needs_value and self.input_field.handle_key(key):
             self.scope_model.desk.clear_prompt_line()
@@ -214,7 +214,7 @@ class ScopeTables:
             self.execute_row()
 
     def execute_row(self) -> None:
-        """Execute the selected row."""
+        """Execute the action of the selected row."""
         scope = self.scope_model
         scope.desk.clear_prompt_line()
         if scope.side_panel is SidePanel.CURVES:
@@ -268,10 +268,7 @@ class ScopeTables:
         self.input_field.text = ""
 
     def handle_escape(self) -> bool:
-        """Go back one step.
-
-        Return False if no step remains, because the readings are shown without cursors.
-        """
+        """Go back one step, or return False if only the values are shown, without cursors."""
         scope = self.scope_model
         if scope.desk.prompt_notice:
             scope.desk.clear_prompt_line()

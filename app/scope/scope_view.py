@@ -47,7 +47,7 @@ def _import_chart_class() -> type[ScopeChart]:
 
 
 class ScopeHeader(Panel):
-    """Header line with sample rate, window, displayed data and trigger."""
+    """Header line with the sample rate, the time window, the data source and the trigger."""
 
     background_color = "panel"
     header_texts: RedrawingAttribute[tuple[str, str, bool]] = RedrawingAttribute(("", "", False))
@@ -64,10 +64,7 @@ class ScopeHeader(Panel):
 
 
 class CurveArea(QWidget):
-    """Area that handles touch, wheel and mouse.
-
-    The chart in this area only draws.
-    """
+    """Area around the chart that handles touch, wheel and mouse. The chart itself only draws."""
 
     accessible_name = "CHART"
 
@@ -88,7 +85,7 @@ class CurveArea(QWidget):
             self.chart.setGeometry(self.rect())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom the time around the pointer, or zoom the lane under the pointer if Shift is pressed."""
+        """Zoom the time axis around the pointer or, with Shift, the lane under the pointer."""
         notches = event.angleDelta().y() or event.angleDelta().x()
         steps = round(notches / _WHEEL_NOTCH) or (1 if notches > 0 else -1)
         if self.chart is None:
@@ -155,7 +152,7 @@ class CurveArea(QWidget):
                 )
 
     def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
-        """Zoom the time if two fingers move horizontally, or the lane if they move vertically."""
+        """Zoom the time axis if two fingers move horizontally, or the lane if they move vertically."""
         self._down = None
         spans_px = (abs(one.x() - other.x()), abs(one.y() - other.y()))
         before, self._spread = self._spread, spans_px
@@ -173,7 +170,7 @@ class CurveArea(QWidget):
 
 
 class ScopePage(ListPage):
-    """The scope page, which shows its model and passes the keys to the model."""
+    """The scope page, which displays its model and passes key presses to it."""
 
     NAME = page_table.SCOPE
     model: _ScopeKeys
@@ -218,7 +215,7 @@ class ScopePage(ListPage):
         return self.make_function_key_labels({}, self.make_function_keys())
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the scope, or of the list of records if the list is open.
+        """Return the function keys of the scope, or of the list of recordings while it is open.
 
         F8 is included only if the ANALYSES page exists.
         """
@@ -275,10 +272,7 @@ class ScopePage(ListPage):
         return self.scope_tables.needs_value
 
     def handle_escape(self) -> bool:
-        """Go back one step.
-
-        Return False if no step remains, because only the curves are shown.
-        """
+        """Go back one step, or return False if only the curves are shown."""
         return self.scope_tables.handle_escape()
 
     def _analyse(self) -> None:
@@ -401,7 +395,7 @@ class _ScopeKeys:
 
 
 def _find_view_key(sight: ScopePicture) -> object:
-    """Return a key of a picture. Pictures with the same appearance have equal keys."""
+    """Return a value that is equal for two pictures if they have the same appearance."""
     if sight.constant_values is None:
         return sight
     level_texts = [

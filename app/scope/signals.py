@@ -22,7 +22,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Quantity(Enum):
-    """The measured quantities, each with its name, metric unit, inch unit and minimum range.
+    """Measured quantities, each with its name, metric unit, inch unit and minimum range.
 
     The chart has one lane per quantity.
     """
@@ -106,10 +106,11 @@ def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class ScopeSignal:
-    """One curve, with its channel, its calculation, and the calculation window ``span_s`` in seconds.
+    """Signal that the scope can show as a curve, calculated from one channel.
 
-    ``axis_letter`` is the axis, or empty for signals of the machine. ``display_name`` is the English name.
-    ``is_untranslated`` is set if the name comes from the machine file and is not translated.
+    ``span_s`` is the length of the calculation window in seconds. ``axis_letter`` is the axis, or empty for
+    signals of the machine. ``display_name`` is the English name. ``is_untranslated`` is True if the name
+    comes from the machine file.
     """
 
     key: str
@@ -206,7 +207,7 @@ _MACHINE_SIGNALS = (
 
 
 def list_signals(channels: Sequence[Channel]) -> tuple[ScopeSignal, ...]:
-    """Return all signals that the channels provide, in the order of the list."""
+    """Return all signals that the channels provide, in the order of the signal list."""
     there = {each.name: each for each in channels}
     found: list[ScopeSignal] = []
     for channel in channels:
@@ -224,7 +225,7 @@ def list_signals(channels: Sequence[Channel]) -> tuple[ScopeSignal, ...]:
 
 
 def find_default_keys(signals: Sequence[ScopeSignal]) -> tuple[str, ...]:
-    """Return the keys of the signals that are shown first.
+    """Return the keys of the signals that the scope shows initially.
 
     These are the following errors and velocities of the axes, and the spindle. There are at most as many as
     the list on the smallest screen can show.

@@ -22,7 +22,7 @@ PAN_STEP_FRACTION = 0.1  # ratio of the window per step
 class TimeWindow:
     """Time window of the scope, in seconds.
 
-    The times are relative to instant 0 of the record, or to the newest sample if the curves are live.
+    The times are relative to the zero time of the record or, if the curves are live, to the newest sample.
     ``limits_s`` is the largest possible window, from the start to the end of the record.
     """
 
@@ -86,7 +86,7 @@ class TimeWindow:
 
 @dataclass(slots=True)
 class TimeCursors:
-    """Two cursors with times in seconds.
+    """Two time cursors, with their times in seconds.
 
     ``active_index`` is the index of the cursor that the keys move, or -1 while the cursors are hidden.
     """
@@ -170,7 +170,7 @@ class Trigger:
         return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.trigger_event, "")
 
     def with_next_position(self) -> Trigger:
-        """Return a copy with the next position of the event in the window."""
+        """Return a copy in which the event is at the next of the possible positions in the window."""
         at = (
             TRIGGER_POSITIONS.index(self.fraction_before) if self.fraction_before in TRIGGER_POSITIONS else -1
         )
@@ -179,7 +179,7 @@ class Trigger:
     def find_trigger_time(
         self, times: FloatArray, values: FloatArray, alarm_values: frozenset[int]
     ) -> float | None:
-        """Return the time of the first sample that fires the trigger, or None if no sample does.
+        """Return the time of the first sample that fires the trigger, or None if no sample fires it.
 
         The first of the samples cannot fire the trigger. ``alarm_values`` contains the values of the
         channel ``state`` that indicate an alarm or an E-stop.

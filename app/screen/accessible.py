@@ -1,7 +1,7 @@
-"""Accessible interfaces of the painted parts of the screen, for assistive technology and tests.
+"""Accessible interfaces of the custom-painted screen parts, for assistive technology and tests.
 
-Qt gives every standard widget a name and a role. A ``Panel`` paints its own texts and targets. This module
-therefore provides an interface for the panel, and a child for each target.
+Qt gives every standard widget a name and a role. A ``Panel`` paints its own texts and touch targets. This
+module therefore provides an interface for the panel, and a child for each target.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
 
 
 def announce_text(widget: QWidget, text: str) -> None:
-    """Let a screen reader speak a text that has appeared.
+    """Make a screen reader speak a text that has appeared.
 
     Without a screen reader, this does nothing.
     """
@@ -51,7 +51,7 @@ def announce_text(widget: QWidget, text: str) -> None:
 
 
 class AccessiblePart(QAccessibleWidget):
-    """A page or another widget that contains panels.
+    """Accessible interface of a page or another widget that contains panels.
 
     A part without an ``accessible_name`` uses the name of its parent widget.
     """
@@ -72,7 +72,10 @@ class AccessiblePart(QAccessibleWidget):
 
 
 class AccessiblePanel(AccessiblePart):
-    """A panel with its title as name, its texts as description, and its targets as children."""
+    """Accessible interface of a panel, whose children are the touch targets.
+
+    Its name is the title of the panel, and its description is the other texts.
+    """
 
     def __init__(self, panel: Panel) -> None:
         super().__init__(panel, Role.List if panel.is_list else Role.Grouping)
@@ -120,14 +123,14 @@ class AccessiblePanel(AccessiblePart):
 
 
 class _PressAction(QAccessibleActionInterface):
-    """Action that presses a target, like a touch."""
+    """Accessible action that presses a target, like a touch."""
 
     def __init__(self, spot: AccessibleTarget) -> None:
         super().__init__()
         self._spot = spot
 
     def actionNames(self) -> list[str]:
-        """Return the press action, or no action if the control can be dragged."""
+        """Return the press action, or no action if the target can be dragged."""
         held = self._spot.isValid() and self._spot.target.on_press is ignore_press
         return [] if held else [QAccessibleActionInterface.pressAction()]
 
@@ -142,7 +145,7 @@ class _PressAction(QAccessibleActionInterface):
 
 
 class AccessibleTarget(QAccessibleInterface):
-    """One target of a panel, identified by its index.
+    """Accessible interface of one touch target of a panel, identified by its index.
 
     The returned data always describes the target as it was last painted.
     """
@@ -221,7 +224,7 @@ class AccessibleTarget(QAccessibleInterface):
         return self._press
 
     def interface_cast(self, kind: QAccessible.InterfaceType) -> MaybeInterface:
-        """Return the requested accessible interface, or a null pointer.
+        """Return the requested accessible interface, or a null pointer if it does not exist.
 
         Qt needs a null pointer, because it would treat None as the address of an interface.
         """

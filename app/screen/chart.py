@@ -45,7 +45,7 @@ def make_line_pen(color: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> 
 
 
 class ChartAxis(pg.AxisItem):  # type: ignore[misc]
-    """An axis whose numbers have TurnDesk's format, with a true minus sign and no SI prefix."""
+    """Axis with numbers in TurnDesk's format, with a true minus sign and no SI prefix."""
 
     def __init__(self, orientation: str) -> None:
         super().__init__(orientation)
@@ -66,8 +66,8 @@ class ChartAxis(pg.AxisItem):  # type: ignore[misc]
 class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
     """One plot of a chart, with curves, a left axis and a bottom axis.
 
-    Its owner sets the ranges. This class replaces the PlotItem of pyqtgraph, which spends three quarters of
-    its time on menus that are not used here.
+    The owner of the plot sets the ranges. This class replaces the PlotItem of pyqtgraph, which spends three
+    quarters of its time on menus that are not used here.
     """
 
     def __init__(self) -> None:
@@ -152,7 +152,7 @@ def set_curve_points(curve: pg.PlotCurveItem, x: FloatArray, y: FloatArray, conn
 
 
 class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
-    """A column of plots.
+    """Chart that consists of plots, one below the other.
 
     Call ``apply_theme`` when the theme or the size of the window changes.
     """

@@ -1,4 +1,4 @@
-"""List of a programming language's codes, for the editor and MDI."""
+"""List of NC codes that can be inserted, for the editor and MDI."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ class CodeChoiceList(RowPanel):
         return (len(lines) * EXAMPLE_LINE_HEIGHT + 1.4) * self.theme.unit_px if lines else 0.0
 
     def _find_sketch_height(self) -> float:
-        """Return the height of a drawing in pixels, or 0 without a drawing.
+        """Return the height of a sketch of the code in pixels, or 0 without a sketch.
 
-        The base class has no drawing. Subclasses may override this.
+        The base class has no sketch. Subclasses may override this.
         """
         return 0.0
 

@@ -1,4 +1,4 @@
-"""Test whether a display can be opened, in a child process.
+"""Test in a child process of whether Qt can open the display.
 
 Qt aborts the process if it cannot open the display. A missing X server, compositor, library or Qt platform
 would therefore end the program with a core dump. This module returns an error text instead.

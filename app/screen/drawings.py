@@ -1,4 +1,4 @@
-"""Drawings of tool outlines and tips, and of sketches whose dimensions are input fields."""
+"""Drawings of tool outlines and tool tips, and of sketches with dimensions for input."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ _DRAWING_MARGIN = 5.0  # Units around the drawing, for dimensions.
 class SketchPanel(Panel):
     """Panel that draws a sketch with its dimensions.
 
-    ``displayed`` contains the sketch, the values by dimension word, the word of the selected field, and the
-    words of fields with errors.
+    ``displayed`` contains the sketch, the (word, value) pairs of its dimensions, the word of the selected
+    field, and the words of fields with errors.
     """
 
     title = "DRAWING"
@@ -175,7 +175,7 @@ class SketchPanel(Panel):
 
 
 def _is_diameter(dim: Dimension) -> bool:
-    """Return whether the dimension line crosses the axis at a right angle."""
+    """Return whether a dimension is a diameter, because its line crosses the axis at a right angle."""
     return dim.end is not None and dim.start[1] < 0.0 < dim.end[1] and dim.start[0] == dim.end[0]
 
 
@@ -257,7 +257,7 @@ _FLANK_ANGLE = 0.7  # Radians from the tool's axis to its flanks.
 
 
 def draw_tool_tip(painter: ThemedPainter, box: QRectF, quadrant: int, color: str = "text") -> None:
-    """Draw a tool tip: its body, its nose circle, and a dot at the point for which X and Z are set."""
+    """Draw a tool tip with its body, its nose circle, and a dot at the point that X and Z refer to."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
     z, x = TIP_DIRECTIONS[quadrant]  # X+ points down on the screen.

@@ -1,4 +1,4 @@
-"""Input fields with a question and the entered text, and touch keyboards for them."""
+"""Input fields with a prompt and the entered text, and touch keyboards for them."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ _ARROW_SIGNS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→"}
 
 
 class LetterPad(Panel):
-    """A touch keyboard whose keys act like those of the real keyboard.
+    """Touch keyboard whose keys act like those of a hardware keyboard.
 
-    The pad is hidden at first.
+    The keyboard is hidden at first.
     """
 
     accessible_name = "KEYBOARD"
@@ -68,7 +68,7 @@ class LetterPad(Panel):
         return self.theme.find_key_rows_height(len(self._rows))
 
     def set_target_field(self, text_field: QWidget) -> None:
-        """Keep the focus in this standard field when a key of the pad is touched.
+        """Keep the focus in this standard text field when a key of the touch keyboard is pressed.
 
         Otherwise Qt would give the focus to the window.
         """
@@ -103,10 +103,9 @@ def send_key(key: str, widget: QWidget) -> None:
 
 @dataclass(frozen=True, slots=True)
 class EntryTexts:
-    """The texts of an entry.
+    """Texts of an entry panel.
 
-    The texts are the subject, the question, the input text, the change (old → new), and a hint about other
-    keys.
+    They are the subject, the prompt, the input text, the change (old → new), and a hint about further keys.
     """
 
     subject_text: str = ""
@@ -121,7 +120,7 @@ class EntryTexts:
 
 
 class EntryPanel(Panel):
-    """A panel with one input field, which is redrawn when one of its texts changes."""
+    """Panel with one input field. It is redrawn when one of its texts changes."""
 
     background_color = "panel"
     entry_texts = RedrawingAttribute(EntryTexts())
@@ -154,7 +153,7 @@ class EntryPanel(Panel):
 def draw_entry_text(
     painter: ThemedPainter, area: QRectF, text: str, *, height_units: float = 2.8, has_cursor: bool = True
 ) -> None:
-    """Draw an input text, ``size`` theme units high, with a caret if the field has the focus.
+    """Draw an input text, ``height_units`` theme units high, with a caret if ``has_cursor`` is True.
 
     A rejected text is drawn as selected, because the next character replaces it.
     """
@@ -217,18 +216,18 @@ class NumberPad(LetterPad):
         page_key: tuple[str, str] | None,
         parent: QWidget,
     ) -> None:
-        """Create the pad.
+        """Create the number pad.
 
-        ``page_key`` is the name and label of the page's own key. None leaves its position empty.
+        ``page_key`` is the name and label of a key that the page adds, or None for no such key.
         """
         super().__init__(theme, press, parent, _NUMBER_KEYS)
         self.page_key = page_key
         self.show()
 
     def draw_pad_key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
-        """Draw one key.
+        """Draw one key of the number pad.
 
-        The position of the page's own key remains empty if the page has no such key.
+        The position of the key that the page adds remains empty if the page adds no key.
         """
         key, shown = (
             (self.page_key or ("", "")) if key == _PAGE_KEY else (key, _KEY_LABELS.get(key, key.upper()))

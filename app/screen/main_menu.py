@@ -1,4 +1,4 @@
-"""The main menu (F1), with a large target for each page and the key that opens it."""
+"""The main menu (F1), with a large touch target for each page and the key that opens the page."""
 
 from __future__ import annotations
 

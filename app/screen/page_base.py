@@ -71,7 +71,7 @@ _LABELS: Mapping[str, Mapping[str, str]] = {
 
 
 def find_key_label(language: str, label: str) -> str:
-    """Return the key label that is used on a machine with this programming language."""
+    """Return the text for a key label on a machine with this programming language."""
     return _LABELS.get(language, {}).get(label, label)
 
 
@@ -128,9 +128,9 @@ class Page(QWidget):
         return {}
 
     def handle_key_press(self, _event: QKeyEvent) -> bool:
-        """Handle a key press before all other parts.
+        """Handle a key press before the window and its other parts.
 
-        Return False to let the other parts handle the key.
+        Return False to let those handle the key.
         """
         return False
 
@@ -141,10 +141,10 @@ class Page(QWidget):
         """
 
     def stop_held_actions(self) -> None:
-        """End the actions of keys held down, because another key or touch will act next."""
+        """End the actions that last while a key is held down, because another key or touch acts next."""
 
     def release_all(self) -> None:
-        """End all actions of keys held down, because no more key releases will arrive."""
+        """End the actions that last while a key is held down, because no key releases will arrive."""
 
     def handle_key(self, _key: str) -> bool:
         """Handle a key as text input.
@@ -183,14 +183,11 @@ class Page(QWidget):
         return False
 
     def find_pending_question(self) -> str:
-        """Return a question of the page that must always be visible.
-
-        Return an empty string if there is no question.
-        """
+        """Return a question that must always be visible, or an empty string if there is none."""
         return ""
 
     def prompt_text(self) -> str:
-        """Return the page's prompt, or an empty string to show the prompt of the machine state."""
+        """Return the page's prompt, or an empty string to show the prompt for the machine state instead."""
         return ""
 
     def can_open(self) -> bool:
@@ -204,7 +201,7 @@ class Page(QWidget):
         """
 
     def try_leave(self) -> bool:
-        """Return whether another page may replace this page.
+        """Prepare for closing, and return whether another page may replace this page.
 
         If not, show the reason on the prompt line.
         """
@@ -277,7 +274,7 @@ class ModelPage(Page):
 
 
 class HeaderKey(NamedTuple):
-    """A touch target above the editor's text. A touch opens the panel.
+    """Touch target above the editor's text. A touch opens the editor panel.
 
     ``label`` is the text of the target. ``name`` is the name of the equivalent key.
     """
@@ -302,14 +299,15 @@ class EditorPanel(QWidget):
         self.hide()
 
     def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:  # noqa: ARG002
-        """Return the targets above the text of a program with this name, from right to left."""
+        """Return the touch targets above the text of this program, from right to left."""
         return ()
 
     def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:  # noqa: ARG002
-        """Open the panel for this text.
+        """Open the panel for this program text.
 
-        Return the reason if this is not possible. ``line_number`` is the line of the cursor, from 1.
-        ``key_name`` is the name of the pressed key, or an empty string if a program is created from a file.
+        Return an empty string, or the reason if this is not possible. ``line_number`` is the line of the
+        cursor, from 1. ``key_name`` is the name of the pressed key, or an empty string if a program is
+        created from a file.
         """
         return ""
 

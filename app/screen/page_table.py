@@ -1,4 +1,4 @@
-"""The table of all pages of the main window, with the preloading of pages before they are first opened."""
+"""Table of all pages of the main window, and loading of the pages before they are first opened."""
 
 from __future__ import annotations
 
@@ -211,9 +211,9 @@ def has_page(name: str) -> bool:
 
 
 def import_page_classes(entry: PageDescription) -> None:
-    """Import the classes that a page needs.
+    """Import the classes of a page.
 
-    This runs on a worker, so that the page then opens without delay.
+    This runs on a worker, so that the page later opens without delay.
     """
     for dotted in (entry.view_class, entry.model_class, *entry.deferred_modules):
         if dotted:
@@ -223,7 +223,7 @@ def import_page_classes(entry: PageDescription) -> None:
 def make_page(name: str, host: PageHost, parent: QWidget) -> Page:
     """Create the page with this name.
 
-    Raise RuntimeError if its model is not attached.
+    Raise RuntimeError if the model of the page does not exist yet.
     """
     entry = _ENTRIES_BY_NAME[name]
     view = import_class(entry.view_class)
@@ -278,7 +278,7 @@ def batch_names(names: list[str]) -> Iterator[list[str]]:
 
 
 class PagePreloader:
-    """Preloader that loads the pages in slices while TurnDesk is idle.
+    """Preloader that imports and prepares the pages in slices while TurnDesk is idle.
 
     It is closed together with TurnDesk.
     """

@@ -1,4 +1,4 @@
-"""Base classes of the painted parts of the screen, which have a frame with a title, and touch targets."""
+"""Base classes of the custom-painted parts of the screen, with a titled frame and touch targets."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ class RedrawingAttribute(Generic[T]):
 
 
 def ignore_press() -> None:
-    """Do nothing, because assistive technology cannot drag a control."""
+    """Do nothing, as the press action of a target that assistive technology cannot drag."""
 
 
 class TouchTarget(NamedTuple):
-    """A touch target of a panel.
+    """Touch target of a panel.
 
-    In the accessible name, ``name`` precedes the painted texts. See ``Panel.describe_target``.
+    In the accessible name, ``name`` comes before the painted texts. See ``Panel.describe_target``.
     """
 
     box: QRectF
@@ -155,12 +155,12 @@ class Panel(QWidget):
         return [(box, text) for box, text in self._written or () if text]
 
     def describe_target(self, target: TouchTarget) -> str:
-        """Return the accessible name of a target, with its name and the texts that are painted on it."""
+        """Return the accessible name of a target: its name, and the texts that are painted on it."""
         texts = (text for box, text in self.read_painted_texts() if target.box.contains(box.center()))
         return "  ".join((*([tr(target.name)] if target.name else ()), *texts))
 
     def describe_content(self) -> str:
-        """Return all texts outside the targets, without the title."""
+        """Return all painted texts outside the touch targets, without the title."""
         return "  ".join(
             text
             for box, text in self.read_painted_texts()
@@ -188,7 +188,7 @@ class Panel(QWidget):
         is_raw: bool = False,
         margin: float = 0.0,
     ) -> None:
-        """Draw a touch key with its label in the center, and register it as a target."""
+        """Draw a touch key with a centered label, and register the key as a target."""
         painter.fill_rect(box, "key")
         painter.draw_text_line(box, label, size, color, at=ALIGN_CENTER, raw=is_raw, margin=margin)
         self.add_target(box, press)
@@ -198,12 +198,12 @@ class Panel(QWidget):
         return QRectF(self.rect())
 
     def inside(self) -> QRectF:
-        """Return the rectangle inside a frame with a title, in pixels."""
+        """Return the rectangle inside the frame and below its title, in pixels."""
         u = self.theme.unit_px
         return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
     def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
-        """Draw a frame with its title in the top edge, as in text-mode programs."""
+        """Draw a frame with a title in its top edge, as in text-mode programs."""
         look, u, title = self.theme, self.theme.unit_px, tr(title)
         self._titled = title
         top = 1.0 * u
@@ -236,7 +236,7 @@ MOUSE_TOUCH_ID = -1  # Touch number of the mouse.
 
 @dataclass(frozen=True, slots=True)
 class TouchControl:
-    """A touch target with actions for pressing, moving and releasing."""
+    """Touch control with actions for pressing it, moving the finger and releasing it."""
 
     box: QRectF
     on_press: Callable[[QPointF], None]
@@ -294,7 +294,7 @@ class TouchPanel(Panel):
         return len(self._held)
 
     def release_mouse(self) -> None:
-        """Release the control that the mouse holds, because the release event of the button was lost."""
+        """Release the control that the mouse has pressed, because the button's release event was lost."""
         self._up(MOUSE_TOUCH_ID)
 
     def release_all(self) -> None:

@@ -48,10 +48,7 @@ _SVG = re.compile(r'<svg role="img" width="(\d+)" height="(\d+)".*?</svg>', re.D
 
 
 class PdfWriter:
-    """A PDF file that is written page by page.
-
-    Raises OSError if writing fails.
-    """
+    """Writer of a PDF file, page by page. It raises OSError if writing fails."""
 
     def __init__(self, path: Path, title: str, paper_size: PaperSize) -> None:
         _make_application()
@@ -125,7 +122,7 @@ class PdfWriter:
         sync_file(self._path)
 
     def discard_file(self) -> None:
-        """Close the unfinished file, which will not be used."""
+        """Close the incomplete file, which will not be used."""
         if self._painter.isActive():
             self._painter.end()
         self._file.close()
@@ -163,7 +160,7 @@ class _SvgObjects(QPyTextObject):
         self._kept: list[tuple[QSizeF, str]] = []
 
     def add_svg(self, found: re.Match[str]) -> str:
-        """Store a drawing of the HTML, and return the image tag that replaces it."""
+        """Store an SVG drawing from the HTML, and return the image tag that replaces it."""
         wide, high = float(found[1]), float(found[2])
         share = min(1.0, self._width / wide)
         self._kept.append((QSizeF(wide * share, high * share), found[0]))

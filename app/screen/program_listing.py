@@ -1,4 +1,4 @@
-"""The program window, with source lines, the current line highlighted, and the generated block below it."""
+"""The program listing, with the current line highlighted and the generated block below it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROW, MM = 2.9, 7.0  # Line spacing in units, and its maximum in millimeters.
 
 
 class ProgramListing(RowPanel):
-    """The list of source lines.
+    """List of the program's source lines.
 
     Only visible lines are painted, so a long program takes no extra time.
     """
@@ -48,9 +48,10 @@ class ProgramListing(RowPanel):
             self.update()
 
     def show_run(self, active_line: int, block_text: str, next_block_text: str) -> None:
-        """Show the executed line (0 for none), the generated block and the next block.
+        """Show the executed line, the generated block and the next block.
 
-        The next block is hidden if it equals the next source line.
+        ``active_line`` is 0 while no line is executed. The next block is hidden if it equals the next
+        source line.
         """
         if next_block_text and any(
             text.startswith(next_block_text) for text in self._lines[active_line : active_line + 1]
@@ -75,19 +76,22 @@ class ProgramListing(RowPanel):
         return tuple(filter(None, (self._block, self._next))) if self._block else ()
 
     def follow_run(self) -> None:
-        """Make the listing scroll with the run again."""
+        """Make the listing scroll with the running program again."""
         self.follows_run = True
 
     def scroll_by(self, rows: int) -> None:
         """Scroll by a number of rows.
 
-        The listing then no longer follows the run.
+        The listing then no longer follows the running program.
         """
         self.follows_run = False
         super().scroll_by(rows)
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the visible program lines, and scroll to the current line if the listing follows the run."""
+        """Draw the visible program lines.
+
+        If the listing follows the running program, first scroll to the current line.
+        """
         u = self.theme.unit_px
         count = len(self._lines)
         title = Message("PROGRAM  ·  {count} LINES", count=count) if count else "PROGRAM"

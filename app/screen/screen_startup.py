@@ -40,10 +40,12 @@ def run_screen(
 ) -> int:
     """Show the screen until it is closed, and return the exit status.
 
-    ``machine`` is a machine file. ``program_file`` is a program to load at the start. ``offsets_file`` is
-    an offsets file that replaces the stored offsets. ``build_model`` creates the model. By default, the
-    standard model is built. With ``is_kiosk``, the window fills the screen and cannot be closed by hand. An
-    exception of ``build_model`` is raised here after the window has closed.
+    - ``machine``: a machine file.
+    - ``program_file``: a program to load at the start.
+    - ``offsets_file``: an offsets file that replaces the stored offsets.
+    - ``build_model``: function that creates the model. By default, the standard model is built. Its
+      exception is raised here after the window has closed.
+    - ``is_kiosk``: whether the window fills the screen and cannot be closed by hand.
     """
     build_model = build_model or _import_builder(machine, offsets_file)
     app = _application(theme)
@@ -68,7 +70,7 @@ def run_screen(
 
 
 class _Startup:
-    """The steps that follow the first painting of the window."""
+    """Startup steps that follow the first painting of the window."""
 
     def __init__(self, window: MainWindow, build: BuildModel, program: str | None) -> None:
         self._window, self._build, self._program = window, build, program
@@ -92,7 +94,7 @@ class _Startup:
     def _listen_later(self) -> None:
         """Start ``_listen`` after the first frames.
 
-        The timer ends with the window.
+        The timer is deleted together with the window.
         """
         timer = QTimer(self._window)
         timer.setSingleShot(True)
@@ -100,7 +102,7 @@ class _Startup:
         timer.start(_LISTENS_AFTER)
 
     def _listen(self) -> None:
-        """Start to receive programs that another start of TurnDesk passes to this screen."""
+        """Start to receive programs that a second instance of TurnDesk passes to this screen."""
         from app.screen.window.file_opening import FileOpening
         from app.screen.window.running_screen import RunningScreen
 

@@ -1,4 +1,4 @@
-"""Themes, bundled fonts, unit of size and language for all parts that draw on the screen."""
+"""Themes, bundled fonts, size unit and language for all parts that draw on the screen."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def load_fonts() -> tuple[str, ...]:
 class ScreenTheme:
     """Colors, fonts and sizes that all widgets of a window share.
 
-    ``unit_px`` is the unit of size in pixels, which changes with the size of the window.
+    ``unit_px`` is the size unit in pixels, which changes with the size of the window.
     """
 
     def __init__(self, palette: ColorPalette, unit_px: float = 12.0) -> None:
@@ -77,7 +77,7 @@ class ScreenTheme:
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
     def set_unit(self, unit_px: float) -> None:
-        """Set the unit of size in pixels."""
+        """Set the size unit of the theme in pixels."""
         if unit_px != self.unit_px:
             self.unit_px = unit_px
             self._fonts.clear()
@@ -87,8 +87,8 @@ class ScreenTheme:
     ) -> float:
         """Return the height of a list row in pixels.
 
-        The height is ``height_units`` of the window, but at most ``max_height_mm`` on the screen. A larger
-        screen thus shows more rows. A row that is touchable is at least as high as a fingertip on the
+        The height is ``height_units`` theme units, but at most ``max_height_mm``. A larger screen thus
+        shows more rows. If ``is_touchable`` is True, the row is at least as high as a fingertip on the
         smallest screen.
         """
         high = min(height_units * self.unit_px, max_height_mm * self.screen.pixels_per_mm)
@@ -145,10 +145,10 @@ class ScreenTheme:
         return QPen(self.get_color(color_name), max(1.0, width * self.unit_px))
 
     def fit_font(self, text: str, size: float, width: float, *, is_bold: bool = False) -> QFont:
-        """Return the font of this size, or a smaller font that makes ``text`` fit.
+        """Return the font of this size, or a smaller font with which ``text`` fits in ``width`` pixels.
 
-        ``width`` is the available width in pixels. The font always remains large enough to read. A text
-        that is still too long is elided when it is drawn.
+        The font always remains large enough to read. A text that is still too long is elided when it is
+        drawn.
         """
         font = self.make_font(size, is_bold=is_bold)
         wide = measure_text(tr(text), font)
@@ -160,7 +160,7 @@ class ScreenTheme:
 
 
 def draw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
-    """Draw one line of TurnDesk's own text in the operator's language.
+    """Draw one line of a TurnDesk text, translated into the operator's language.
 
     A translation that is too wide is drawn smaller, but remains readable. See also ``draw_raw_text``.
     """
@@ -255,12 +255,11 @@ class ThemedPainter(QPainter):
         fit: bool = True,
         role: TextRole = TextRole.TABLE,
     ) -> None:
-        """Draw one line of text in a palette color, ``size`` units high, or smaller if necessary.
+        """Draw one line of text in a palette color, ``size`` units high, and elide it if it is too long.
 
-        The text is larger if its role requires this. See ``ScreenTheme.find_em_height``.
-
-        The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated.
-        See ``draw_raw_text``. The painter retains the color and font.
+        If ``fit`` is True, the text is larger if its role requires this (see
+        ``ScreenTheme.find_em_height``), and smaller if it does not fit in ``rect`` minus ``margin`` units.
+        ``raw`` text is not translated (see ``draw_raw_text``). The painter retains the color and font.
         """
         look = self.theme
         room = rect.width() - margin * look.unit_px
@@ -318,7 +317,7 @@ def style_application(palette: ColorPalette) -> None:
 
 
 def draw_state_symbol(painter: QPainter, box: QRectF, tone: Tone, color: QColor) -> None:
-    """Draw the symbol of a state.
+    """Draw the symbol of a machine state.
 
     Running is a triangle, paused is two bars, waiting is dots, an alarm is a triangle with a bar, and ready
     is a square.

@@ -1,7 +1,4 @@
-"""Panels with rows (a scrolling list, and a table), and the base class of list pages.
-
-The table has a heading line, notes and an entry line.
-"""
+"""Panels with rows (a scrolling list, and a table with notes and an entry line), and list pages."""
 
 from __future__ import annotations
 
@@ -26,11 +23,11 @@ NARROW_WIDTH = 50.0  # Units: a narrower list uses its full width for rows.
 
 
 class RowPanel(Panel):
-    """A list of rows of equal height.
+    """List of rows of equal height.
 
-    A subclass gets the rectangle for its rows from ``draw_scroll_keys``, and each visible row from
-    ``find_row_boxes``. The selected row remains visible when the selection or the size changes. Scrolling
-    does not move the selection, except in an ``is_centered`` list.
+    A subclass gets the rectangle for its rows from ``draw_scroll_keys``, and the box of each visible row
+    from ``find_row_boxes``. When the selection or the size changes, the list scrolls to the selected row.
+    Scrolling does not move the selection, except in an ``is_centered`` list.
     """
 
     is_list = True
@@ -65,10 +62,10 @@ class RowPanel(Panel):
     def draw_scroll_keys(
         self, painter: ThemedPainter, area: QRectF, visible_count: int, row_count: int, selected_row: int = -1
     ) -> QRectF:
-        """Draw the scroll keys if ``row_count`` rows do not fit, and return the rectangle for the rows.
+        """Draw scroll keys if ``row_count`` rows do not fit, and return the rectangle for the rows.
 
         ``visible_count`` is the number of rows that fit. ``selected_row`` is the index of the selected row,
-        or -1.
+        or -1 if no row is selected.
         """
         self.rows, self._count = visible_count, row_count
         if self.is_centered:
@@ -102,7 +99,7 @@ class RowPanel(Panel):
             )
 
     def count_fitting_rows(self, area: QRectF, row_height_px: float, row_count: int) -> int:
-        """Return how many rows of this height fit. The result is at least 1.
+        """Return how many rows of this height fit in an area, which is at least 1.
 
         The scroll keys of a narrow list are below its rows and use some of the height.
         """
@@ -207,7 +204,7 @@ class TablePanel(RowPanel):
         )
 
     def _find_list_height(self, notes: int) -> float:
-        """Return the height in theme units that remains for rows below this many note lines."""
+        """Return the height that remains for rows above this many note lines, in theme units."""
         foot = notes * NOTE + (self._entry_height if self.table.question else 0.0)
         return self.height() / self.theme.unit_px - 4.0 - HEAD - foot
 
@@ -256,7 +253,7 @@ class TablePanel(RowPanel):
         return () if self.table.question and self._fit(len(notes)) < 1 else notes
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the head, the visible rows and the foot of the table, and make each row a touch target."""
+        """Draw the heading, the visible rows and the foot, and register each row as a target."""
         u, sheet = self.theme.unit_px, self.table
         self.frame(painter, sheet.title)
         room, fits, high = self.inside(), self._count_fitting(), self._high
@@ -314,7 +311,7 @@ class TablePanel(RowPanel):
                 draw_tool_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, is_small=True)
 
     def _draw_filled(self, painter: ThemedPainter, at: QRectF, row: TableRow) -> None:
-        """Draw a bar below the text of the last cell."""
+        """Draw a progress bar below the text of the last cell."""
         high = 0.5 * self.theme.unit_px
         track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
         painter.fill_rect(track, "key")
@@ -350,7 +347,7 @@ class TablePanel(RowPanel):
 class ListModel(PageModel, Protocol):
     """Interface of the model of a list page.
 
-    ``handle_escape`` returns False if only the list is shown.
+    ``handle_escape`` returns False if there is no entry or question to cancel.
     """
 
     def prompt_text(self) -> str:
@@ -377,7 +374,7 @@ class ListPage(ModelPage):
     def make_function_key_labels(
         self, page_labels: Mapping[str, str], function_keys: Mapping[str, FunctionKey]
     ) -> tuple[str, ...]:
-        """Return the ten key labels.
+        """Return the ten labels of the function keys.
 
         They combine the common keys, the page's ``page_labels`` and the model's ``function_keys``.
         """

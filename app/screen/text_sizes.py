@@ -1,4 +1,4 @@
-"""Smallest text heights by role, calculated from the viewing distance and the real size of the panel."""
+"""Smallest text heights by text role, from the viewing distance and the real size of the screen."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CAPITAL_HEIGHT_RATIO = 0.73  # Height of a capital or a digit of B612, as a rati
 
 
 class TextRole(Enum):
-    """The roles of texts.
+    """Roles of a text, which determine its smallest height.
 
     ``TABLE`` is the role of values, labels and table rows.
     """
@@ -45,9 +45,9 @@ _SEEN = {
 
 @dataclass(frozen=True, slots=True)
 class PanelSize:
-    """Resolution of a panel in pixels per mm.
+    """Resolution of a screen in pixels per mm.
 
-    ``is_small`` is set if the diagonal of the panel is less than 10 inches.
+    ``is_small`` is True if the diagonal of the screen is less than 10 inches.
     """
 
     pixels_per_mm: float = DEFAULT_DPI / _INCH
@@ -59,10 +59,10 @@ class PanelSize:
 
 
 def make_panel_size(width_px: int, height_px: int, width_mm: float, height_mm: float) -> PanelSize:
-    """Return the size of a panel from its size in pixels and its reported size in mm.
+    """Return the resolution of a screen from its size in pixels and its reported size in mm.
 
-    Some panels report no size, the size of another panel, or only an aspect ratio. An implausible size is
-    replaced by 96 dots per inch.
+    Some screens report no size, the size of another screen, or only an aspect ratio. For an implausible
+    size, 96 dots per inch are assumed.
     """
     across = width_px / width_mm if width_mm > 0.0 else 0.0
     down = height_px / height_mm if height_mm > 0.0 else 0.0

@@ -33,10 +33,7 @@ class Rect(NamedTuple):
 
 
 class LowLayout(NamedTuple):
-    """Layout of a page with the readouts in one row.
-
-    It consists of readouts, lamps, page and run line.
-    """
+    """Layout of a page with low readouts: rectangles of readouts, lamps, page and run line."""
 
     readout_line: Rect
     strip: Rect
@@ -47,7 +44,7 @@ class LowLayout(NamedTuple):
 class AutomaticLayout(NamedTuple):
     """Layout of the Automatic page.
 
-    ``dock`` is empty for a machine that has its own operator station.
+    The rectangle ``dock`` is empty for a machine with a hardware operator station.
     """
 
     title: Rect
@@ -75,7 +72,7 @@ This leaves room for touch targets.
 
 
 def find_unit_px(width_px: int, height_px: int) -> float:
-    """Return the unit of size in pixels for a window of this size."""
+    """Return the size unit of the layout in pixels for a window of this size."""
     return min(width_px / ACROSS, height_px / DOWN)
 
 

@@ -1,1 +1,1 @@
-"""SEARCHTO function, which restarts in the middle of a program or retracts from the part."""
+"""SEARCHTO function, which restarts a program at a selected line or retracts the tool."""

@@ -27,7 +27,7 @@ RestartSearchResult = RestartPoint | RestartRefusal | CutRecord | tuple[Job, Pro
 
 @dataclass(slots=True)
 class RestartFinder:
-    """Finder that finds and proves restart lines on a worker.
+    """Finder that rebuilds the machine state at a restart line and proves the restart, on a worker.
 
     A search for a later line continues from an earlier search. ``rebuild_state`` and ``prove_job`` are
     called on the worker. ``on_found`` and ``on_failed`` get the results when the worker is polled.
@@ -43,7 +43,7 @@ class RestartFinder:
     def find_line(
         self, job: Job, line_number: int, pass_number: int = 0, interruption: Interruption | None = None
     ) -> None:
-        """Search for a line of this job's program.
+        """Request the machine state at a line of this job's program.
 
         ``pass_number`` is the execution of the line, counted from 1. If it is 0, the interrupted execution
         is used, or the first execution if none was interrupted.
@@ -66,7 +66,7 @@ class RestartFinder:
     def _with(
         self, job: Job, watch: ProgressCallback, ask: Callable[[RestartSearch], RestartSearchResult]
     ) -> RestartSearchResult:
-        """Run a query with the search of this job on the worker.
+        """Run a query on the worker with the search that exists for this job.
 
         A canceled search is discarded, because it stopped in the middle of a line.
         """
@@ -106,7 +106,10 @@ class LineCursor:
 
     @property
     def entered_pass(self) -> int:
-        """Return the pass number after the line number, for example 4 in ``8P4``, or 0 without a pass."""
+        """Return the pass (execution) of the line that was entered, for example 4 in ``8P4``.
+
+        Return 0 if no pass was entered.
+        """
         passes = _PASS_PATTERN.fullmatch(self.entry_text)
         return int(passes[2]) if passes else 0
 
@@ -128,10 +131,7 @@ class LineCursor:
         self.selected_line = max(1, min(line_number, len(self.lines)))
 
     def handle_key(self, key: str) -> bool:
-        """Handle a character or an editing key.
-
-        Return False if the key has no meaning here.
-        """
+        """Handle a character or an editing key, and return False for any other key."""
         taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
         if taken:
             self.entry_text, self.is_text_found = edit_text(self.entry_text, key, MAX_ENTRY_LENGTH), False

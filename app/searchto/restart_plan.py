@@ -1,4 +1,4 @@
-"""Texts and rows that describe a restart: required and current state, functions, and path.
+"""Texts and table rows that describe a restart: required and current state, functions, and path.
 
 If the tool is in the part, the plan contains the retract path, or the instruction for a manual retract.
 """
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RetractPlan:
-    """The plan of a retract without a restart, with its legs and its feed.
+    """Plan of a retract without a restart, with its moves and its feed.
 
     ``error_text`` is the reason why the retract is not possible, or an empty string.
     """
@@ -105,9 +105,9 @@ def read_machine_state(snapshot: Snapshot, job: Job) -> PresentState:
 def make_approach_legs(
     steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
 ) -> tuple[Drawn, ...]:
-    """Return the legs of a path in the frame of one tool.
+    """Return the moves of an approach relative to the part, for the offset of one tool.
 
-    The first leg is the current tip position.
+    The first move is the current tip position.
     """
     x, z = snapshot.demand[0], snapshot.demand[1]
     legs = [Drawn(z - offset[1], x - offset[0])]
@@ -167,7 +167,7 @@ class StateRow:
 
 @dataclass(frozen=True, slots=True)
 class RestartPlan:
-    """A plan of a restart that the operator confirms."""
+    """Plan of a restart, which the operator confirms."""
 
     restart_point: RestartPoint
     start_state: PassStart
@@ -241,7 +241,10 @@ def _on_mill(
 
 
 def _check_rotary_axes(found: RestartPoint, now: PresentState, machine: Kinematics) -> str:
-    """Return a warning if a rotary axis is not at zero and no earlier line positions it."""
+    """Return a warning if a rotary axis is not at zero and no earlier line positions it.
+
+    Return an empty string if no rotary axis needs a warning.
+    """
     names = {axis.name for axis in machine.rotary_axes}
     for name, wanted, at in zip(machine.axis_names, found.axis_positions, now.axis_positions, strict=True):
         if name in names and wanted is None and abs(at) > ROTATION_TOLERANCE_DEG:
@@ -319,7 +322,7 @@ def _now(snapshot: Snapshot) -> Checkpoint:
 
 
 def _make_position_rows(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
-    """Return the rows of a machine position, for the tool, unit and X mode (Ø or R) of the line."""
+    """Return the table rows of a machine position, with the tool, unit and X mode of the line."""
     modal = point.modal
     mark, factor = ("Ø", 2.0) if modal.diameter else ("R", 1.0)
     return (

@@ -107,7 +107,7 @@ class SearchtoModel:
         return not why
 
     def on_open(self) -> None:
-        """Let Cycle Start run only a confirmed restart while the page is open."""
+        """Restrict Cycle Start to a confirmed restart while the page is open."""
         loaded, snapshot = self.program_loader.loaded_program, self.read_snapshot()
         self.clear_message()  # The operator has read the earlier message.
         self.is_open, self.is_started = True, False
@@ -119,14 +119,14 @@ class SearchtoModel:
         self._discard_results()
 
     def on_close(self) -> None:
-        """Let Cycle Start run programs again."""
+        """Allow Cycle Start to run programs again."""
         if self.is_open:
             self.is_open = False
             self._withdraw()
             self.post_command(PrepareStart(StartAction.PROGRAM))
 
     def close(self) -> None:
-        """End the worker that searches."""
+        """Stop the worker that searches for restart lines."""
         self.restart_finder.worker.close()
 
     def _discard_results(self) -> None:
@@ -157,7 +157,7 @@ class SearchtoModel:
         self._discard_results()
 
     def select_line(self, line_number: int, pass_number: int = 0) -> None:
-        """Select this line in this pass, and rebuild the machine state at this line.
+        """Select a line in one of its passes (executions), and rebuild the machine state at this line.
 
         Line 0 has no effect.
         """
@@ -168,7 +168,7 @@ class SearchtoModel:
             self.rebuild_selected_line()
 
     def step_pass(self, steps: int) -> None:
-        """Select a later or earlier pass of a line that is executed more than once."""
+        """Select a later or earlier pass (execution) of the selected line."""
         if self.pass_count < 2:
             self.show_message(tr("NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE"))
             return
@@ -185,17 +185,14 @@ class SearchtoModel:
         return len(key) == 1 and self.can_choose_line
 
     def handle_key(self, key: str) -> bool:
-        """Handle a character or an editing key.
-
-        Return False if the key has no meaning here.
-        """
+        """Handle a character or an editing key, and return False for any other key."""
         if not self.line_cursor.handle_key(key):
             return False
         self.clear_message()
         return True
 
     def handle_enter(self) -> None:
-        """Handle Enter: go to a line number, find a text, or rebuild the state of the selected line."""
+        """Handle Enter: go to a line number, find a text, or rebuild the machine state at the line."""
         number = self.line_cursor.entered_number
         if number is not None:
             self.select_line(number, self.line_cursor.entered_pass)
@@ -248,7 +245,7 @@ class SearchtoModel:
             self.show_message(tr(Message("{text} NOT FOUND IN ANY LINE", text=self.line_cursor.search_text)))
 
     def rebuild_selected_line(self) -> None:
-        """Rebuild the state of the selected line."""
+        """Rebuild the machine state at the selected line."""
         loaded = self.program_loader.loaded_program
         self._discard_results()
         self.clear_message()
@@ -282,7 +279,7 @@ class SearchtoModel:
             self.restart_finder.calculate_cuts(job)
 
     def toggle_coolant(self) -> None:
-        """Switch whether the restart turns on coolant that is on at the line."""
+        """Select whether the restart turns on the coolant that is on at the line."""
         self._choose(replace(self.restart_choices, uses_coolant=not self.restart_choices.uses_coolant))
 
     def confirm_plan(self) -> None:
@@ -378,10 +375,7 @@ class SearchtoModel:
         )
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now.
-
-        Return an empty string if they can start the restart.
-        """
+        """Return why the start buttons cannot start the restart now, or an empty string if they can."""
         if self.stage is SearchtoStage.READY or self.read_snapshot().state in CYCLE_STATES:
             return ""
         return tr("CANNOT START: SEARCH FOR A LINE AND CONFIRM IT FIRST (F10)")

@@ -1,4 +1,4 @@
-"""SEARCHTO panel with the state at the line and the current state.
+"""SEARCHTO panel that compares the machine state at the line with the current state.
 
 Differences are marked by a color and a sign.
 """
@@ -29,9 +29,9 @@ _LABEL, _SIGN = 0.25, 0.61  # Fractions of a row: end of the label, position of 
 
 @dataclass(frozen=True, slots=True)
 class NearestValidLine:
-    """A valid line near a rejected line, which the operator can select instead.
+    """Valid line near a rejected line, which the operator can select instead.
 
-    It has the key that selects it, its line number (0 if there is none) and its text.
+    It has the key that selects it, its line number (0 if there is no such line) and its text.
     """
 
     key_name: str
@@ -42,9 +42,9 @@ class NearestValidLine:
 
 @dataclass(frozen=True, slots=True)
 class StateContent:
-    """The state rows of a valid line.
+    """Content of the panel: the state rows of a valid line, or the reason why a line is rejected.
 
-    For a rejected line, it contains the reason and the nearest valid lines.
+    For a rejected line, it also contains the nearest valid lines.
     """
 
     title: str = ""
@@ -85,7 +85,7 @@ class RestartStatePanel(Panel):
             self._draw_table(painter, room)
 
     def _draw_passes(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the pass number between two touch keys."""
+        """Draw the selected pass (execution) of the line between two touch keys."""
         wide = area.height() * 2
         sides = ((area.x(), "◀", PASS_BEFORE), (area.right() - wide, "▶", PASS_AFTER))
         for left, sign, key in sides:
@@ -95,9 +95,9 @@ class RestartStatePanel(Panel):
         painter.draw_text_line(words, self.content.pass_text, 2.0, "text", at=ALIGN_CENTER)
 
     def _draw_table(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the different rows in large letters, followed by the equal rows.
+        """Draw the rows with differences in large letters, followed by the rows without differences.
 
-        The equal rows are folded into one row, or drawn one by one.
+        The rows without differences are folded into one row, or drawn one by one.
         """
         u, shown = self.theme.unit_px, self.content
         other = tuple(row for row in shown.state_rows if row.must_change)
@@ -122,10 +122,7 @@ class RestartStatePanel(Panel):
             self._row(painter, foot.translated(0, number * high), row, min(1.9, high / u * 0.78), head=False)
 
     def _draw_fold_key(self, painter: ThemedPainter, box: QRectF, equal: tuple[StateRow, ...]) -> None:
-        """Draw the row that lists the equal rows.
-
-        A touch on this row folds or unfolds the equal rows.
-        """
+        """Draw the row that summarizes the rows without differences."""
         u = self.theme.unit_px
         painter.fill_rect(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
         words = tr(Message("{count} IDENTICAL", count=len(equal)))

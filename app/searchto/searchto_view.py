@@ -1,4 +1,4 @@
-"""The SEARCHTO page (F6): a line, its state, the path to it, and the functions that will start."""
+"""The SEARCHTO page (F6): a line, the machine state there, the path, and the started functions."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 
 class SearchEntryPanel(Panel):
-    """The prompt that asks for a line number or a text, with the entered text."""
+    """Panel that prompts for a line number or a search text, and shows the entered text."""
 
     background_color = "panel"
     entry_text = RedrawingAttribute("")
@@ -81,7 +81,7 @@ WARNING_LINE_CHARS = 40  # Characters of one line of a warning.
 
 
 class StartedFunctionsPanel(Panel):
-    """The functions that will start.
+    """Panel that lists the functions that a restart will turn on.
 
     ``option_texts`` are the options with their keys. ``error_text`` is a warning, or the reason why the
     restart cannot start.
@@ -100,7 +100,7 @@ class StartedFunctionsPanel(Panel):
         self.error_text, self.is_confirmed = error_text, is_confirmed
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the functions that will start, the options, and the error text.
+        """Draw the functions that the restart will turn on, the options, and the error text.
 
         The frame is highlighted if the functions are confirmed.
         """
@@ -183,7 +183,7 @@ class SearchtoPage(ModelPage):
         }
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key.
+        """Handle a key of the page.
 
         Arrow keys select a line, and other keys are text input.
         """
@@ -212,7 +212,7 @@ class SearchtoPage(ModelPage):
     def handle_touched_key(self, key: str) -> None:
         """Handle a touch on the number pad.
 
-        Enter and Esc also hide the pad, so that the state is visible.
+        Enter and Esc also hide the pad, so that the machine state at the line is visible.
         """
         if key in {"Enter", "Esc"}:
             self.number_pad.hide()
@@ -224,7 +224,7 @@ class SearchtoPage(ModelPage):
         self.number_pad.raise_()
 
     def _mark_line(self, line: int) -> None:
-        """Select a touched line, or rebuild its state if the line is already selected."""
+        """Select a touched line, or rebuild the machine state there if the line is already selected."""
         if not self.model.can_choose_line:
             return
         if line == self.model.line_cursor.selected_line:
@@ -267,7 +267,7 @@ class SearchtoPage(ModelPage):
         self.path_view.redraw()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the line, its state and the path.
+        """Show the selected line, the machine state there, and the path.
 
         After a restart has started, open the Automatic page instead.
         """
@@ -292,14 +292,14 @@ class SearchtoPage(ModelPage):
         self.path_view.draw_slice()
 
     def _show_program(self, loaded: LoadedProgram) -> None:
-        """Show the path of the program, or the table and workpiece on a mill."""
+        """Show the path of the program or, on a mill, the machine table and workpiece."""
         scene = loaded.picture.scene if loaded.picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(scene is not None)
         self.path_view.show_picture(loaded.picture if scene is None else None)
 
     def _show_plane(self, scene: MillScene, picture: ProgramPicture) -> None:
-        """Show axes and plane as they are before the line, with the earlier blocks drawn as finished."""
+        """Show the axes and the working plane before the line, with earlier blocks as finished."""
         plan, line = self.model.restart_plan, self.model.line_cursor.selected_line
         here = make_line_instant(scene, line - 1)
         axes, done = here.axis_positions, picture.count_blocks_before(line)
@@ -317,7 +317,7 @@ class SearchtoPage(ModelPage):
     def _find_tip(self, snapshot: Snapshot) -> TipPosition:
         """Return the position of the tool tip to display.
 
-        If there is a plan, this is the tip of the line's tool at the start of the path.
+        If there is a plan, this is the start of the planned path, for the tool that is active at the line.
         """
         shown = self.model.retract_plan or self.model.restart_plan
         legs = shown.drawn_legs if shown is not None else ()
@@ -392,7 +392,7 @@ class SearchtoPage(ModelPage):
         )
 
     def _show_stock(self, loaded: LoadedProgram) -> None:
-        """Show the part as the earlier lines leave it, in the pass that was found."""
+        """Show the part as it is before the selected pass (execution) of the line."""
         plan, picture, player = self.model.restart_plan, loaded.picture, self.path_view.part_player
         if picture is None or player is None:
             return
@@ -411,7 +411,7 @@ class SearchtoPage(ModelPage):
         self.functions_panel.show_functions(only, choices, leaving.error_text, is_confirmed=ready)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the program, the state, and the path above the functions that start."""
+        """Arrange the program, the state, the path, and the list of functions that will start."""
         u = self.theme.unit_px
         gap, asked, starts = max(4, round(0.7 * u)), max(FINGERTIP_PX, round(ASKED * u)), round(STARTS * u)
         wide, high = self.width(), self.height()

@@ -1,4 +1,4 @@
-"""Keys of the file status.json, for the reference page and its tests."""
+"""Keys of the JSON file status.json, for the page of the reference manual and its tests."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ _DEFAULT_CONDITIONS = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # conditions of alarms 
 
 
 def list_condition_keys(machine: Machine) -> frozenset[str]:
-    """Return the names of all conditions of a machine.
+    """Return the keys of all MTConnect conditions of a machine.
 
     Each axis with its own drive has conditions. The other conditions belong to no axis. On a lathe the
     spindle is also the C axis, unless C has its own drive.
@@ -48,10 +48,10 @@ def list_condition_keys(machine: Machine) -> frozenset[str]:
 
 
 def find_conditions(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tuple[ConditionEntry, ...]]:
-    """Return the active entries of each condition.
+    """Return the active entries of each MTConnect condition.
 
-    An empty tuple means normal. A hold that the operator did not request is a warning of the system, with
-    the reason shown on the screen.
+    An empty tuple means normal. A feed hold that the operator did not request is a warning of the system
+    condition, with the reason shown on the screen.
     """
     active: dict[str, list[ConditionEntry]] = {key: [] for key in keys}
     for alarm in snapshot.alarms:
@@ -115,10 +115,10 @@ _MODE_BY_STATE = {
 
 @dataclass(slots=True)
 class ExecutionTracker:
-    """State machine that finds the execution state and detects the end of a program.
+    """Tracker of the MTConnect execution state, which also detects the end of a program.
 
     ``input_names`` are the names and terminals of the inputs for which a program can wait. Other waits of a
-    cycle, such as a dwell, the spindle or a proof, count as active execution.
+    cycle, such as a dwell, the spindle or a proof, are reported as active execution.
     """
 
     input_names: frozenset[str] = frozenset()
@@ -128,7 +128,7 @@ class ExecutionTracker:
     _completed: bool = False
 
     def update(self, snapshot: Snapshot) -> str:
-        """Return the execution state.
+        """Return the MTConnect execution state for a snapshot.
 
         Call this for every published snapshot.
         """
@@ -166,7 +166,7 @@ class ExecutionTracker:
 
 
 def find_controller_mode(snapshot: Snapshot) -> str:
-    """Return the controller mode, which is the kind of run that Cycle Start begins.
+    """Return the MTConnect controller mode, which is the kind of run that Cycle Start begins.
 
     It is derived from the machine state, because the control has no mode switch.
     """
@@ -197,7 +197,7 @@ class MachineReading:
     alarms: tuple[Alarm, ...] = ()  # catalog entries of the active alarms
 
     def find_alarm(self, code: str) -> Alarm | None:
-        """Return the alarm with this number, or None if the reading does not contain it."""
+        """Return the alarm with this number, or None if it is not active in this reading."""
         return next((alarm for alarm in self.alarms if str(alarm.number) == code), None)
 
     @property
@@ -211,7 +211,7 @@ UNKNOWN_READING = MachineReading({"avail": _UNAVAILABLE})
 
 @dataclass(slots=True)
 class MachineReader:
-    """Converter of the snapshots of one machine.
+    """Converter of the snapshots of one machine to readings.
 
     ``read_time_s`` returns the time in seconds. It is used to detect that no new snapshots arrive.
     """
@@ -229,7 +229,7 @@ class MachineReader:
         self._keys = list_condition_keys(self.machine)
 
     def read_snapshot(self, snapshot: Snapshot) -> MachineReading:
-        """Return the current values and conditions, or ``UNKNOWN_READING`` if the control is silent."""
+        """Return the current values and conditions, or ``UNKNOWN_READING`` without a response."""
         if self._pulse.check_silence(snapshot.t, self.read_time_s()):
             return UNKNOWN_READING
         values: dict[str, ReadingValue] = {
@@ -274,7 +274,7 @@ class MachineReader:
         }
 
     def _read_wired(self, snapshot: Snapshot) -> dict[str, ReadingValue]:
-        """Return the states of the switches.
+        """Return the states of the machine's switches.
 
         The state of a switch that is not wired is None.
         """

@@ -24,7 +24,7 @@ StatusDocument = dict[str, object]
 
 
 def make_status(machine: str, reading: MachineReading) -> StatusDocument:
-    """Return the status of the machine for the file, with state, program, parts and alarms."""
+    """Return the content of the status file: machine state, program, parts and alarms."""
     values = reading.values
     return {
         "machine": machine,
@@ -51,7 +51,7 @@ def make_status(machine: str, reading: MachineReading) -> StatusDocument:
 
 
 def _round_load(load: ReadingValue) -> int | None:
-    """Return the load in %, rounded to a multiple of 5 so that the file is written less often."""
+    """Return the spindle load in %, rounded to a multiple of 5 to reduce writes of the file."""
     return round(load / _LOAD_STEP_PERCENT) * _LOAD_STEP_PERCENT if isinstance(load, float) else None
 
 

@@ -41,7 +41,7 @@ class BackupLocation:
 
 
 class BackupFunction(SpecialFunction):
-    """Special function for backups.
+    """Special function (F10) for backup and restore.
 
     Enter on a folder makes a backup, and Enter on a backup restores it.
     """
@@ -58,9 +58,9 @@ class BackupFunction(SpecialFunction):
         list_media: Callable[[], Sequence[UsbStick]] = list_sticks,
         daily_folder: Path | None = None,
     ) -> None:
-        """Create the function.
+        """Create the special function.
 
-        ``daily_folder`` is the folder of the daily backups, if they are not stored in ``csv_folder``.
+        ``daily_folder`` is the folder of the daily backups, or None if they are in ``csv_folder``.
         """
         super().__init__(desk)
         self.persistence, self.worker, self.backup_folder, self.list_media = (
@@ -264,7 +264,7 @@ class BackupFunction(SpecialFunction):
         self.desk.show_refusal(why)
 
     def prompt_text(self) -> str:
-        """Return the prompt about the Enter key."""
+        """Return the prompt that names the keys for backup, restore and finding media."""
         return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
@@ -280,7 +280,7 @@ def _describe_differences(verdict: BackupVerdict) -> str:
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupLocation, ...]:
-    """Return the control's folder and the removable media, each followed by its backups.
+    """Return the control's folders and the removable media, each followed by its backups.
 
     The newest backup is the first.
     """

@@ -1,4 +1,4 @@
-"""Counters of F10: the parts counter with its target and times, and tool life with its limits."""
+"""Special functions (F10) for the parts counter and its times, and for tool life and its limits."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LIFE_TONES = {
 
 
 class ToolLifeFunction(NumericFunction):
-    """Special function for tool life, with one row per tool.
+    """Special function (F10) for tool life, with one row per tool.
 
     A typed limit applies to the selected tool.
     """
@@ -66,7 +66,7 @@ class ToolLifeFunction(NumericFunction):
         return tools[self.marked] if self.marked < len(tools) else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with limits, use and remaining life, and with the stop setting of each tool."""
+        """Return the table of tool life: limit, use, remaining life and stop setting of each tool."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
         rows = tuple(self._row(each) for each in self.list_tools())
         tool = self.selected_tool
@@ -103,7 +103,7 @@ class ToolLifeFunction(NumericFunction):
         return TableRow(cells, life.state is not ToolLifeState.NO_LIMIT, tone, bar)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key.
+        """Handle a key of the tool life table.
 
         Arrow keys move the selection, and other keys edit the entry.
         """
@@ -185,7 +185,7 @@ class ToolLifeFunction(NumericFunction):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt, or why changes are not possible."""
+        """Return the prompt, or why tool life cannot be changed now."""
         return self.parts_watch.parts_book.lock_reason or (
             "TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT"
         )
@@ -245,7 +245,7 @@ class PartsCounterFunction(NumericFunction):
         )
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for corrections, for the reset, and for cycles that are not counted."""
+        """Return the function keys that correct or reset the count, or turn counting off or on."""
         return {
             "F2": FunctionKey("COUNT +1", partial(self.correct_count, 1)),
             "F3": FunctionKey("COUNT -1", partial(self.correct_count, -1)),

@@ -40,7 +40,7 @@ _OWN_CODES_OF_OMNITURN = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
 
 
 class SignalListKind(StrEnum):
-    """The lists of signals that the function can show."""
+    """Lists of signals that the special function can show."""
 
     OUTPUTS = "OUTPUTS"
     INPUTS = "INPUTS"
@@ -48,7 +48,7 @@ class SignalListKind(StrEnum):
 
 
 class SignalsFunction(SpecialFunction):
-    """Special function for signals.
+    """Special function (F10) that lists inputs, outputs and lamps.
 
     F4 selects the list, and Enter switches an output after the operator confirms.
     """
@@ -75,7 +75,7 @@ class SignalsFunction(SpecialFunction):
         return self.desk.desk_control.set_input is not None
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table of the list, with all states from one snapshot."""
+        """Return the table of the selected list, with all states from one snapshot."""
         if self.list_kind is SignalListKind.LAMPS:
             return self._lamps(snapshot)
         outputs = self.list_kind is SignalListKind.OUTPUTS
@@ -216,7 +216,7 @@ class SignalsFunction(SpecialFunction):
             )
 
     def prompt_text(self) -> str:
-        """Return the prompt about the Enter key."""
+        """Return the prompt that describes the function of the Enter key."""
         if self.list_kind is SignalListKind.INPUTS and self._is_simulated:
             return tr("ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST")
         if self.list_kind is not SignalListKind.OUTPUTS:
@@ -231,9 +231,9 @@ def _state(on: bool) -> str:
 
 
 def _map_codes(machine: Machine) -> dict[str, str]:
-    """Return the M codes of each output in the notation of the machine's language.
+    """Return the M codes that switch each output, in the notation of the machine's language.
 
-    Codes that switch an output on precede those that switch it off.
+    Codes that switch an output on come before those that switch it off.
     """
     omniturn = machine.mdi_language == "omniturn"
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
@@ -251,7 +251,7 @@ SPINDLE_ALARMS = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-stil
 
 
 class DriveStatusFunction(SpecialFunction):
-    """Special function that shows the drives.
+    """Special function (F10) that shows the state of the drives.
 
     Positions are distances from home in machine coordinates, with X as a radius.
     """
@@ -319,12 +319,12 @@ class DriveStatusFunction(SpecialFunction):
         return TableRow(cells, snapshot.spindle_auto and known and fault == formats.NO_VALUE, Tone.RUN)
 
     def prompt_text(self) -> str:
-        """Return the prompt, which refers to the alarms."""
+        """Return the prompt, which names the key for the alarms."""
         return "F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST"
 
 
 def _find_fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
-    """Return the number of an alarm that applies to an axis or the spindle.
+    """Return the number of an alarm for this axis or the spindle, or the text for no value.
 
     An alarm that names no axis applies to all axes.
     """

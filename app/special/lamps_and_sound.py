@@ -1,4 +1,4 @@
-"""Lamps and sound: lamp and sound of each event, volume, sound test and lamp test."""
+"""Special function that assigns sounds to events, sets the volume, and tests sounds and lamps."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ EVENT_KINDS = tuple(MACHINE_SIGNALS)
 
 @dataclass(slots=True)
 class EventSounds:
-    """Player of sounds for new events.
+    """Player of the sounds that announce new machine events.
 
-    ``volume_percent`` is 0 by default. ``muted_kinds`` are the kinds of event without a sound.
+    ``volume_percent`` is 0 by default. The event kinds in ``muted_kinds`` have no sound.
     """
 
     desk: Desk
@@ -76,7 +76,7 @@ class EventSounds:
         self.sound_player.play_tones(MACHINE_SIGNALS["part"].tones_hz, self.volume_percent)
 
     def load_settings(self) -> None:
-        """Load the stored settings if they have not been loaded yet."""
+        """Load the stored volume and muted event kinds, unless they are already loaded."""
         if self._read:
             return
         self._read = True
@@ -89,11 +89,10 @@ class EventSounds:
                 self.volume_percent, self.muted_kinds = max(0, min(100, volume)), frozenset(map(str, silent))
 
     def save_settings(self, volume_percent: int, muted_kinds: frozenset[str]) -> None:
-        """Store the volume and the muted kinds.
+        """Store the volume and the muted event kinds, and use them immediately.
 
-        The volume is limited to 0 to 100 %. The settings are used immediately and are written to the disk
-        later. A later write error is not raised, and without an open store the settings are not stored.
-        Raise StoreError if the store is closed or read-only.
+        The volume is limited to 0 to 100 %. The disk is written later, and a write error is not raised. If
+        no store is open, nothing is stored. Raise StoreError if the store is closed or read-only.
         """
         before, self.volume_percent, self.muted_kinds = (
             self.volume_percent,
@@ -117,7 +116,7 @@ class EventSounds:
 
 
 class LampsAndSoundFunction(SpecialFunction):
-    """Special function with one row per event, which shows its lamp, if fitted, and its sound."""
+    """Special function with one row per machine event, which shows the event's lamp and sound."""
 
     name = "LAMPS AND SOUND"
     use = "lamps, sounds, volume, lamp test"

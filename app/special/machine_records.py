@@ -1,4 +1,4 @@
-"""Event log (newest first), and the changes to the machine file since it was last accepted."""
+"""Special functions for the event log and for accepting changes to the machine file."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ EVENT_FILTERS: Mapping[str, frozenset[str]] = {
 
 
 class EventLogFunction(SpecialFunction):
-    """Special function for the event log.
+    """Special function for the event log, with the newest event first.
 
     F4 searches, and F5 filters. While a search is active, all letters are added to the search text.
     """
@@ -56,7 +56,7 @@ class EventLogFunction(SpecialFunction):
         return len(self.found_events)
 
     def on_open(self) -> None:
-        """Search immediately when the log opens."""
+        """Select the first row and query the events immediately."""
         self._next = 0.0
         self.marked = 0
 
@@ -85,9 +85,9 @@ class EventLogFunction(SpecialFunction):
         )
 
     def query_store(self) -> None:
-        """Query the store.
+        """Query the store for the events that match the search text and the filter.
 
-        The result arrives in a later frame. Only the last of several queries is used.
+        The result arrives in a later frame. Only the result of the latest query is used.
         """
         search, kinds = self.search_field.text.strip(), EVENT_FILTERS[self.filter_name]
         self.worker.request_work(
@@ -118,7 +118,7 @@ class EventLogFunction(SpecialFunction):
         self.query_store()
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the search text."""
+        """Return whether a character can be entered in the search field."""
         return self.is_searching and self.search_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
@@ -146,7 +146,7 @@ class EventLogFunction(SpecialFunction):
         return "F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK"
 
     def handle_escape(self) -> bool:
-        """Clear the search, or return False if there is no search."""
+        """Clear the search, or return False if no search is active."""
         open_before = self.is_searching or bool(self.search_field.text)
         if open_before:
             self.is_searching, self.search_field.text, self.marked = False, "", 0
@@ -173,9 +173,9 @@ _OFF_STATES = frozenset({MachineState.DISABLED, MachineState.ESTOP, MachineState
 
 
 class MachineFileFunction(SpecialFunction):
-    """Special function that accepts the machine file.
+    """Special function that accepts a changed machine file.
 
-    F2 accepts the file after the operator confirms, and enables the drives.
+    F2 accepts the changes after the operator confirms, and enables the drives.
     """
 
     name = "MACHINE FILE"
@@ -187,11 +187,11 @@ class MachineFileFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of keys in the machine file that have changed."""
+        """Return the number of machine file entries that have changed."""
         return len(self.changes.changes)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with one row per changed key, with key, old value and new value."""
+        """Return the table of changed machine file entries, with name, old value and new value."""
         rows = tuple(TableRow(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
         note = (
             tr("Press F2 to accept; the drives stay off until then.")

@@ -171,7 +171,7 @@ VALUE_NAMES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGH
 class ScreenSettingsFunction(SpecialFunction):
     """Special function for screen settings.
 
-    Enter or a touch selects the next choice of a setting.
+    Enter or a tap selects the next value of a setting.
     """
 
     name = "SCREEN"
@@ -183,7 +183,7 @@ class ScreenSettingsFunction(SpecialFunction):
         return len(SETTING_NAMES)
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table with the selected choice of each setting."""
+        """Return the table of screen settings with their current values."""
         now = self.desk.settings_store.current_settings
         rows = tuple(
             TableRow((words, _in_words(name, getattr(now, name)))) for name, words in SETTING_NAMES.items()
@@ -202,12 +202,12 @@ class ScreenSettingsFunction(SpecialFunction):
         )
 
     def execute_row(self) -> bool:
-        """Select the next choice of the selected setting."""
+        """Change the selected setting to its next value."""
         self._go_on()
         return True
 
     def choose(self, row: int) -> None:
-        """Select the next choice of the touched setting."""
+        """Change the touched setting to its next value."""
         self.marked = row
         self._go_on()
 
@@ -230,7 +230,7 @@ class ScreenSettingsFunction(SpecialFunction):
         self.desk.apply_setting(name, settings.find_next_choice(name))
 
     def prompt_text(self) -> str:
-        """Return the prompt about the Enter key."""
+        """Return the prompt, which explains the Enter and Esc keys."""
         return "ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST"
 
 
@@ -254,7 +254,7 @@ class SpindleLimitFunction(NumericFunction):
         self.spindle = spindle
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table with the machine maximum, the limit and the current speeds."""
+        """Return the table with the machine maximum, the active limit and the current spindle speeds."""
         limit = snapshot.spindle_limit_rpm
         rows = (
             TableRow(("MACHINE MAXIMUM", formats.rpm(self.spindle.max_rpm), "rpm")),
@@ -284,7 +284,7 @@ class SpindleLimitFunction(NumericFunction):
         return {"F4": FunctionKey("NO LIMIT", self.confirm_remove_limit)}
 
     def confirm_remove_limit(self) -> None:
-        """Remove the limit after the operator confirms."""
+        """Remove the spindle speed limit after the operator confirms."""
         if not self.desk.read_snapshot().spindle_limit_rpm:
             self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
         elif not self.desk.is_refused(ProtectedChange.SPINDLE_LIMIT):
@@ -305,7 +305,7 @@ class SpindleLimitFunction(NumericFunction):
         )
 
     def accept_entry(self, text: str) -> bool:
-        """Set the limit in rpm.
+        """Set the spindle speed limit in rpm.
 
         Raise EntryError if the limit is outside the range of the spindle.
         """
@@ -330,7 +330,7 @@ class SpindleLimitFunction(NumericFunction):
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt for the limit."""
+        """Return the prompt for entering a spindle speed limit."""
         return "TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK"
 
 

@@ -1,6 +1,6 @@
-"""Setup sheet of a program for a lathe or a mill.
+"""Setup sheet of a program, for a lathe or a mill.
 
-It contains tools, offsets, stock, chuck, stops and time per part.
+The sheet lists tools, offsets, stock, clamping, program stops and time per part.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FormatLength = Callable[[float], str]
 
 @dataclass(frozen=True, slots=True)
 class MillSetup:
-    """Setup data of a mill.
+    """Setup data of a mill: blank, preset and tools.
 
     ``blank_corners`` contains the corners of BLK FORM in mm. The other values are from the preset and tool
     tables.
@@ -99,7 +99,8 @@ _MM_PER_INCH = 25.4
 class SetupTool:
     """Tool of the setup sheet.
 
-    ``is_assumed`` means that the shape is incomplete. ``tool_offset`` is None if the tool is not measured.
+    ``is_assumed`` is True if the tool shape is incomplete and TurnDesk assumes the missing values.
+    ``tool_offset`` is None if the tool is not measured.
     """
 
     tool_number: int
@@ -129,12 +130,12 @@ class SetupSheet:
 
     @property
     def error_count(self) -> int:
-        """Return the number of errors, which prevent the program from running."""
+        """Return the number of program errors. A program with errors cannot run."""
         return sum(each.severity is Severity.ERROR for each in self.diagnostics)
 
     @property
     def warning_count(self) -> int:
-        """Return the number of warnings."""
+        """Return the number of warnings about the program."""
         return sum(each.severity is Severity.WARNING for each in self.diagnostics)
 
     @property
@@ -160,7 +161,7 @@ class SetupSheet:
 
     @property
     def stock_text(self) -> str:
-        """Return the stock as text."""
+        """Return the description of the stock."""
         if self.mill_setup is not None:
             return self.mill_setup.format_stock(self.format_length)
         stock = self.stock
@@ -227,7 +228,7 @@ class SetupSheet:
     def format_offset(self, tool: SetupTool) -> str:
         """Return the offset of a tool as text.
 
-        The text contains Z, and X as a radius. On a mill, it contains length and radius.
+        On a lathe, the text contains Z, and X as a radius. On a mill, it contains length and radius.
         """
         if tool.tool_offset is None:
             return tr("NOT SET")
@@ -240,7 +241,7 @@ class SetupSheet:
         return tr(Message("X (radius) {x}   Z {z}   R {radius}", x=x, z=z, radius=r))
 
     def format_stop(self, stop: PlannedStop) -> str:
-        """Return the stop code in the notation of the program's language."""
+        """Return the code of a program stop (such as M0 or M01) in the program's language."""
         return f"M{'0' if self.is_omniturn else ''}{int(stop.is_optional)}"
 
 
@@ -253,7 +254,7 @@ def make_setup_sheet(
 ) -> SetupSheet:
     """Prove the program, and return its setup sheet.
 
-    ``report_progress`` is called during the proof. It may raise an exception to cancel.
+    ``report_progress`` is called during the proof. It can raise an exception to cancel the proof.
     """
     record = RunRecorder(part_settings)
     report, part = prove_with_part(
@@ -298,7 +299,7 @@ def translate_tool_kind(kind: ToolKind) -> str:
 
 
 def format_finished_size(sheet: SetupSheet) -> str:
-    """Return the size of the finished part as text, or an empty string if nothing is turned."""
+    """Return the size of the finished part as text, or an empty string if the part is not turned."""
     if sheet.finished_part is None or not sheet.finished_part.outside_profile:
         return ""
     outside = sheet.finished_part.outside_profile

@@ -1,4 +1,4 @@
-"""Setup sheet of the loaded program on F10, with rows, notes, and saving as a file."""
+"""Special function on page F10 that shows, annotates and saves the program's setup sheet."""
 
 from __future__ import annotations
 
@@ -68,12 +68,12 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def program_name(self) -> str:
-        """Return the name of the loaded program, or an empty string."""
+        """Return the name of the loaded program, or an empty string if no program is loaded."""
         return self.desk.program_loader.loaded_program.name
 
     @property
     def notes(self) -> list[str]:
-        """Return the notes about the program."""
+        """Return the operator's notes about the program."""
         program = self.program_name
         if self._notes_of[0] != program:
             self._notes_of = (
@@ -197,21 +197,21 @@ class SetupSheetFunction(SpecialFunction):
         return self.note_field.handle_key(key)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered as text of a note."""
+        """Return whether a note is being edited and the character can be entered in it."""
         return self.note_field is not None and self.note_field.accepts_key(key)
 
     def handle_escape(self) -> bool:
-        """Cancel the note entry or the list of locations."""
+        """Cancel the note entry, or close the list of save locations."""
         open_ = self.note_field is not None or bool(self.save_locations)
         self.note_field, self.save_locations = None, ()
         return open_
 
     def on_close(self) -> None:
-        """Cancel the note entry when the function closes."""
+        """Cancel the note entry and close the list of save locations."""
         self.note_field, self.save_locations = None, ()
 
     def execute_row(self) -> bool:
-        """Change the selected note, or save to the selected location."""
+        """Edit the selected note, or save the sheet in the selected location."""
         if self.save_locations:
             self._write(self.save_locations[min(self.marked, len(self.save_locations) - 1)])
         elif (at := self._selected_note_index) is not None:
@@ -304,7 +304,7 @@ class SetupSheetFunction(SpecialFunction):
     # --- preparation on the worker -------------------------------------------------------------------
 
     def on_open(self) -> None:
-        """Reload notes and paper size when the function opens."""
+        """Discard the loaded notes and paper size, so that they are read again."""
         self._notes_of, self._paper = ("", []), None
 
     def _make_if_changed(self) -> None:
@@ -392,7 +392,7 @@ def _describe_change(before: Sequence[str], now: Sequence[str]) -> str:
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick]) -> tuple[BackupLocation, ...]:
-    """Return the removable media and the control's folder, in which the sheet can be saved."""
+    """Return the removable media and the control's own folder as locations for saving the sheet."""
     return (
         *(BackupLocation(stick.label, stick.path) for stick in media),
         BackupLocation(tr("THIS CONTROL"), folder),

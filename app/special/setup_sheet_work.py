@@ -1,6 +1,6 @@
-"""Slow work of the setup sheet: the proof, the rows, the page and the files.
+"""Time-consuming work of the setup sheet: the proof, the rows, the page and the files.
 
-This module is imported only when it is needed.
+To save start-up time, this module is imported only when it is needed.
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ class PreparedSheet:
 
 
 def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iterator[TableRow]:
-    """Yield the rows of the sheet, with time, stock, clamping, tools, offsets and stops."""
+    """Yield the table rows of the setup sheet: time, stock, clamping, tools, offsets and stops."""
     sheet = prepared.setup_sheet
     if sheet.findings_summary:
         yield TableRow((tr("ERRORS") if sheet.error_count else tr("WARNINGS"), sheet.findings_summary, ""))
@@ -169,9 +169,9 @@ def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iter
 def prepare_sheet(
     job: Job, machine: Machine, part_settings: PartSettings | None, watch: WorkRequest
 ) -> PreparedSheet:
-    """Prepare the sheet of a job.
+    """Prepare the setup sheet of a job.
 
-    This runs on a worker.
+    This function runs on a worker thread.
     """
     sheet = make_setup_sheet(job.shared_program, job.setup, machine, part_settings or PartSettings(), watch)
     return PreparedSheet(
@@ -193,7 +193,7 @@ def make_sheet_page(
     remarks: Mapping[int, str],
     notes: Sequence[str],
 ) -> tuple[str, str, str]:
-    """Return the title, date and body of the page."""
+    """Return the title, date and HTML body of the setup sheet."""
     facts = [
         (tr("MACHINE"), machine.name),
         (tr("PROGRAM CHECKSUM (SHA-256)"), hash_text(prepared.job.source)),
@@ -206,9 +206,10 @@ def make_sheet_page(
 def write_sheet_files(
     page: tuple[str, str, str], program_name: str, folder: Path, paper_size: PaperSize
 ) -> str:
-    """Write the sheet as PDF and HTML on the worker, and return the name of the PDF.
+    """Write the setup sheet as PDF and HTML, and return the name of the PDF file.
 
-    Each file is replaced atomically. Raise FileOperationError on failure.
+    This function runs on a worker thread. Each file is replaced atomically. Raise FileOperationError on
+    failure.
     """
     title, made, body = page
     name = f"{program_name}-setup"

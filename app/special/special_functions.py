@@ -1,4 +1,4 @@
-"""Special functions of F10: their interface to the page, their list, and the open function."""
+"""Special functions of page F10: their base classes and the list from which they are opened."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from core.message import Message
 
 
 class SpecialFunction(ABC):
-    """Special function of F10.
+    """Special function on page F10.
 
-    No method blocks. Rejected actions are reported with ``desk.say``.
+    No method blocks. If an action is rejected, the reason is shown with ``desk.say``.
     """
 
     name: ClassVar[str]
@@ -35,7 +35,7 @@ class SpecialFunction(ABC):
         """Return the table for a snapshot."""
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of this function, which can be F2 to F10 except F7."""
+        """Return the function keys of this special function, which can use F2 to F10 except F7."""
         return {}
 
     def handle_key(self, key: str) -> bool:
@@ -46,14 +46,11 @@ class SpecialFunction(ABC):
         return (key == "Enter" and self.execute_row()) or self.move_selection(key)
 
     def execute_row(self) -> bool:
-        """Execute the selected row.
-
-        Return False if the row has no action.
-        """
+        """Execute the action of the selected row. Return False if the row has no action."""
         return False
 
     def accepts_key(self, _key: str) -> bool:
-        """Return whether a character is text input now."""
+        """Return whether a text field of this function currently accepts the character."""
         return False
 
     def prompt_text(self) -> str:
@@ -61,10 +58,7 @@ class SpecialFunction(ABC):
         return "ESC: BACK TO THE LIST"
 
     def handle_escape(self) -> bool:
-        """Close the innermost open part.
-
-        Return False if nothing was open.
-        """
+        """Close the innermost open entry or list. Return False if none was open."""
         return False
 
     def on_open(self) -> None:
@@ -79,17 +73,14 @@ class SpecialFunction(ABC):
     def process_wire_input(self, *, is_displayed: bool) -> None:
         """Process data from a connected device, such as a gauge.
 
-        This is called once a frame. ``is_displayed`` is set while the function is displayed.
+        This method is called once per frame. ``is_displayed`` is True while the function is displayed.
         """
 
     def close(self) -> None:
         """Finish pending work when TurnDesk closes."""
 
     def choose(self, row: int) -> None:
-        """Select the touched row.
-
-        A touch on the row that is already selected executes it.
-        """
+        """Select the touched row, or execute it if it is already selected."""
         if row != self.marked:
             self.desk.clear_prompt_line()
             self.marked = row
@@ -111,9 +102,9 @@ class SpecialFunction(ABC):
 
 
 class PageFunction(SpecialFunction):
-    """Special function with a separate page.
+    """Special function that has its own screen page.
 
-    Its table shows a few facts. Enter or a touch opens the page.
+    In the list, its table shows a few facts. Enter or a tap opens the page.
     """
 
     key_hint: ClassVar[str]  # description of other keys that open the page
@@ -147,7 +138,7 @@ class NumericFunction(SpecialFunction):
         """
 
     def submit_entry(self) -> None:
-        """Accept the typed text, or show why it was rejected."""
+        """Accept the typed text, or show the reason why it was rejected."""
         try:
             if self.accept_entry(self.entry.text):
                 self.entry.text = ""
@@ -156,11 +147,11 @@ class NumericFunction(SpecialFunction):
             self.desk.show_refusal(str(error))
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is a digit or an operator."""
+        """Return whether the numeric entry accepts the character (a digit or an operator)."""
         return self.entry.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the entry."""
+        """Edit the numeric entry, or submit it when Enter is pressed."""
         if key == "Enter":
             self.submit_entry()
             return True
@@ -170,10 +161,7 @@ class NumericFunction(SpecialFunction):
         return False
 
     def handle_escape(self) -> bool:
-        """Clear the entry.
-
-        Return False if it was empty.
-        """
+        """Clear the numeric entry. Return False if it was empty."""
         begun, self.entry.text = bool(self.entry.text), ""
         return begun
 
@@ -184,9 +172,10 @@ class NumericFunction(SpecialFunction):
 
 @dataclass(slots=True)
 class SpecialFunctionList:
-    """List of special functions.
+    """List of special functions, and the function that is displayed.
 
-    ``at`` is the index of the displayed function. It receives the keys while ``inside`` is set.
+    ``at`` is the index of the displayed function. While ``inside`` is True, this function is open and
+    receives the keys.
     """
 
     functions: Sequence[SpecialFunction]
@@ -201,7 +190,7 @@ class SpecialFunctionList:
         return self.functions[self.at]
 
     def show_function(self, index: int) -> None:
-        """Display a function from the list."""
+        """Display the special function at an index of the list."""
         self.number = ""
         index = max(0, min(len(self.functions) - 1, index))
         if index != self.at or self.inside:
@@ -211,7 +200,7 @@ class SpecialFunctionList:
             self.shown_function.on_open()
 
     def open_function(self, index: int) -> None:
-        """Open a function, which then receives the keys."""
+        """Open the special function at an index, so that it receives the keys."""
         self.show_function(index)
         self.inside = True
 
@@ -233,9 +222,9 @@ class SpecialFunctionList:
         return True
 
     def _add_digit(self, digit: str) -> None:
-        """Select the function with the typed number.
+        """Append a digit to the typed number, and select the function with this number.
 
-        If no function has the number with the added digit, the digit starts a new number.
+        If no function has this number, the digit starts a new number.
         """
         numbers = range(1, len(self.functions) + 1)
         typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")
@@ -249,14 +238,11 @@ class SpecialFunctionList:
         self.number = typed
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is text input now."""
+        """Return whether the open function or the number selection accepts the character."""
         return self.shown_function.accepts_key(key) if self.inside else key.isascii() and key.isdigit()
 
     def handle_escape(self) -> bool:
-        """Go back one step.
-
-        Return False if only the list is open.
-        """
+        """Close an entry or the open function. Return False if only the list is open."""
         shown = self.shown_function
         if not self.inside:
             return False
@@ -267,7 +253,7 @@ class SpecialFunctionList:
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt of the function or of the list."""
+        """Return the prompt of the open function, or of the list if no function is open."""
         if self.inside:
             return self.shown_function.prompt_text()
         return "TAP A FUNCTION OR TYPE ITS NUMBER   ENTER: OPEN   ESC: BACK"

@@ -29,10 +29,10 @@ ROW, GAP = 7.0, 0.4  # units: height of a row and the gap below it
 
 
 class FunctionList(RowPanel):
-    """List of functions.
+    """Panel that lists the special functions.
 
-    The displayed function is highlighted. It has a wide bar while it receives the keys. Rows are at least
-    as high as a fingertip. If not all rows fit, the list can be scrolled with two keys and the wheel.
+    The displayed function is highlighted, with a wide bar while it receives the keys. Rows are at least as
+    high as a fingertip. Two keys and the mouse wheel scroll the list if it does not fit.
     """
 
     title = "SPECIAL FUNCTIONS"
@@ -47,11 +47,11 @@ class FunctionList(RowPanel):
 
     @property
     def _high(self) -> float:
-        """Return the height of a row in pixels, which is at least that of a fingertip with the gap."""
+        """Return the row height in pixels, which is at least one fingertip plus the gap between rows."""
         return max(ROW * self.theme.unit_px, FINGERTIP_PX + GAP * self.theme.unit_px)
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the name and the use of each visible function, and make each row a touch target."""
+        """Draw the name and description of each visible function, and make each row a touch target."""
         functions, high, room = self.model.functions, self._high, self.inside()
         fits = self.count_fitting_rows(room, high, len(functions))
         room = self.draw_scroll_keys(painter, room, fits, len(functions), self.model.at)
@@ -82,7 +82,7 @@ LETTER_PAD_HEIGHT = 24.0  # units: height of the letter pad
 
 
 class SpecialPage(ListPage):
-    """Page of the special functions, which shows the models and passes the keys to them."""
+    """Page that displays the special functions and passes keys to them."""
 
     NAME = page_table.SPECIAL
     model: SpecialFunctionList
@@ -99,9 +99,9 @@ class SpecialPage(ListPage):
         self._page_instead()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key like other list pages.
+        """Handle a key as on other list pages.
 
-        If the selected function has a separate page, Enter opens this page.
+        If the selected function has its own page, Enter opens that page.
         """
         taken = super().handle_key(key)
         if taken:
@@ -120,7 +120,7 @@ class SpecialPage(ListPage):
         self._page_instead()
 
     def handle_touched_key(self, key: str) -> None:
-        """Pass a touched key to the displayed function."""
+        """Open the displayed function, and pass the touched key to it."""
         self.model.inside = True
         super().handle_touched_key(key)
 
@@ -163,7 +163,7 @@ class SpecialPage(ListPage):
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the list, the table and the pads."""
+        """Arrange the list, the table and the touch keypads after a size change."""
         self._lay_out()
 
     def _lay_out(self) -> None:

@@ -1,1 +1,1 @@
-"""Sending and receiving of programs over the RS-232 serial line."""
+"""Transfer of programs over the RS-232 serial line, in both directions."""

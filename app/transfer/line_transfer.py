@@ -19,11 +19,9 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class TransferProgress(Protocol):
-    """Progress of a transfer.
+    """Progress of a serial transfer.
 
-    ``total_byte_count`` is 0 while the size is unknown. ``wait_reason`` is ``held``, ``dc1``, ``sender``,
-    ``frame``, ``noise`` or an empty string. ``received_text`` is the data received before the first % of a
-    program.
+    ``wait_reason`` is empty while the transfer is not waiting.
     """
 
     @property
@@ -51,17 +49,18 @@ class TransferProgress(Protocol):
 
     @property
     def received_text(self) -> str:
-        """Return the data received before the first % of a program."""
+        """Return the data that was received before the first % character of a program."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class ReceivedProgram:
-    """Complete received program that has been proved but not yet stored.
+    """Completely received program that has been proved but not yet stored.
 
-    ``name`` is the file name from the program, with an extension. ``sha256`` is the SHA-256 hash of
-    ``program_bytes``. ``is_seven_bit`` means that the data had 7 data bits although the port is set to 8.
-    ``finding_texts`` are the errors of the proof.
+    - ``name``: file name from the program, with an extension
+    - ``sha256``: SHA-256 hash of ``program_bytes``
+    - ``is_seven_bit``: whether the data had 7 data bits although the port is set to 8
+    - ``finding_texts``: errors found by the proof
     """
 
     program_bytes: bytes
@@ -101,12 +100,12 @@ class SerialLineTransfer(Protocol[T_co]):
 
 
 class SerialPorts(Protocol):
-    """Serial ports, and transfers over them."""
+    """Access to the serial ports, and factory of transfers over them."""
 
     def list_ports(self) -> Sequence[tuple[str, str]]:
-        """Return the device and the description of each port.
+        """Return the device name and the description of each serial port.
 
-        Raise DriverError on failure.
+        Raise DriverError if the ports cannot be listed.
         """
         ...
 
@@ -131,9 +130,8 @@ class SerialPorts(Protocol):
 def store_received_program(received: ReceivedProgram, folder: Path, name: str) -> Path:
     """Store a received program as a new file, and return its path.
 
-    If ``name`` has no extension or an extension that programs do not have, the extension of the received
-    program is added. Raise FileOperationError if the name is invalid or exists, or if the disk rejects the
-    file.
+    If ``name`` lacks an extension for programs, the extension of the received program is added. Raise
+    FileOperationError if the name is invalid or already exists, or if the file cannot be written.
     """
     name = complete_name(name, Path(received.name))
     if other := find_same_name(folder, name):

@@ -1,4 +1,4 @@
-"""Special function RS-232, with settings, sending and receiving.
+"""Special function for RS-232: line settings, sending and receiving programs.
 
 A received program is stored but never started.
 """
@@ -95,7 +95,7 @@ SETTING_ROWS: tuple[SettingRow, ...] = (
 
 
 def make_stored_settings(model: SerialLineModel) -> dict[str, object]:
-    """Return the settings in the form in which they are stored."""
+    """Return the serial line settings as a dictionary for the settings store."""
     return asdict(model)
 
 
@@ -185,7 +185,7 @@ def _describe_wait(what: str) -> str:
 
 
 def make_received_table(received: ReceivedProgram, name: str) -> TableContent:
-    """Return the table about a received program, with its completeness, proof result and name."""
+    """Return the table that shows completeness, proof result and name of a received program."""
     code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.is_seven_bit else tr("SAME AS SETTINGS")
     errors = len(received.finding_texts)
     some = tr("1 ERROR") if errors == 1 else tr(Message("{count} ERRORS", count=errors))
@@ -253,7 +253,7 @@ class SerialTransferFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of settings, or 0 during a transfer."""
+        """Return the number of settings, or 0 during a transfer or while a program is being named."""
         return 0 if self.running_transfer or self.received_program else len(SETTING_ROWS)
 
     def on_open(self) -> None:
@@ -268,7 +268,7 @@ class SerialTransferFunction(SpecialFunction):
         self.port_names = ports
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the current state."""
+        """Return the table for the settings, the active transfer or the received program."""
         self.worker.deliver_results()
         if self.received_program is not None:
             return make_received_table(self.received_program, self.name_field.text)
@@ -291,7 +291,7 @@ class SerialTransferFunction(SpecialFunction):
         }
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the name of the received program."""
+        """Return whether a character can be entered in the name of the received program."""
         return self.received_program is not None and self.name_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
@@ -351,9 +351,9 @@ class SerialTransferFunction(SpecialFunction):
             self.worker.enqueue_work(carrying.run_transfer, self._came, self._failed)
 
     def cancel_transfer(self) -> None:
-        """Cancel the transfer.
+        """Request cancellation of the running transfer.
 
-        The worker reports when it has ended.
+        The worker reports the end of the transfer.
         """
         if self.running_transfer is not None:
             self.running_transfer.cancel()

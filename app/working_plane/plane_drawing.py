@@ -1,7 +1,7 @@
 """Drawing of the mill at one instant, as lines and faces in pixels.
 
-Points in the workpiece system are transformed through the chain of axes at the angles of that instant. The
-faces are sorted with the farthest first, so that nearer faces cover them.
+Points in the workpiece system are transformed through the mill's chain of rotary axes. Faces are painted
+from far to near, so that nearer faces cover farther ones.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Camera:
         return replace(self, zoom_factor=1.0, offset_right=0.0, offset_down=0.0)
 
     def with_zoom(self, step_count: int) -> Camera:
-        """Return the camera zoomed in by a number of steps."""
+        """Return the camera zoomed in by ``step_count`` steps, or zoomed out if it is negative."""
         return replace(self, zoom_factor=min(40.0, max(0.2, self.zoom_factor * _ZOOM_STEP**step_count)))
 
     def with_pan(self, steps_right: int, steps_down: int) -> Camera:
@@ -93,9 +93,9 @@ class Camera:
 
     @property
     def view_axes(self) -> FloatArray:
-        """Return the unit vectors right, down and towards the viewer.
+        """Return the unit vectors right, down and towards the viewer, in machine coordinates.
 
-        They are the rows of a matrix, in machine coordinates.
+        They are the rows of a matrix.
         """
         around, above = (
             math.radians(self.view_aspect.azimuth_deg),
@@ -109,7 +109,7 @@ class Camera:
     def project_points(self, points: FloatArray, width: float, height: float) -> FloatArray:
         """Return pixel x, pixel y and depth of points in machine coordinates.
 
-        The shape of the points and of the result is (n, 3). Depth increases towards the viewer.
+        The points and the result have the shape (n, 3). Depth increases towards the viewer.
         """
         size = min(width, height)
         scale = self.zoom_factor * size / (2.0 * self.radius_mm)
@@ -170,7 +170,7 @@ def find_blank_center(scene: MillScene) -> tuple[float, float, float]:
 
 
 def find_blank_diagonal_mm(scene: MillScene) -> float:
-    """Return the diagonal of the blank in mm. The sizes of other drawn objects depend on it."""
+    """Return the diagonal of the blank in mm, from which the sizes of other objects are derived."""
     low, high = scene.blank_corners
     return max(1.0, math.dist(low, high))
 
@@ -239,7 +239,7 @@ class DrawnStroke:
 
 @dataclass(frozen=True, slots=True)
 class SceneDrawing:
-    """Picture that is ready to paint.
+    """Faces and strokes of the scene, ready to be painted.
 
     The faces are painted before the strokes.
     """
@@ -259,7 +259,7 @@ def make_camera(scene: MillScene) -> Camera:
 def draw_scene(
     scene: MillScene, instant: SceneInstant, camera: Camera, width: float, height: float
 ) -> SceneDrawing:
-    """Return the drawing of a scene at an instant, for a picture of this size in pixels."""
+    """Return the drawing of a scene at an instant, for a picture of the given size in pixels."""
     picture = _ScenePicture(scene, instant, camera, width, height)
     return SceneDrawing(
         faces=tuple(
@@ -298,10 +298,10 @@ class _ScenePicture:
         self._part = chain.make_transform(self._tables, chain.workpiece_rotation)
 
     def make_table_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return the table disk.
+        """Return the disk of the table as a face with its painting depth.
 
-        The disk is painted first if it is seen from above, and last if it is seen from below. It is not
-        sorted by the depth of its center, because a small blank near the far rim is farther away.
+        The disk is painted first if it is seen from above, and last if it is seen from below. Sorting by
+        center depth would be wrong for a small blank near the far rim.
         """
         machine_parallel = self._scene.kinematics.make_transform(self._tables)
         zero = self._scene.kinematics.make_transform({})
@@ -332,7 +332,7 @@ class _ScenePicture:
         return found
 
     def make_plane_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return a square of the working plane around its datum."""
+        """Return a square in the tilted working plane around its datum, or nothing without a tilt."""
         swivel = self._instant.plane_position
         if swivel is None or not swivel.system.is_tilted:
             return []
@@ -342,7 +342,7 @@ class _ScenePicture:
         return [self._face("plane", transform_points(self._part, o + square @ r.T))]
 
     def make_tool_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return a cutter at the tool tip along the current tool axis."""
+        """Return the faces of a cutter at the tool tip, aligned with the current tool axis."""
         chain, axes = self._scene.kinematics, self._instant.axis_positions
         length = (
             self._instant.plane_position.system.tool_length_mm
@@ -368,9 +368,9 @@ class _ScenePicture:
         return faces
 
     def make_path_strokes(self) -> list[DrawnStroke]:
-        """Return the path of the tip on the workpiece.
+        """Return the path of the tool tip on the workpiece.
 
-        Finished and remaining moves are separate strokes.
+        Completed and remaining moves are separate strokes.
         """
         scene = self._scene
         if not len(scene.points):
@@ -432,7 +432,7 @@ class _ScenePicture:
 def _make_strokes(
     seen: FloatArray, styles: npt.NDArray[np.int8], is_finished: npt.NDArray[np.bool_]
 ) -> list[DrawnStroke]:
-    """Return the lines of the path, which are split where the drawing style changes."""
+    """Return the strokes of the path, with a new stroke wherever the drawing style changes."""
     role = np.where(
         styles == MoveStyle.CUT, np.where(is_finished, 3, 2), np.where(styles == MoveStyle.RAPID, 1, 0)
     )

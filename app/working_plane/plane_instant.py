@@ -1,4 +1,4 @@
-"""Instant of the 3D view, taken from a snapshot or from the line under the cursor."""
+"""Machine position for the 3D view, from a snapshot or from the program line at the cursor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _AXES = ("A", "B", "C")
 
 @dataclass(frozen=True, slots=True)
 class SceneInstant:
-    """An instant of the 3D view: axis positions by name, plane, and active block (0 for none)."""
+    """Axis positions by name, working plane and active block (0 for none) at one instant."""
 
     axis_positions: Mapping[str, float]
     plane_position: PlanePosition | None
@@ -34,7 +34,7 @@ def make_run_instant(scene: MillScene, snapshot: Snapshot) -> SceneInstant:
 
 
 def make_line_instant(scene: MillScene, line_number: int) -> SceneInstant:
-    """Return the instant after a program line, with the tables at the target angles of its plane."""
+    """Return the instant after a program line, with the rotary tables at the angles of its plane."""
     swivel = scene.find_plane(line_number)
     if swivel is None:
         return SceneInstant(dict.fromkeys(scene.kinematics.axis_names, 0.0), None)
@@ -56,7 +56,7 @@ def make_view_title(kinematics: Kinematics) -> str:
 
 
 def describe_plane(swivel: PlanePosition | None) -> str:
-    """Return one line of text with the name, the angles and the Z' direction of the plane."""
+    """Return one line with the name, angles and Z' direction of the plane, or an empty string."""
     if swivel is None:
         return ""
     words = name_system(swivel)

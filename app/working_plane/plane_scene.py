@@ -1,6 +1,6 @@
-"""Scene of a mill program, with the tool path and the planes on the workpiece.
+"""Scene of a mill program, with the tool path and the working planes on the workpiece.
 
-The scene is collected once, on a worker thread. Points are in the workpiece system in mm, so that they turn
+The scene is built once, on a worker thread. Points are in the workpiece system in mm, so that they rotate
 with the table.
 """
 
@@ -32,7 +32,7 @@ _EMPTY: BlankCorners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))
 
 
 class MoveStyle(IntEnum):
-    """The drawing styles of a path, each for the move to a point."""
+    """Drawing style of the move to a point of the tool path."""
 
     NO_LINE = 0  # not drawn: a new line starts at this point
     RAPID = 1
@@ -41,12 +41,12 @@ class MoveStyle(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MillScene:
-    """Tool path and planes of a mill program.
+    """Tool path and working planes of a mill program.
 
-    ``points`` (n, 3) are the points of the tip. ``move_styles`` (n,) are the styles of the moves to each
-    point, and ``block_numbers`` (n,) are their block numbers. ``planes_by_line`` maps a source line to the
-    plane after its first execution. ``sorted_lines`` contains its sorted keys. ``blank_corners`` are the
-    corners of the blank, or default corners if the program does not define a blank.
+    - ``points`` (n, 3): points of the tool tip
+    - ``move_styles`` and ``block_numbers`` (n,): style and block number of the move to each point
+    - ``planes_by_line``: plane after the first execution of a source line; ``sorted_lines`` are its keys
+    - ``blank_corners``: corners of the blank, or default corners if the program does not define a blank
     """
 
     kinematics: Kinematics
@@ -64,7 +64,7 @@ class MillScene:
         return self.planes_by_line[self.sorted_lines[at - 1]] if at else None
 
     def count_finished_points(self, block_number: int) -> int:
-        """Return the number of points that are finished after a block.
+        """Return the number of path points that have been reached at the end of a block.
 
         Blocks are counted from 1.
         """
@@ -72,7 +72,7 @@ class MillScene:
 
 
 class SceneBuilder:
-    """Builder that collects the blocks that have a position in a working plane."""
+    """Builder of a ``MillScene`` from the blocks that have a position in a working plane."""
 
     def __init__(self) -> None:
         self._points, self._ink, self._block = array("d"), array("b"), array("q")
@@ -118,7 +118,7 @@ class SceneBuilder:
 
 
 def _find_path_points(block: Block, swivel: PlanePosition) -> list[Vector]:
-    """Return the points of a block in the working plane up to its end.
+    """Return the path points of a block in the coordinates of the working plane.
 
     Arcs are replaced by chords.
     """

@@ -1,6 +1,6 @@
-"""3D view of a mill with table, workpiece, working plane and tool.
+"""Panel with the 3D view of a mill: table, workpiece, working plane and tool.
 
-``plane_drawing`` calculates the drawing.
+The module ``plane_drawing`` calculates the drawing.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ _DRAG_STEP = 60.0  # pixels of a drag per panning step
 
 
 class WorkingPlaneView(Panel):
-    """View of a scene at an instant.
+    """Panel that shows a scene at an instant.
 
-    A button, a key or a tap on the name of the view direction selects the next direction.
+    A button, a key or a tap on the name of the view direction selects the next view direction.
     """
 
     title = "TABLE AND PLANE"
@@ -73,7 +73,7 @@ class WorkingPlaneView(Panel):
 
     @property
     def camera(self) -> Camera | None:
-        """Return the camera of the view, or None without a scene."""
+        """Return the camera of the view, or None if no scene is displayed."""
         return self._camera
 
     def show_scene(self, scene: MillScene | None) -> None:
@@ -94,7 +94,7 @@ class WorkingPlaneView(Panel):
         self.update()
 
     def show_instant(self, instant: SceneInstant, plane_text: str) -> None:
-        """Show the machine at an instant, with a text about the plane."""
+        """Show the mill at an instant, with a text that describes the working plane."""
         self._instant, self.words = instant, plane_text
 
     # --- navigation ----------------------------------------------------------------------------------

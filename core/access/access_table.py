@@ -1,9 +1,8 @@
 """Table of the changes that each access level may make.
 
-The screen, the commands and ``docs/access.md`` use this table. The table covers stored data and two manual
-actions that override the setup: raising the spindle speed limit and switching an output. Actions that bring
-the machine to rest need no level: E-stop, feed hold, Reset, ending a function, and drives off. Running a
-proved program needs no level either.
+The screen, the commands and ``docs/access.md`` use this table. It covers stored data, raising the spindle
+speed limit, and switching an output manually. No level is needed to run a proved program, or to bring the
+machine to rest with E-stop, feed hold, Reset or drives off.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ class AccessLevel(IntEnum):
 
 
 class ProtectedChange(Enum):
-    """A protected change, with its name on the screen."""
+    """Change that requires an access level, with its name on the screen."""
 
     WEAR = "WEAR AND SECONDARY OFFSETS"
     COUNTS = "PART COUNTS"
@@ -179,5 +178,5 @@ NEVER_PERMITTED = (
 
 
 def get_required_level(change: ProtectedChange) -> AccessLevel:
-    """Return the minimum level for a change."""
+    """Return the minimum access level that a change requires."""
     return ACCESS_RULES[change].level

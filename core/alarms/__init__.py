@@ -1,6 +1,6 @@
 """Alarm catalog: every alarm, hold and stop with its number, text, causes and remedy.
 
-Each alarm is one entry, stored under its code in the file of its subject. No alarm exists outside the
+Each alarm is one entry, identified by its code, in the module of its subject. Every alarm is in the
 catalog.
 """
 

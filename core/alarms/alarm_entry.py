@@ -78,10 +78,11 @@ class Reaction(Enum):
 
 
 class AlarmEntry(NamedTuple):
-    """An entry of the alarm catalog: ``text``, ``causes`` from most to least likely, and ``remedy``.
+    """An entry of the alarm catalog.
 
-    If ``shows_detail`` is True, the operator sees the details of the alarm (an axis, a line, the text of a
-    drive) before the causes. Otherwise the details are only logged.
+    ``causes`` are listed from most to least likely. If ``shows_detail`` is True, the operator sees the
+    details of the alarm (such as an axis, a line or the text of a drive) before the causes. Otherwise the
+    details are only logged.
     """
 
     number: int

@@ -86,10 +86,10 @@ class CommandHandler:
             self._control.handle_cycle_start()
 
     def _hold_cycle(self, command: commands.FeedHold) -> None:
-        """Hold the cycle, unless this key press has already caused a hold.
+        """Hold the cycle, unless the same key press has already caused a feed hold.
 
-        The screen can deliver one press twice. The second delivery must not hold a cycle that was started
-        in between.
+        The screen can deliver one key press twice. The second delivery must not hold a cycle that was
+        started in between.
         """
         if command.press not in self._presses:
             self._control.start_feed_hold("", command.by)
@@ -154,7 +154,7 @@ class CommandHandler:
     def _load_job(self, command: commands.LoadJob) -> None:
         """Load a job and discard a prepared restart.
 
-        The selected start mode (restart or MDI) remains.
+        The start mode that is selected (restart or MDI) does not change.
         """
         if self._control.state in CYCLE_STATES:
             self._refuse(_PROGRAM_RUNNING_REASON)
@@ -175,7 +175,7 @@ class CommandHandler:
         self._control.status.proof = command.proof
 
     def _store_clearances(self, command: commands.ReplaceClearances) -> None:
-        """Store new clearances and clear a start refusal that the earlier clearances caused."""
+        """Store new clearances for the first move, and clear a start refusal caused by the old ones."""
         status = self._control.status
         if status.start_refusal_code:
             status.start_refusal = status.start_refusal_code = ""

@@ -1,8 +1,8 @@
 """Commands that other threads post to the executor's queue, and the clearance for a start.
 
-The executor does not compute geometry. A worker thread of the screen checks one job at one position of the
-axes and posts the resulting clearance. The executor only compares positions, and ignores a clearance for
-another position.
+The executor does not compute geometry. A worker thread of the screen checks the first move of a job from
+one axis position, and posts the result as a clearance. The executor ignores a clearance for any other
+position.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ FIRST_MOVE_CROSSES: Final = "first-move-crosses"
 class Clearance:
     """The result of checking the first move of a job from one position of the axes.
 
-    ``job`` is the digest of the job, and ``at`` is the position in machine coordinates in mm. ``begun`` is
-    the number of runs that had started when the check was made, because a run may change the part. If the
-    start is refused, ``code`` is ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES``, and ``why`` is the sentence
-    for the operator. Both are empty if the first move is clear. ``warned`` is the warning to show before
-    the start if the part's shape is unknown or assumed. ``is_for_repeat`` marks a check from the end
-    position of the program, from which Cycle Repeat starts.
+    - ``job``: digest of the job; ``at``: position in machine coordinates in mm
+    - ``begun``: number of runs started before the check, because a run may change the part
+    - ``code``: ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES`` if the start is refused, otherwise empty
+    - ``why``: reason of the refusal for the operator, otherwise empty
+    - ``warned``: warning to show before the start if the part's shape is unknown or assumed
+    - ``is_for_repeat``: whether the move starts at the program's end position, for Cycle Repeat
     """
 
     job: str
@@ -80,7 +80,7 @@ def find_clearance(
 class Command(PlainValue):
     """Base class of all commands that can be posted to the executor.
 
-    Commands that are copied with a different job are dataclasses.
+    Commands that have to be copied with another job are dataclasses.
     """
 
     __slots__ = ()
@@ -134,7 +134,7 @@ class ReportInterruptedJob(Command):
 
 
 class CycleStart(Command):
-    """A command that starts a cycle, or resumes after a hold, single block, M00 or M01.
+    """A command that starts a cycle, or resumes it after a feed hold, single block, M00 or M01.
 
     The two-hand relay of the operator station has the same effect.
     """
@@ -143,10 +143,10 @@ class CycleStart(Command):
 
 
 class FeedHold(Command):
-    """A command that stops the axes on the path within the commit time plus the braking time v/a.
+    """A command that stops the axes on the path, after the commit time plus the braking time v/a.
 
     ``by`` is the source of the request, for the log. ``press`` is the number of the key press, or 0 if
-    unknown. If the same press arrives twice, it causes only one hold.
+    unknown. A press that arrives twice causes only one feed hold.
     """
 
     __slots__ = __match_args__ = ("by", "press")
@@ -202,10 +202,10 @@ class SetFeedOverride(Command):
 
 
 class Jog(Command):
-    """A command that moves one axis while the lease lasts, at a signed velocity in mm/s or degrees/s.
+    """A command that moves one axis at a signed velocity (mm/s or degrees/s) until its lease expires.
 
-    The sender must renew the lease (in seconds) before it expires, or the axis stops. ``along`` is the
-    direction vector of this axis in a tilted plane (3D-ROT), in the machine's X, Y and Z.
+    The sender must renew the lease (in seconds) before it expires, or the axis stops. In a tilted plane
+    (3D-ROT), ``along`` is the direction vector of this axis in the machine's X, Y and Z.
     """
 
     __slots__ = __match_args__ = ("axis", "velocity", "lease", "while_on", "along")
@@ -255,16 +255,16 @@ class JogByStep(Command):
 
 
 class StopJog(Command):
-    """A command that releases the jog lease immediately. A step in progress ends early."""
+    """A command that ends the jog immediately, before its lease expires. A step is also ended early."""
 
     __slots__ = ()
 
 
 class RunDriveTest(Command):
-    """A command that runs a drive test from rest while the lease (in seconds) lasts.
+    """A command that runs a drive test from rest until its lease (in seconds) expires.
 
-    ``StopJog`` ends the test. The test is refused while an axis moves or the spindle turns, or if the full
-    excursion would exceed the travel limits.
+    ``StopJog`` ends the test. The test is refused while an axis moves or the spindle turns, or if its full
+    travel would exceed the travel limits.
     """
 
     __slots__ = __match_args__ = ("path", "lease")
@@ -286,9 +286,9 @@ class RenewDriveTest(Command):
 class SelectHandwheel(Command):
     """A command that lets the handwheel move ``axis`` by ``step`` (mm or degrees) per click.
 
-    The handwheel is active only while the lease lasts, which is in seconds and must be renewed by the
-    sender. Counts before the command cause no motion, nor do counts faster than the axis can follow. If the
-    control ends the handwheel motion, the handwheel stays disabled until ``DeselectHandwheel``.
+    The sender must renew the lease (in seconds), or the handwheel becomes inactive. Clicks before the
+    command are ignored, and so are clicks that the axis is too slow to follow. If the control ends the
+    motion, the handwheel stays disabled until ``DeselectHandwheel``.
     """
 
     __slots__ = __match_args__ = ("axis", "step", "lease")
@@ -327,7 +327,7 @@ class HomeAxes(Command):
 
 
 class UseOffsets(Command):
-    """A command to use changed offset tables for the position display and for MDI.
+    """A command that applies changed offset tables to the position display and to MDI.
 
     The command is refused while a program runs, because the program uses the offsets with which it was
     proved.
@@ -360,11 +360,11 @@ class ForceOutput(Command):
 
 
 class ConfirmStart(Command):
-    """A command that confirms starting the program at its first line although a job was interrupted.
+    """A command that confirms a start at the first line although a job was interrupted.
 
-    ``at`` is the time of the interrupted job for which the operator confirmed the start. The confirmation
-    is valid only for the next start, for 60 s, and until the machine leaves the idle state. An empty ``at``
-    withdraws the confirmation.
+    ``at`` is the time of the interruption that the operator has confirmed. The confirmation is valid for
+    one start, for 60 s at most, and only while the machine remains idle. An empty ``at`` withdraws the
+    confirmation.
     """
 
     __slots__ = __match_args__ = ("at",)
@@ -405,11 +405,11 @@ class BlockNextPart(Command):
 
 @dataclass(frozen=True, slots=True)
 class PrepareStart(Command):
-    """A command that selects the next action of Cycle Start.
+    """A command that selects what the next Cycle Start runs: the program, a restart or an MDI line.
 
-    The action is the program, a restart in it, or an MDI line with its proof. ``clearance`` is the check of
-    the first move of a restart or an MDI line. ``StartAction.MDI_LINE`` without a job means that MDI is
-    open but no line is ready, so Cycle Start does nothing. The command is refused while a cycle runs.
+    An MDI line needs a job with its proof. ``StartAction.MDI_LINE`` without a job means that MDI is open
+    but no line is ready, so Cycle Start does nothing. ``clearance`` is the check of the first move of a
+    restart or an MDI line. The command is refused while a cycle runs.
     """
 
     starts: StartAction = StartAction.PROGRAM

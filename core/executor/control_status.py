@@ -1,4 +1,4 @@
-"""State of the control between two ticks: job, alarms, modal state and part count."""
+"""State of the control that persists between ticks: job, alarms, modal state and part count."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from core.message import Message
 
 @dataclass(slots=True)
 class Counters:
-    """Counts and times since the start of the executor. Times are in seconds and exclude stops.
+    """Counts and times since the executor was started.
 
-    ``load_sum`` is a pair: the integral of the spindle load (percent) over cutting time, and this time in
-    seconds.
+    Times are in seconds and exclude stops. ``load_sum`` is a pair: the integral of the spindle load
+    (percent) over the cutting time, and this cutting time in seconds.
     """
 
     counted_part_count: int = 0
@@ -50,7 +50,7 @@ class Counters:
             self.load_sum = self.load_sum[0] + load_percent * seconds, self.load_sum[1] + seconds
 
     def pop_mean_load(self) -> float | None:
-        """Return the mean spindle load at feed in the part that ends now, in percent, or None if unknown.
+        """Return the mean spindle load at feed for the part that ends, in percent, or None if unknown.
 
         The call resets the sum for the next part.
         """
@@ -111,18 +111,18 @@ def make_modal_state_after_cancel(modal: ModalState, language: str = "omniturn")
 
 
 def make_modal_state_after_mdi_cancel(modal: ModalState) -> ModalState:
-    """Return the modal state after an MDI line was canceled.
+    """Return the modal state after an MDI line is canceled.
 
-    The modes that the line set remain, but C and the spindle are released.
+    Modes set by the MDI line remain active, but the C axis and the spindle are released.
     """
     return modal._replace(c_locked=False, c_rpm=None, oriented=None)
 
 
 def sync_modal_state_with_machine(modal: ModalState, context: MachineContext) -> ModalState:
-    """Return the modal state with the M functions updated to their current state at the machine.
+    """Return the modal state with its M functions updated from the machine's current outputs.
 
     An alarm, a reset or a manual action may have switched them. A stopped spindle releases C. Nose
-    compensation and plane switching end with the program that used them.
+    compensation and coordinate transformation (plane switching) end with their program.
     """
     on = {name for name, lit in context.ports.io.get_outputs().items() if lit}
     assigned = {name for name, _ in context.machine.m_codes.values()} | {context.machine.live_tool_output}
@@ -151,11 +151,10 @@ def apply_offsets_to_modal_state(
 class Workpiece:
     """The workpiece in progress.
 
-    A program that starts at its first line starts a new workpiece; a restart continues the current one.
-    Elementary blocks have the same numbers in a run and in its restart, so the numbers show whether a
-    restart skipped blocks. A workpiece is not counted as a part if blocks were skipped, or if the spindle
-    or an output was off although the program had turned it on. The operator can add a good part to the
-    count on page F10.
+    A start at the first line begins a new workpiece; a restart continues the current one. The numbers of
+    the elementary blocks show whether a restart has skipped blocks. A workpiece is not counted as a part if
+    blocks were skipped, or if the spindle or an output was off although the program had turned it on. The
+    operator can add a good part to the count on page F10.
     """
 
     def __init__(self) -> None:
@@ -176,7 +175,7 @@ class Workpiece:
         self._whole = begin is None or (not begin.skips_cuts and begin.checkpoint.blocks <= self._begun)
 
     def count_started_blocks(self, block: int) -> int:
-        """Return how many blocks have started without a gap if the run has reached ``block``."""
+        """Return how many blocks have started, without any skipped, once the run has reached ``block``."""
         return max(self._begun, block) if self._whole else self._begun
 
     def finish_program(self) -> None:
@@ -209,9 +208,9 @@ class PartCounter:
         return "NO COUNT is on" if self._context.switches.no_count else self.workpiece.uncounted_reason
 
     def record_program_end(self) -> None:
-        """Count and log the end of the program.
+        """Count the part, if it is valid, and log the end of the program.
 
-        The time of a restart is not used as a cycle time.
+        The duration of a restart is not stored as a cycle time.
         """
         counters, seconds, why = self.counters, self.counters.cycle_time_s, self.uncounted_reason
         counters.cycle_time_s, load = 0.0, counters.pop_mean_load()

@@ -1,8 +1,8 @@
 """Main loop of the control: it processes commands, queues setpoints and publishes snapshots.
 
-In every tick the executor reads the inputs, makes all decisions and publishes one snapshot. After 1 s
-without a change, the rate drops to ten ticks per second if the drivers can wake the executor. At most
-twenty snapshots per second are made.
+In each tick the executor reads the inputs, makes all decisions and publishes a snapshot (at most twenty per
+second). After 1 s without a change, it runs only ten ticks per second, provided that the drivers can wake
+it.
 """
 
 from __future__ import annotations
@@ -64,10 +64,7 @@ _POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineSt
 
 
 class RestDetector:
-    """Detector of a machine at rest, so that the executor can tick less often.
-
-    It is used on the executor's thread only.
-    """
+    """Detector of a machine at rest, with which the executor's thread reduces its tick rate."""
 
     def __init__(self, context: MachineContext, control: MachineControl) -> None:
         self._context, self._control = context, control
@@ -83,9 +80,9 @@ class RestDetector:
         self._same = -1
 
     def detect_change(self) -> bool:
-        """Compare the machine with the last tick; return whether a new snapshot is needed.
+        """Compare the machine with the previous tick; return whether a new snapshot is needed.
 
-        The comparison saves time, because making a snapshot takes most of the time of a tick.
+        Most of the time of a tick is spent on making the snapshot, so that the comparison saves time.
         """
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
@@ -129,7 +126,7 @@ class RestDetector:
 
     @property
     def is_settled(self) -> bool:
-        """Return whether nothing has changed for 1 s."""
+        """Return whether no value has changed for 1 s."""
         return self._same >= _SETTLED_TICKS
 
     def _is_safe_at_rest(self) -> bool:
@@ -146,7 +143,7 @@ class RestDetector:
 
 
 def _ignore_interruption(_what: InterruptedJob | None) -> None:
-    """Ignore the interrupted job; used by an executor that does not store it beyond its own end."""
+    """Do nothing with the interrupted job. An executor without a store for it uses this function."""
 
 
 def _css_function(ports: MachinePorts) -> Callable[[float], None]:
@@ -157,12 +154,12 @@ def _css_function(ports: MachinePorts) -> Callable[[float], None]:
 class Executor:
     """The main loop of the control.
 
-    ``post`` and ``snapshot`` may be used from any thread, but ``run_tick`` from one thread only.
-    ``start_pass`` starts a pass through a job; tests supply their own function. ``store_interruption``
-    receives the job that a power loss would leave interrupted, and ``interrupted_job`` is the job that the
-    previous process left interrupted. If ``checks_starts`` is True, a cycle starts only after a worker has
-    posted the clearance for its first move. ``record_tick`` receives the data that the scope records in
-    each tick, and must return at once.
+    - ``post`` and ``snapshot`` can be used from any thread, but ``run_tick`` from only one thread.
+    - ``start_pass`` starts a pass through a job; tests supply their own function.
+    - ``store_interruption`` receives the job that a power loss would interrupt.
+    - ``interrupted_job`` is the job that the previous process left interrupted.
+    - If ``checks_starts`` is True, a cycle needs a clearance of its first move from a worker.
+    - ``record_tick`` receives the scope data of each tick and must return immediately.
     """
 
     def __init__(
@@ -228,7 +225,8 @@ class Executor:
     def post(self, command: Command, posted_at: float | None = None) -> None:
         """Post a command for the next tick, without waiting.
 
-        ``posted_at`` is the time of the request in seconds of the machine's clock; None means now.
+        ``posted_at`` is the time of the request on the machine's clock, in seconds, or None for the current
+        time.
         """
         self._commands.put((self._ports.clock.now() if posted_at is None else posted_at, command))
         self.start_next_tick()
@@ -254,7 +252,7 @@ class Executor:
         return False
 
     def run_tick(self) -> None:
-        """Run one tick: read the inputs, execute commands, supervise, advance and publish.
+        """Run one tick: read the inputs, execute commands, supervise, advance motion and publish.
 
         The function is called every 10 to 20 ms. It raises no exceptions; failures become alarms.
         """
@@ -284,8 +282,8 @@ class Executor:
     def _record_delay(self, delay_s: float) -> None:
         """Record the delay of a tick in seconds.
 
-        If the computer is busy, the setpoint queue is lengthened. This delays feed holds, which is logged
-        once.
+        If the computer is busy, more setpoints are queued. Feed holds then take effect later, which is
+        logged once.
         """
         self._late = max(self._late, delay_s)
         lateness = self._context.tick_lateness
@@ -406,7 +404,7 @@ class Executor:
             self._context.log_text("disturbed", (lost or "the pendant is connected again").upper())
 
     def _log_override(self) -> None:
-        """Log the feed override if it has changed by at least 10 % or has reached or left zero."""
+        """Log the feed override if it has changed by 10 % or more, to zero, or from zero."""
         fraction = self._context.feed_override
         if abs(fraction - self._logged_override) >= _LOGGED_OVERRIDE_CHANGE or (fraction == 0.0) != (
             self._logged_override == 0.0

@@ -1,4 +1,4 @@
-"""Storage of canceled programs, and of the job that a power loss would interrupt."""
+"""Storage of interrupted jobs: canceled programs, and the job that a power loss would interrupt."""
 
 from __future__ import annotations
 
@@ -37,11 +37,10 @@ _CONFIRMATION_VALID_S = 60.0  # s for which a confirmation of the operator is va
 
 
 class InterruptionWatch:
-    """Watch that stores in advance the job that a power loss would interrupt.
+    """Storage, in advance, of the job that a power loss would interrupt.
 
-    A power loss leaves no time to write. The state is therefore stored before a cycle starts, at each part
-    and tool, at each stop, and otherwise at most once per second. The watch is used on the executor's
-    thread only.
+    A power loss leaves no time to write. The state is therefore stored before a cycle starts, at each part,
+    tool and stop, and otherwise at most once per second. Only the executor's thread uses this class.
     """
 
     def __init__(
@@ -85,7 +84,7 @@ class InterruptionWatch:
         return before.begun if job is not None and before is not None and _belongs_to(before, job) else 0
 
     def record_start(self, begin: PassStart | None) -> None:
-        """Record the start of a program or a restart, because a power loss would now interrupt it."""
+        """Record that a program or a restart has started, so that a power loss would interrupt it."""
         status, before = self._status, self._status.interrupted_job
         assert status.job is not None
         self._begun = True
@@ -98,9 +97,9 @@ class InterruptionWatch:
         self._note(self._interrupted_job(status.job, None))
 
     def record_progress(self, cycle: Cycle | None) -> None:
-        """Record changes once per tick.
+        """Record the progress of the program, once per tick.
 
-        ``cycle`` is the cycle of a program, or None if no program runs.
+        ``cycle`` is the running cycle of a program, or None if no program runs.
         """
         if self._status.state is not MachineState.IDLE:
             self._answered = None
@@ -143,7 +142,7 @@ class InterruptionWatch:
         self._context.log_text("interrupted", found.words)
 
     def _settle(self) -> None:
-        """Update the stored tool position until the axes have been at rest for 0.2 s after an E-stop."""
+        """After an E-stop, update the stored tool position until the axes are at rest for 0.2 s."""
         found, now = self._status.interrupted_job, self._context.now
         if self._settled or found is None:
             return
@@ -171,7 +170,7 @@ class InterruptionWatch:
     def confirm_start(self, interruption_time: str) -> str:
         """Accept the operator's confirmation of a start at the first line.
 
-        Returns the reason if the confirmation is refused, otherwise an empty string.
+        Return the reason if the confirmation is refused, otherwise an empty string.
         """
         self._answered = None
         found = self._status.interrupted_job
@@ -188,7 +187,7 @@ class InterruptionWatch:
 
     @property
     def is_confirmed(self) -> bool:
-        """Return whether the operator has confirmed the start within the last 60 s."""
+        """Return whether the operator has confirmed a start at the first line within the last 60 s."""
         return self._answered is not None and self._context.now - self._answered <= _CONFIRMATION_VALID_S
 
     @property
@@ -250,7 +249,7 @@ class InterruptionWatch:
 
 
 def _belongs_to(found: InterruptedJob, job: Job) -> bool:
-    """Return whether the interrupted job belongs to this program.
+    """Return whether the interrupted job belongs to the program of this job.
 
     The text or the offsets of the program may have changed since the interruption.
     """

@@ -1,6 +1,6 @@
-"""Jobs, their proofs, and a reader that reads blocks ahead of the motion.
+"""Jobs, their proofs, and the reader that reads blocks ahead of the motion.
 
-A proof is valid only for the job with its digest.
+A proof is valid only for the job whose digest it contains.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ WARNING_PREFIX = "WARNING: "
 
 
 class ProgramPass(NamedTuple):
-    """One pass through a program: its blocks as they are read, and the diagnostics found so far.
+    """One pass through a program: an iterator of its blocks, and the diagnostics found so far.
 
-    ``make_checkpoint`` returns the state that an MDI line passes to the next line. It is None for a
+    ``make_checkpoint`` returns the state that an MDI line passes to the next MDI line. It is None for a
     program, which ends with M30 or M02.
     """
 
@@ -43,12 +43,12 @@ class ProgramPass(NamedTuple):
 
 
 class BlockReadAhead:
-    """Reader that reads the blocks of a pass ahead of the motion.
+    """Reader that reads the blocks of a program pass ahead of the motion.
 
-    ``pending_blocks`` contains the blocks of one path section. ``stop`` is the next block that needs a
-    standstill (``SectionEndDetector``). No block after ``stop`` is read until ``stop`` has been executed,
-    so that the program reads inputs at the correct time. Each block is checked against the machine again
-    when it is read.
+    ``pending_blocks`` are the blocks of one path section. ``stop`` is the next block that needs a
+    standstill (``SectionEndDetector``). No later block is read before ``stop`` has been executed, so that
+    the program reads inputs at the correct time. Each block is checked against the machine again when it is
+    read.
     """
 
     def __init__(self, source: ProgramPass, machine: Machine) -> None:
@@ -65,7 +65,7 @@ class BlockReadAhead:
 
     @property
     def next_block(self) -> Block | None:
-        """Return the next block that has not been removed, or None."""
+        """Return the next block that has not been removed, or None if no block has been read."""
         return self.pending_blocks[0] if self.pending_blocks else self.stop
 
     @property
@@ -74,9 +74,9 @@ class BlockReadAhead:
         return self.stop is not None or self.is_at_end or self.read_error is not None
 
     def read_blocks(self, max_block_count: int, max_motion_s: float) -> None:
-        """Read up to ``blocks`` blocks, until ``max_motion_s`` seconds of motion are pending.
+        """Read up to ``max_block_count`` blocks, until ``max_motion_s`` seconds of motion are pending.
 
-        A thread is read to the end of its pull-out, even if more motion than this is then pending.
+        A thread is always read to the end of its pull-out, even if the pending motion is then longer.
         """
         for _ in range(max_block_count):
             if self.is_exhausted or (self.pending_motion_s >= max_motion_s and not self._ends.is_in_thread):
@@ -86,14 +86,14 @@ class BlockReadAhead:
                 self._sort(block)
 
     def take_pending_blocks(self) -> list[Block]:
-        """Remove and return the pending blocks for motion."""
+        """Remove the pending blocks from the reader and return them, so that they can be executed."""
         taken = list(self.pending_blocks)
         self.pending_blocks.clear()
         self.pending_motion_s = 0.0
         return taken
 
     def release_stop(self) -> None:
-        """Continue after the standstill because its action is done or the cutting block may start."""
+        """Continue after the standstill, when its action is complete or its cutting block may start."""
         block, self.stop = self.stop, None
         if block is not None:
             self._ends.record_standstill(block)
@@ -114,7 +114,7 @@ class BlockReadAhead:
         return None if self.read_error else block
 
     def _find_error(self) -> None:
-        """Store the first new error of the interpreter. Only a live run can encounter such an error."""
+        """Store the first new error of the interpreter. Such errors occur only in an actual run."""
         problems = self._source.get_diagnostics()
         for problem in problems[self._reported :]:
             if problem.severity is Severity.ERROR and self.read_error is None:
@@ -156,9 +156,9 @@ def compute_nominal_duration_s(block: Block) -> float:
 def check_block(block: Block, machine: Machine) -> None:
     """Check a block again before it moves an axis.
 
-    Raises AlarmError if the block exceeds the travel limits, or if it moves C while the spindle turns and
-    the spindle is the C axis. Also raises AlarmError if a block other than a rapid uses feed per revolution
-    with a stopped spindle and does not move C.
+    Raises AlarmError in three cases: The block exceeds the travel limits. It moves C while the spindle
+    turns, and the spindle is the C axis. It is not a rapid, uses feed per revolution with a stopped
+    spindle, and does not move C.
     """
     if not block.moves:
         return
@@ -192,10 +192,10 @@ def check_block(block: Block, machine: Machine) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A program with its offsets, units and switches, stored by value.
+    """A program with its offsets, units and switches, as immutable values.
 
     ``digest`` identifies exactly this job. ``shared_program`` is the parsed text, which the proof and the
-    run of a job share.
+    run share.
     """
 
     source: ProgramSource
@@ -212,10 +212,10 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """The result of proving the job with this digest.
+    """The result of proving the job that has the same digest.
 
-    ``warnings`` contains short warnings about assumed values. They do not prevent a start but are shown
-    before the start.
+    ``warnings`` contains short warnings about assumed values, which are shown before the start but do not
+    prevent it.
     """
 
     digest: str
@@ -230,15 +230,15 @@ class Proof:
     warnings: tuple[str, ...] = ()
 
     def unset(self, job: Job) -> list[int]:
-        """Return the program's tools that are not set and that the program does not measure itself."""
+        """Return the numbers of the tools that have no offset set and that the program does not measure."""
         return sorted(set(self.tool_numbers) - job.set_tool_numbers - set(self.measured_tools))
 
 
 def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) -> Job:
     """Return the job of a program with its setup.
 
-    If this job starts in the middle of a program, ``whole_job`` is the job of the whole program. The digest
-    covers everything that affects the elementary blocks, except live inputs and the position of the axes.
+    If the job starts in the middle of a program, ``whole_job`` is the job of the whole program. The digest
+    covers everything that affects the elementary blocks, except live inputs and the axis positions.
     """
     part_of = whole_job.digest if whole_job is not None else ""
     circumstances = (
@@ -279,7 +279,7 @@ def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) 
 
 
 def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
-    """Return how the current units or rapid rate differ from those of the proof, or an empty string.
+    """Return how the current units or rapid rate differ from the proof, or an empty string if equal.
 
     The previous job may have changed the units or the rapid rate.
     """

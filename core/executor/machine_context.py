@@ -32,7 +32,7 @@ _OVERRIDE_STEP = 0.005  # smallest step of the feed override
 
 @dataclass(slots=True)
 class OperatorSwitches:
-    """State of the operator's switches, which the screen shows as lit words."""
+    """State of the operator's switches, such as single block, which the screen shows as lit labels."""
 
     single_block: bool = False
     optional_stop: bool = False
@@ -90,14 +90,14 @@ class MachineContext:
         return round(fraction / _OVERRIDE_STEP) * _OVERRIDE_STEP
 
     def log_text(self, kind: str, text: str) -> None:
-        """Write an entry with the current time and line to the event log."""
+        """Write an entry with the current time and program line to the event log."""
         self.log_event(LogEvent(self.now, kind, text, self.line_number))
 
     def show_stop(self, code: AlarmCode, detail: str = "") -> None:
-        """Show a hold, a stop or the E-stop until motion resumes, and log it.
+        """Show a feed hold, a stop or the E-stop until motion resumes, and log it.
 
-        Only the first of consecutive single-block stops is logged, so that such stops do not displace other
-        log entries.
+        Only the first of consecutive single-block stops is logged, so that the others do not displace
+        earlier entries.
         """
         if code == "single-block" == self._noted:
             self.stop = make_alarm(code, detail, self.line_number, self.now)
@@ -113,7 +113,7 @@ class MachineContext:
         return stop
 
     def log_event(self, event: LogEvent) -> None:
-        """Pass an event to the log. A failure of the log is reported but stops nothing else."""
+        """Pass an event to the event log. A failure of the log is reported but has no other effect."""
         with CaughtAttempt() as trial:
             self.handle_event(event)
         if trial.error is not None:

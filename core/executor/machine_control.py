@@ -1,4 +1,4 @@
-"""Machine state and its transitions for start, feed hold, Reset, E-stop, alarms and shutdown."""
+"""Machine state and its transitions: start, feed hold, Reset, E-stop, alarms and shutdown."""
 
 from __future__ import annotations
 
@@ -107,12 +107,12 @@ class MachineControl:
 
     @property
     def cycle(self) -> Cycle | None:
-        """Return the running cycle, or None."""
+        """Return the running cycle, or None if no cycle runs."""
         return self.program_run.cycle
 
     @property
     def modal_state(self) -> ModalState:
-        """Return the modal state of the block being executed, or between two programs the stored state."""
+        """Return the modal state of the executing block, or the stored state if no program runs."""
         return self.program_run.modal_state
 
     def change_state(self, state: MachineState) -> None:
@@ -172,7 +172,8 @@ class MachineControl:
     def handle_spindle_switch(self) -> None:
         """Handle a change of the spindle switch from OFF to AUTO.
 
-        Between programs this starts a spindle that is waiting. In a stopped cycle only Cycle Start does.
+        If no cycle is active, this starts a spindle that is waiting for the switch. In a stopped cycle,
+        only Cycle Start does.
         """
         spindle = self._context.spindle
         if self.state not in MANUAL_STATES or not spindle.waiting_reason:
@@ -205,8 +206,8 @@ class MachineControl:
     def start_feed_hold(self, reason: str, source: str = "", code: AlarmCode | None = None) -> None:
         """Hold the cycle, end a jog, stop homing and disable the handwheel.
 
-        ``reason`` is a text of the alarm catalog, or a detail for ``code``. If a button was pressed,
-        ``reason`` is empty and ``source`` names the button.
+        ``reason`` is a text of the alarm catalog, or a detail of the alarm ``code``. If a button was
+        pressed, ``reason`` is empty and ``source`` names the button.
         """
         if self.handwheel.axis:
             self.handwheel.disable(reason.lower() or "feed hold", self.state)
@@ -243,10 +244,10 @@ class MachineControl:
         self.jogger.stop()
 
     def release_jog_key(self) -> None:
-        """Handle the release of a jog key or button, so that the next press starts a jog again.
+        """Handle the release of a jog key or button, so that the next press can start a jog.
 
-        A late or repeated release has no effect on a program or homing that started after the jog, but it
-        stops any manual motion. Raises DriverError if a driver fails.
+        A late or repeated release stops any manual motion, but has no effect on a program or homing that
+        started after the jog. Raises DriverError if a driver fails.
         """
         self.jog_end_reason = ""
         if self.state is MachineState.JOG:
@@ -260,7 +261,7 @@ class MachineControl:
         self.stop_jog(reason)
 
     def _check_spindle(self) -> None:
-        """End manual motion when the spindle stops, because the tool could crash into the stopped part."""
+        """End manual motion when the spindle stops, to prevent a crash of the tool into the stopped part."""
         spindle = self._context.spindle
         turned, self._turned = self._turned, spindle.is_requested and not spindle.is_too_slow
         if not turned or self._turned or self.state is not MachineState.JOG:
@@ -334,7 +335,7 @@ class MachineControl:
             self.change_state(MachineState.IDLE)
 
     def _check_queue(self, cycle: Cycle) -> None:
-        """Hold the cycle if the setpoint queue is nearly empty because the computer refilled it too late."""
+        """Hold the cycle if the setpoint queue is nearly empty because it was refilled too late."""
         motion = self.program_run.motion
         left = motion.starvation_time_s - self._context.now
         if motion.has_section and left < self._context.machine.timing.low_water:

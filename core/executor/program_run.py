@@ -1,7 +1,7 @@
-"""Runs of programs and MDI lines: start, Cycle Repeat, cancel, and changed offsets such as wear.
+"""Runs of programs and MDI lines: start, Cycle Repeat, cancellation, and changed offsets.
 
-Changed offsets take effect between two parts. The modal state at the end of a run is stored for the next
-run.
+Changed offsets, such as wear, take effect between two parts. The modal state at the end of a run is stored
+for the next run.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ from core.tool_edges import get_tool_number
 class ChangedOffsets:
     """A request to continue the running program with changed offsets.
 
-    The part in progress uses its current offsets. The changed job must be proved before its first move.
-    With Cycle Repeat, the next part waits for the proof. If the program fails the proof with the new
-    offsets, it is not repeated.
+    The part in progress uses its current offsets. The job with the changed offsets must be proved before
+    its first move. With Cycle Repeat, the next part waits for this proof. If the proof fails, the program
+    is not repeated.
     """
 
     def __init__(self, context: MachineContext) -> None:
@@ -67,7 +67,7 @@ class ChangedOffsets:
         return ""
 
     def find_repeat_refusal(self, present_modal: ModalState) -> str:
-        """Return why the program cannot be repeated with the changed offsets, or an empty string."""
+        """Return why the program cannot repeat with the changed offsets, or an empty string if it can."""
         asked = self._asked
         if asked is None:
             return ""
@@ -79,7 +79,7 @@ class ChangedOffsets:
         return why or find_outdated_setting(asked.job, present_modal)
 
     def apply_changes(self, status: ControlStatus) -> None:
-        """Load the changed job between two parts or after the program.
+        """Load the job with the changed offsets, between two parts or after the program.
 
         Without a proof, the program cannot start, because its old offsets no longer match the tables.
         """
@@ -101,7 +101,10 @@ class ChangedOffsets:
 
 
 class ProgramRun:
-    """The running cycle and the state between two cycles. It is used by the executor's thread only."""
+    """The running cycle, and the state that persists between two cycles.
+
+    Only the executor's thread uses it.
+    """
 
     def __init__(
         self,
@@ -143,9 +146,9 @@ class ProgramRun:
         return why or self.interruption_watch.start_refusal
 
     def start_run(self) -> None:
-        """Start the program, the restart or the MDI line.
+        """Start the selected program, restart or MDI line.
 
-        A prepared job is used only once.
+        A prepared restart or MDI line is used only once.
         """
         status, context = self.status, self._context
         job = start_conditions.get_selected_job(status)
@@ -219,7 +222,7 @@ class ProgramRun:
         self._finish_run(make_modal_state_after_mdi_cancel(cycle.modal) if self._line else given_up)
 
     def discard_run(self) -> None:
-        """Discard the run without calling the drivers. This is used after a driver failure."""
+        """Discard the run after a driver failure, without calling the drivers."""
         self.cycle = self._source = None
         self._between = False
         self._context.line_number = 0
@@ -246,7 +249,7 @@ class ProgramRun:
         self.status.modal_state, self.status.is_tool_move_pending = modal, tool_open
 
     def update_between_cycles(self) -> None:
-        """Update the state between two cycles.
+        """Update the state after a cycle has ended and before the next one starts.
 
         With Cycle Repeat, the next part is started if this is permitted.
         """
@@ -340,11 +343,11 @@ class ProgramRun:
 
     @property
     def modal_state(self) -> ModalState:
-        """Return the modal state of the block being executed, or between two programs the stored state."""
+        """Return the modal state of the executing block, or the stored state if no program runs."""
         return self.cycle.modal if self.cycle is not None else self.status.modal_state
 
     def _end_functions(self) -> None:
-        """Stop the spindle at M30, and turn off all outputs except the collet."""
+        """Stop the spindle, and turn off all outputs except the collet, because of M30."""
         context = self._context
         context.spindle.stop()
         for name, on in context.ports.io.get_outputs().items():

@@ -84,7 +84,7 @@ def log_alarm(alarm: Alarm) -> None:
 class CaughtAttempt:
     """A context manager that catches an error of its ``with`` block and stores it in ``error``.
 
-    SystemExit is caught too. Only KeyboardInterrupt is re-raised, because it is meant for the main thread.
+    SystemExit is caught too. Only KeyboardInterrupt, which is meant for the main thread, is raised again.
     """
 
     def __init__(self) -> None:

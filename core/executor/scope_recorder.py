@@ -46,7 +46,7 @@ _TURNING_RPM = 1.0  # rpm
 
 
 class _OpenRecord(NamedTuple):
-    """An alarm whose record has not been written yet, with the program that was running."""
+    """An alarm whose record is still to be written, with the name of the program that was running."""
 
     alarm_event: LogEvent
     program: str
@@ -68,11 +68,12 @@ def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
 class ScopeRecorder(ScopeRecordings):
     """Recorder of ticks in a ring buffer, which saves a file for each alarm.
 
-    The executor calls ``queue_tick`` and ``assign_record_name``; ``get_record_since`` and
-    ``get_record_between`` may be called from any thread. ``folder`` contains the ring file ``name`` and the
-    alarm records. If ``folder`` is None, no file is written. ``storage_error`` is the reason why the ring
-    file cannot be written; the record is then in memory only. ``memory`` is shared with another process
-    that reads the ring.
+    - The executor calls ``queue_tick`` and ``assign_record_name``. Any thread may call
+      ``get_record_since`` and ``get_record_between``.
+    - ``folder`` contains the ring file ``name`` and the alarm records, or is None if no file is written.
+    - ``storage_error`` is the reason why the ring file cannot be written. The record is then in memory
+      only.
+    - ``memory`` is shared with another process that reads the ring.
     """
 
     def __init__(
@@ -116,7 +117,7 @@ class ScopeRecorder(ScopeRecordings):
             self._happens.set()
 
     def assign_record_name(self, event: LogEvent) -> LogEvent:
-        """Return an alarm or E-stop event with the name of the record that will be written.
+        """Return an alarm or E-stop event with the name of its future record; leave others unchanged.
 
         The function does not wait.
         """
@@ -132,7 +133,7 @@ class ScopeRecorder(ScopeRecordings):
         return replace(event, record_name=self._name)
 
     def is_saving(self, name: str) -> bool:
-        """Return whether the record of this alarm has not been completely written yet."""
+        """Return whether the alarm record with this name is still being written."""
         return name in {self._name, self._writing} - {""}
 
     # --- the recorder's thread --------------------------------------------------------------------------
@@ -189,7 +190,7 @@ class ScopeRecorder(ScopeRecordings):
                 self._file = None
 
     def _tick_rows(self, ticks: Iterable[TickData]) -> FloatArray:
-        """Return a row for each tick with a change, but only ten rows per second at rest."""
+        """Return a row for each tick in which a value changed, but only ten rows per second at rest."""
         recorded, last = self.ring.layout, self.ring.ticks.last_time_s
         rows: list[list[float]] = []
         for tick in ticks:
@@ -245,7 +246,7 @@ class ScopeRecorder(ScopeRecordings):
         return np.concatenate([before, gap, later_rows])
 
     def _rows_from_snapshots(self, ticks: Iterable[TickData], last: float) -> FloatArray:
-        """Return samples made from the snapshots. The last row before a change is always included."""
+        """Return samples made from the snapshots, including the last sample before each change."""
         width, none = self.ring.layout.sample_width, [_NAN] * len(self.ring.layout.is_rotary_by_axis)
         rows: list[list[float]] = []
         for tick in ticks:
@@ -275,7 +276,7 @@ class ScopeRecorder(ScopeRecordings):
     # --- records of alarms --------------------------------------------------------------------------------
 
     def _write_due_record(self, now: Snapshot | None, *, last: bool) -> None:
-        """Write the record of an alarm when the machine is at rest or 2 s after the alarm."""
+        """Write the pending alarm record once the machine is at rest or 2 s after the alarm."""
         if self._freezing is None and self._noted:
             self._freezing = self._noted.popleft()
         if self._freezing is None or (now is None and not last):
@@ -323,7 +324,7 @@ def _over(now: Snapshot, alarm: float) -> bool:
 
 
 def delete_oldest_records(folder: Path) -> None:
-    """Delete the oldest alarm records if there are more than the permitted number.
+    """Delete the oldest alarm records until the permitted number remains.
 
     Raises RecordError if a record cannot be deleted.
     """

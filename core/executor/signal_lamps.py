@@ -1,8 +1,8 @@
 """Signal tower with red, amber and green lamps and a buzzer, and the signals that it shows.
 
-Lamps are not outputs of the program. A failed lamp does not hold the cycle, and M30 does not change lamps.
-A machine at rest can use the slower tick rate even if a lamp is on. A drive fault, the E-stop and the
-shutdown switch lamps to their safe state like all other outputs. The control then turns on the lamps that
+Lamps are not program outputs: a failed lamp does not hold the cycle, and M30 does not change lamps. A
+machine at rest can use the slower tick rate even if a lamp is on. A drive fault, the E-stop and the
+shutdown switch lamps to their safe states like all other outputs. The control then turns on the lamps that
 it can still switch.
 """
 
@@ -24,9 +24,9 @@ _REFUSAL_TIME_S = 5.0  # s after which a lamp that the driver refused is switche
 
 @dataclass(slots=True)
 class SignalSelector:
-    """Selector of the active signals.
+    """Selector of the active signals of the signal tower.
 
-    It also stores whether a part is finished and the next one has not started.
+    It also stores whether a part is complete and the next one has not started.
     """
 
     _ends: int = -1
@@ -37,8 +37,8 @@ class SignalSelector:
     ) -> tuple[str, ...]:
         """Return the names of all active signals.
 
-        ``program_end_count`` is the number of finished programs. ``is_next_part_blocked`` is True if no other
-        part may start.
+        ``program_end_count`` is the number of programs that have reached their end.
+        ``is_next_part_blocked`` is True if the next part must not start.
         """
         self._made = (self._made or program_end_count > self._ends >= 0) and state is MachineState.IDLE
         self._ends = program_end_count
@@ -87,7 +87,7 @@ class SignalLamps:
     ) -> None:
         """Update the lamps of the signal tower.
 
-        ``is_next_part_blocked`` is True if a tool or a measurement prevents the next part.
+        ``is_next_part_blocked`` is True if a tool or a required measurement prevents the next part.
         """
         if not self._lamps:
             return

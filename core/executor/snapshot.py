@@ -1,7 +1,7 @@
 """Snapshot of the machine, from which all displays are drawn, and the interrupted job.
 
-A table specifies which state may follow another state. Any other change is an internal error and becomes an
-alarm.
+A table specifies the permitted transitions between machine states. Any other transition is an internal
+error and becomes an alarm.
 """
 
 from __future__ import annotations
@@ -37,9 +37,10 @@ _NUMBERS = ("line", "block", "begun", "tool", "part")
 class InterruptedJob:
     """The program, line, tool and position at which a job was interrupted.
 
-    ``where`` contains the machine positions in the order of ``axes``, in mm (X as a radius) or in degrees.
-    ``part`` is the number of the part in progress. ``begun`` is the number of its elementary blocks that
-    had started without a gap. ``at`` is the time of day in UTC, in ISO 8601 format.
+    - ``where``: machine positions in the order of ``axes``, in mm (X as a radius) or in degrees
+    - ``part``: number of the part in progress
+    - ``begun``: number of its elementary blocks that had started, with none skipped
+    - ``at``: time of day in UTC, in ISO 8601 format
     """
 
     program: str  # name of its file
@@ -149,10 +150,11 @@ class Alarm:
 class DriveTestState(NamedTuple):
     """State of the drive tests.
 
-    ``barred`` is the reason why this machine cannot run drive tests. ``tested_axis`` is the axis under
-    test, or empty if no test runs. ``number`` is the number of tests that were started. The last test
-    started at ``start_time_s`` on the clock of the samples. ``completed_test_count`` is the number of
-    completed tests. ``sample_rate_hz`` is the number of samples per second.
+    - ``barred``: reason why this machine cannot run drive tests, or empty
+    - ``tested_axis``: axis under test, or empty if no test runs
+    - ``number`` and ``completed_test_count``: number of tests started and completed
+    - ``start_time_s``: start of the last test on the clock of the samples
+    - ``sample_rate_hz``: number of samples per second
     """
 
     barred: str = ""
@@ -167,7 +169,7 @@ NO_DRIVE_TEST = DriveTestState()
 
 
 class TouchPhase(StrEnum):
-    """The phases of a touch-off at the tool setter."""
+    """Phase of a touch-off at the tool setter."""
 
     SEARCH = "search"
     BACK_OFF = "back off"
@@ -299,16 +301,13 @@ class Snapshot:
     def shows_diameter(self) -> bool:
         """Return whether displays show X as a diameter.
 
-        The mode of a program remains after its end, a Reset or an E-stop.
+        The mode that a program selects remains active after its end, a Reset or an E-stop.
         """
         return self.modal.diameter if self.x_diameter is None else self.x_diameter
 
     @property
     def tip(self) -> tuple[float, float]:
-        """Return the actual X and Z in machine coordinates.
-
-        The pictures of a lathe show the tool at this position.
-        """
+        """Return the actual X and Z in machine coordinates, at which lathe views draw the tool tip."""
         return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
 
 

@@ -1,4 +1,4 @@
-"""Factory of snapshots, which combines the block being executed with measured values."""
+"""Factory of snapshots, which combines data of the executing block with measured values."""
 
 from __future__ import annotations
 
@@ -128,10 +128,9 @@ class SnapshotPublisher:
     def _is_x_diameter(self, block: Block | None, modal: ModalState, status: ControlStatus) -> bool:
         """Return whether X is displayed as a diameter.
 
-        The mode of the last program or MDI line remains after its end, a reset or an E-stop, and during a
+        The mode of the last program or MDI line remains after its end, a Reset or an E-stop, and during a
         retract from the part. The tool may still be in the part, and a displayed value that suddenly halves
-        would mislead the operator. Loading another program selects the control's own mode, and so does MDI,
-        because typed values are in this mode.
+        would mislead the operator. Loading another program, or opening MDI, selects the control's own mode.
         """
         name = status.job.source.name if status.job is not None else ""
         if name != self._shown_for:
@@ -159,7 +158,7 @@ class SnapshotPublisher:
         )
 
     def _measure_velocity(self, sample: AxisSample, linear_axis_count: int) -> float:
-        """Return the combined velocity of the linear axes in mm/s, calculated from encoder positions."""
+        """Return the resultant velocity of the linear axes in mm/s, from their encoder positions."""
         before, self._before = self._before, sample
         if before is None:
             return 0.0
@@ -176,7 +175,7 @@ def _ends(block: Block) -> bool:
 
 
 def _block_values(block: Block | None, modal: ModalState, sample: AxisSample) -> _BlockValues:
-    """Return the values of the block or, if there is none, of the modal state and the setpoint."""
+    """Return the snapshot values of a block, or of the modal state and setpoint if ``block`` is None."""
     return _BlockValues(
         line=block.line if block else 0,
         block=block.n if block else 0,
@@ -196,7 +195,7 @@ def _is_optional_stop(block: Block | None) -> bool:
 
 
 def _next_text(cycle: Cycle | None) -> str:
-    """Return the text of the block after the one being executed, or an empty string."""
+    """Return the text of the block after the executing one, or an empty string if there is none."""
     following = cycle.next_block if cycle else None
     return following.text if following else ""
 

@@ -46,9 +46,9 @@ class SpindleControl:
     """Control that converts the programmed speed to commands and monitors the spindle drive.
 
     Only ``request_speed`` and ``permit_start`` start the spindle. After ``stop`` it remains at rest until
-    the program requests it again. If a requested spindle is stopped by the switch, the potentiometer or a
-    fault, it waits: the request is stored, the command is withdrawn, and the spindle starts when this is
-    permitted.
+    the program requests it again. If the spindle switch, the potentiometer or a fault stops a requested
+    spindle, it becomes a waiting spindle: the request is stored, the command is withdrawn, and it starts
+    only when permitted.
     """
 
     def __init__(
@@ -123,9 +123,9 @@ class SpindleControl:
 
     @property
     def is_speed_lost(self) -> bool:
-        """Return whether the spindle turns in the wrong direction or at less than half the expected speed.
+        """Return whether the spindle turns in the wrong direction or below half its expected speed.
 
-        In this case the feed must stop.
+        If so, feed motion must stop.
         """
         along = math.copysign(1.0, self.commanded_rpm) * self.measured_rpm
         return self.commanded_rpm == 0.0 or along < 0.5 * min(
@@ -139,7 +139,7 @@ class SpindleControl:
 
     @property
     def slow_reason(self) -> str:
-        """Return why the operator or the program has stopped the spindle, or an empty string."""
+        """Return why the spindle is not requested, cannot start or is waiting, or an empty string."""
         if self._ask is None:
             return "SPINDLE STOPPED"
         return self.start_inhibit_reason or self.waiting_reason
@@ -172,7 +172,7 @@ class SpindleControl:
             self._again, self._in_band_since = True, None
 
     def record_external_stop(self, reason: str) -> None:
-        """Record that a device between control and drive has stopped the spindle; the spindle then waits."""
+        """Record that a device between control and drive has stopped the spindle, which then waits."""
         if self._ask is not None:
             self.waiting_reason, self._withdrawn = reason, True
 
@@ -199,10 +199,10 @@ class SpindleControl:
         self._send(0.0, self._now)
 
     def prepare_safe_stop(self, *, should_coast: bool) -> list[tuple[str, Callable[[], None]]]:
-        """Return the steps of a safe stop of the spindle.
+        """Discard the spindle request and return the steps of a safe stop of the spindle.
 
-        Each step must be run even if another step raises an error. The call discards the request. The steps
-        release C and command the drive to stop, even if a stop was already sent.
+        Each step must be run even if another step raises an error. The steps release C and command the
+        drive to stop, even if a stop was already commanded.
         """
         self._ask, self._in_band_since = None, None
         self._forget_waiting()
@@ -238,7 +238,8 @@ class SpindleControl:
     def orient_spindle(self, angle: float, direction: int) -> bool:
         """Orient the spindle (M19, SPOS); return whether the drive holds it at ``angle`` degrees.
 
-        Conditions that prevent a start also prevent orienting. Raises AlarmError or DriverError on failure.
+        A condition that prevents a spindle start also prevents orienting. Raises AlarmError or DriverError
+        on failure.
         """
         if self.start_inhibit_reason and self.orientation.angle_deg is None:
             self.orientation.release_spindle()
@@ -272,9 +273,9 @@ class SpindleControl:
     def update(self, now: float, radius: float) -> None:
         """Send a changed speed and monitor the drive, once per tick.
 
-        ``radius`` is the radius of the tool position in mm, for constant surface speed. Raises AlarmError
-        if the drive has tripped, does not follow its command, no longer holds an orientation angle, or
-        reports a speed that is not a number. Raises DriverError if the drive rejects the speed.
+        ``radius`` is the radius of the tool position in mm, for constant surface speed. Raises DriverError
+        if the drive rejects the speed. Raises AlarmError if the drive has tripped, does not follow its
+        command, loses an orientation angle, or reports a speed that is not a number.
         """
         self._now = now
         measured = self._port.speed()
@@ -358,7 +359,7 @@ class SpindleControl:
         return min(min(ask.max_rpm or self.max_rpm, self.max_rpm) * self.override, self._model.max_rpm)
 
     def _record_fall(self, rpm: float, now: float) -> None:
-        """Record the time and speed at which a change of the commanded speed starts.
+        """Record the time and speed at which the commanded speed begins to fall or reverse.
 
         The measured speed is included because the spindle may still coast after an E-stop.
         """
@@ -371,9 +372,9 @@ class SpindleControl:
             self._rose = (now, min(abs(self.measured_rpm), abs(self.commanded_rpm)))
 
     def _check_stopped_spindle(self, now: float) -> None:
-        """Let a requested spindle wait if it has stopped.
+        """Change a requested spindle that has stopped to a waiting spindle.
 
-        The spindle then does not start automatically when the cause of the stop disappears.
+        It then does not start automatically when the cause of the stop disappears.
         """
         if self._ask is None:
             return
@@ -397,12 +398,12 @@ class SpindleControl:
             self._in_band_since = now
 
     def _min_expected_rpm(self, now: float) -> float:
-        """Return the minimum speed in rpm of a correct drive after an increase of the commanded speed."""
+        """Return the lowest speed in rpm that a working drive has after the commanded speed was raised."""
         since, speed = self._rose
         return speed + self._model.accel * max(now - since - self._grace_s, 0.0)
 
     def _max_expected_rpm(self, now: float) -> float:
-        """Return the maximum speed in rpm of a correct drive after a decrease of the commanded speed."""
+        """Return the highest speed in rpm that a working drive has after the commanded speed was lowered."""
         since, speed = self._fell
         ramp = speed - self._model.decel * max(now - since - self._grace_s, 0.0)
         return (

@@ -8,9 +8,9 @@ from core.ports import OrientingSpindle
 
 
 class OrientationControl:
-    """Control of the spindle orientation at one angle.
+    """Control of the spindle orientation to an angle.
 
-    The orientation must be released before the spindle turns or stops.
+    The orientation must be released before the spindle is turned on or stopped.
     """
 
     def __init__(self, port: OrientingSpindle | None, rpm: float) -> None:
@@ -25,7 +25,7 @@ class OrientationControl:
 
     @property
     def angle_deg(self) -> float | None:
-        """Return the angle in degrees at which the drive holds the spindle, or None."""
+        """Return the angle in degrees at which the drive holds the spindle, or None if it holds none."""
         return self._asked[0] if self._asked is not None and self._reached else None
 
     @property

@@ -1,7 +1,7 @@
-"""Conditions of a cycle start, in the order in which an operator has to satisfy them.
+"""Conditions for a cycle start, in the order in which an operator has to satisfy them.
 
-The conditions concern the machine, the job to start (program, restart or MDI line) and its proof. Each
-function that a start would turn on, other than the job, must be announced first.
+They concern the machine, the job to start (program, restart or MDI line) and its proof. If a start would
+also turn on a function that is not part of the job, this must be announced first.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def find_program_collet_refusal(context: MachineContext) -> str:
 
 
 def find_state_refusal(context: MachineContext, state: MachineState) -> str:
-    """Return the machine state that prevents a cycle start, or an empty string."""
+    """Return a text that names the machine state that prevents a start, or an empty string."""
     if state in _BUSY_STATES:
         return _BUSY_STATES[state]
     if find_station_refusal(context):
@@ -102,7 +102,7 @@ def find_job_refusal(
 
 
 def find_missing_function(context: MachineContext, proof: Proof | None) -> str:
-    """Return a message about a function that the machine lacks for the program, or an empty string."""
+    """Return a message if the machine lacks a function that the program needs, or an empty string."""
     blocks = context.ports.blocks
     absent = {Message("output {name}", name=name) for name in context.machine.missing_outputs}
     for need in proof.required_functions if proof is not None else ():
@@ -160,7 +160,7 @@ _POSITION_TOLERANCE = 0.01  # mm or degrees, tolerance between the axes and the 
 
 
 def get_selected_job(status: ControlStatus) -> Job | None:
-    """Return the job that Cycle Start would run, or None."""
+    """Return the job that Cycle Start would run, or None if no job is ready."""
     return status.job if status.start_action is StartAction.PROGRAM else status.prepared_job
 
 
@@ -180,10 +180,7 @@ def find_start_refusal(context: MachineContext, state: MachineState, status: Con
 def find_first_move_refusal(
     context: MachineContext, status: ControlStatus, run_count: int
 ) -> tuple[str, str]:
-    """Return the code and the sentence of the refusal of the first move.
-
-    Both are empty if the first move is permitted.
-    """
+    """Return the code and the text of the refusal of the first move, or two empty strings."""
     job = get_selected_job(status)
     if not status.requires_clearance or job is None:
         return "", ""
@@ -224,7 +221,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
 
 
 def _find_change(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
-    """Return what has changed since the program, line or restart was proved, or an empty string."""
+    """Return what has changed since the job was proved, or an empty string if it is unchanged."""
     if job is None:
         return ""
     begin = job.setup.begin
@@ -257,7 +254,7 @@ def _proof_instruction(begin: PassStart) -> str:
 
 
 def _find_restart_change(status: ControlStatus, job: Job, begin: PassStart, now: ModalState) -> str:
-    """Return why a restart is outdated, or an empty string.
+    """Return why a restart is outdated, or an empty string if it is not.
 
     A restart is outdated if another program has been loaded or the state of the collet has changed.
     """
@@ -297,9 +294,9 @@ class AnnouncedStart(NamedTuple):
 
 
 class StartAnnouncement:
-    """The functions that a start would turn on, read from ``sources`` in every tick.
+    """Announcements of the functions that a start would turn on.
 
-    The object is used on the executor's thread only.
+    They are read from ``sources`` in every tick. Only the executor's thread uses this object.
     """
 
     def __init__(self) -> None:
@@ -313,9 +310,9 @@ class StartAnnouncement:
         return tuple(item.text for item in items)
 
     def find_refusal(self, now: float, function_name: str = "") -> str:
-        """Return why a start is refused because the operator had no time to read an announcement.
+        """Return why a start is refused if an announcement was not shown long enough to be read.
 
-        ``function_name`` limits the check to one function. The result is empty if the start is permitted.
+        The result is empty if the start is permitted. ``function_name`` limits the check to one function.
         """
         for item in self._items(function_name):
             since, figure = self._since.get(item.function_name, (math.inf, 0.0))

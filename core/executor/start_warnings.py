@@ -23,8 +23,8 @@ class StartWarnings:
     def iter_spindle_starts(self) -> Iterator[AnnouncedStart]:
         """Yield the announcement of a waiting spindle that the next start will turn on.
 
-        In a cycle only Cycle Start turns the spindle on. Between programs the spindle switch also turns it
-        on.
+        In a cycle, only Cycle Start turns the spindle on. If no cycle is active, the spindle switch does so
+        too.
         """
         spindle = self._context.spindle
         rpm, by_hand = spindle.waiting_start_rpm, self._status.state in MANUAL_STATES

@@ -24,7 +24,7 @@ _SETTLING_TIME_S = 0.5  # s for which a driver may still report the state before
 
 
 class StationSignals(NamedTuple):
-    """The requests of the operator station in one tick."""
+    """The filtered requests of the operator station in one tick."""
 
     is_estop_pressed: bool
     is_start_requested: bool  # both palm buttons, in this tick only
@@ -45,7 +45,7 @@ class StationSignals(NamedTuple):
 class OverridePot:
     """Filter of one override potentiometer.
 
-    A decrease takes effect at once, but a sudden increase only when the value has been stable.
+    A decrease takes effect at once. A sudden increase takes effect only after the value has become stable.
     """
 
     def __init__(self) -> None:
@@ -56,7 +56,7 @@ class OverridePot:
 
     @property
     def is_noisy(self) -> bool:
-        """Return whether the value jumps too often to be caused by an operator."""
+        """Return whether the value jumps so often that an operator cannot be the cause."""
         return len(self._jumps) >= _NOISY_JUMPS
 
     def filter_reading(self, raw_value: float, now: float) -> float:
@@ -85,7 +85,7 @@ class OverridePot:
 
 
 class StationWatch:
-    """Converter of operator station states to requests."""
+    """Converter of raw operator station states to filtered requests."""
 
     def __init__(self) -> None:
         self._feed = OverridePot()
@@ -129,7 +129,7 @@ class StationWatch:
         )
 
     def accept_start_press(self, now: float) -> bool:
-        """Return whether a start is a new press rather than contact bounce; if so, record its time."""
+        """Return whether a start signal is a new key press, not contact bounce; if so, record its time."""
         fresh = now - self._last_start >= _DEBOUNCE_S
         if fresh:
             self._last_start = now
@@ -226,7 +226,7 @@ class CommandedOutputs:
         ]
 
     def accept_actual_states(self) -> list[OutputMismatch]:
-        """Store the actual states as commanded states; return the outputs that changed.
+        """Adopt the actual states as commanded states; return the outputs that differed.
 
         The function is called when no program runs.
         """

@@ -1,7 +1,8 @@
 """Delay of the executor's ticks on a busy computer, and the resulting setpoint queue depth.
 
-The queue moves the axes while the executor is not running. If a late tick has used more than half of the
-queue, the queue becomes one step deeper. After a period without late ticks, it becomes one step shallower.
+While a tick is late, the axes continue along the queued setpoints. If a late tick has used more than half
+of the queue, the queue becomes one step deeper. After a period without late ticks, it becomes one step
+shallower.
 """
 
 from __future__ import annotations

@@ -26,21 +26,21 @@ STRAIGHT_TOLERANCE_RAD = 1e-6
 
 
 class CornerError(CodedError):
-    """An error raised if the corner between two moves is not possible.
+    """An error raised if a chamfer or rounding between two moves is impossible.
 
     ``str()`` returns the reason as a clause.
     """
 
 
 class NoCornerError(CornerError):
-    """An error raised if the two moves have the same direction."""
+    """An error raised if two moves have the same direction and therefore form no corner."""
 
 
 class CornerTooLargeError(CornerError):
-    """An error raised if the corner needs more length than one of the two moves has.
+    """An error raised if a chamfer or rounding is too large for one of the two moves.
 
-    ``needed_length`` is the required length in mm. ``is_first_move`` is True if the first of the two moves
-    is too short.
+    ``needed_length`` is the length in mm that the move would need. ``is_first_move`` is True if the first
+    of the two moves is too short.
     """
 
     def __init__(self, needed_length: float, *, is_first_move: bool) -> None:
@@ -100,7 +100,7 @@ def _shorten(before: Element, after: Element, leg: float) -> tuple[Element, Elem
 
 
 def _removed_length(element: Element, leg: float, *, is_first: bool) -> float:
-    """Return the length in mm that the leg removes from an element."""
+    """Return the length in mm by which a chamfer leg shortens an element."""
     if isinstance(element, Arc) and leg > 2.0 * element.radius:
         raise CornerTooLargeError(leg, is_first_move=is_first)
     removed_length_mm = _way(element, leg)
@@ -117,9 +117,9 @@ def _way(element: Element, leg: float) -> float:
 
 
 def _required_length(element: Element) -> float:
-    """Return the length in mm that must remain of an element.
+    """Return the length in mm that must remain of an element after a chamfer.
 
-    A part of an arc must remain, because an arc with equal ends would be a full circle.
+    A section of an arc must remain, because an arc with equal ends would be a full circle.
     """
     return SAME_POINT_TOLERANCE_MM if isinstance(element, Arc) else -SAME_POINT_TOLERANCE_MM
 
@@ -228,7 +228,7 @@ def _chamfer_length(before: Element, after: Element, leg: float) -> float:
 
 
 def _max_leg(element: Element) -> float:
-    """Return the longest leg that ends on the element."""
+    """Return the longest chamfer leg that ends on the element."""
     if isinstance(element, Line):
         return element.length
     return 2.0 * element.radius * sin(min(abs(element.sweep_rad), pi) / 2.0)

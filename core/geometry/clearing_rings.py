@@ -1,8 +1,8 @@
-"""Rings that clear one level of a pocket, as insets of its boundary, in machining order.
+"""Closed tool paths (rings) that clear one level of a pocket, in machining order.
 
-The rings are offsets of the boundary that are at most one tool radius apart. This clears every point,
-because a point between two rings is closer to the outer ring than their distance. A larger distance would
-leave stock in corners.
+The rings are insets of the pocket boundary, at most one tool radius apart. A point between two rings is
+then less than one tool radius from the outer ring, so every point is cleared. A larger distance would leave
+stock in corners.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ _RAMP_RADII = 4.0  # tool radii that a ramp should be long
 
 @dataclass(frozen=True, slots=True)
 class ClearingRing:
-    """One clearing ring, which starts at the point where the tool reaches it.
+    """One closed tool path of a pocket, which starts at the point where the tool reaches it.
 
-    If ``moves_at_depth`` is True, the tool moves to the ring at the depth of the ring; otherwise it comes
-    from above. ``ramp_loop`` is the ring along which the tool ramps down. It is usually this ring itself,
-    or a wider ring if this ring is too short.
+    If ``moves_at_depth`` is True, the tool moves to the ring at cutting depth, otherwise from above.
+    ``ramp_loop`` is the ring along which the tool ramps down: usually this ring, or a wider one if this
+    ring is too short.
     """
 
     loop: ElementLoop
@@ -44,7 +44,7 @@ class ClearingRing:
 
 @dataclass(slots=True)
 class _AreaPatch:
-    """A connected part of the pocket area at one distance from its boundary.
+    """A connected part of the pocket area at one inset from the pocket boundary.
 
     The patch has an outer ring, its islands, and the patches inside it.
     """

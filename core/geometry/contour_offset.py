@@ -1,11 +1,10 @@
-"""Offset of a contour by a distance, and the spans in which roughing may move next to a contour.
+"""Offset of a contour by a distance, and the spans along Z that are free for roughing.
 
 ``OffsetBuilder`` rejects a contour that has no room for the distance. ``trim_offset``, for roughing, omits
 fillets smaller than the allowance and grooves narrower than twice the allowance.
 
-Points for roughing are (depth, distance along Z) relative to the start point of the tool. The depth
-increases along X toward the contour, and the second value increases along Z toward the contour. The contour
-is directed so that the tool is on its left.
+Points for roughing are (depth, distance along Z) from the start point of the tool. Both values increase
+toward the contour. The contour is directed so that the tool is on its left.
 """
 
 from __future__ import annotations
@@ -62,9 +61,9 @@ _INFINITE_MM = float("inf")
 
 
 class GougeError(Exception):
-    """An error raised if the offset of a contour cuts into the contour.
+    """An error raised if the offset path of a contour would cut into the contour.
 
-    ``element_index`` is the number of the element that cannot be offset, from 0. ``reason`` is a clause
+    ``element_index`` is the index (from 0) of the element that cannot be offset. ``reason`` is a clause
     about the element.
     """
 
@@ -75,7 +74,7 @@ class GougeError(Exception):
 
 
 class OffsetPiece(NamedTuple):
-    """A piece of an offset contour.
+    """A line or arc of an offset contour.
 
     ``is_corner`` is True for an arc around the corner at the end of the element ``source_index``.
     """
@@ -251,7 +250,7 @@ class TrimError(Exception):
 
 
 def make_region_edges(element: Element, distance: float) -> list[Element]:
-    """Return curves that contain the edge of the region within ``distance`` mm of an element."""
+    """Return curves that include the boundary of the region within ``distance`` mm of an element."""
     return [
         *offset_element_to_left(element, distance),
         *offset_element_to_left(element, -distance),
@@ -260,7 +259,7 @@ def make_region_edges(element: Element, distance: float) -> list[Element]:
 
 
 def trim_offset(elements: Sequence[Element], distance: float) -> list[Element]:
-    """Return the path ``distance`` mm to the left of a contour, at most 0.5 µm closer.
+    """Return the path ``distance`` mm, or up to 0.5 µm less, to the left of a contour.
 
     Each element must start at the end of the previous element. Raises TrimError if the path is not
     continuous.
@@ -279,7 +278,7 @@ def trim_offset(elements: Sequence[Element], distance: float) -> list[Element]:
 
 
 class ElementIndex:
-    """An index of elements that finds elements by position."""
+    """A spatial index that finds the elements near a position."""
 
     def __init__(self, elements: Sequence[Element]) -> None:
         self._elements = elements
@@ -342,7 +341,7 @@ def _ring(centre: Point, radius: float) -> Arc:
 
 
 def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
-    """Return the sections of a piece between its intersections with the edges."""
+    """Return the sections of an offset piece between its intersections with the region edges."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
     for edge in edges.find_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
@@ -359,9 +358,9 @@ def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
 
 
 def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) -> bool:
-    """Return whether the middle of a part is far enough from every element.
+    """Return whether a section of the offset is far enough from every contour element.
 
-    The whole part is then far enough too.
+    Only its middle is checked, because the whole section is then far enough too.
     """
     x, z = middle = part.get_point(part.length / 2)
     return all(
@@ -371,11 +370,11 @@ def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) ->
 
 
 def _follow_path(parts: list[Element]) -> list[Element]:
-    """Return the parts that form a continuous path from the first part.
+    """Return the sections that form a continuous path, beginning with the first section.
 
-    If several parts start at the same point, the last one is used, because the offset loops between them.
-    Raises TrimError if there are no parts, or if the parts after the end of the path are longer than 0.02
-    mm in total.
+    If several sections start at one point, the last one is used, because the offset loops between them.
+    Raises TrimError if there are no sections, or if the sections after the end of the path are longer than
+    0.02 mm in total.
     """
     if not parts:
         raise TrimError
@@ -464,13 +463,13 @@ def _split_by_depth(element: Element) -> list[Element]:
 
 
 def _span_at_depth(wall: Sequence[Element], depth: float) -> ZSpan | None:
-    """Return the span along Z of the section of a wall down to ``depth``, or None if there is none."""
+    """Return the Z range of a wall's section down to ``depth``, or None if the section is empty."""
     places = [place for edge in wall for place in _z_extremes(edge, depth)]
     return (min(places), max(places)) if places else None
 
 
 def _z_extremes(edge: Element, depth: float) -> list[float]:
-    """Return positions along Z that include both extremes of an edge's section down to ``depth``."""
+    """Return Z positions that include the minimum and maximum of an edge's section down to ``depth``."""
     if isinstance(edge, Line):
         return _places_of_line(edge, depth)
     candidates = [edge.start, edge.end, *_inner_extremes(edge)]

@@ -91,7 +91,7 @@ def compute_arc_length(start: Point, end: Point, center: Point, *, is_clockwise:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight element whose length is greater than 0."""
+    """A straight line between two different points."""
 
     start: Point
     end: Point
@@ -120,14 +120,14 @@ class Line:
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
     def get_point(self, distance: float) -> Point:
-        """Return the point at ``distance`` mm from the start; it may be outside the line's ends."""
+        """Return the point at ``distance`` mm from the start, also if it is past an end of the line."""
         dx, dz = self.start_direction
         return self.start[0] + dx * distance, self.start[1] + dz * distance
 
     def get_distance_from_start(self, point: Point) -> float:
-        """Return the distance in mm from the start to the projection of ``point`` on the infinite line.
+        """Return the distance in mm from the start to the projection of ``point`` onto the line.
 
-        The distance is negative before the start.
+        The line is extended infinitely. The distance is negative before the start.
         """
         dx, dz = self.start_direction
         return (point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dz
@@ -137,7 +137,7 @@ class Line:
         return Line(start, end)
 
     def make_reversed(self) -> Line:
-        """Return a line in the opposite direction."""
+        """Return the same line with start and end exchanged."""
         return Line(self.end, self.start)
 
 
@@ -184,7 +184,7 @@ class Arc:
         return compute_arc_extent(*self.start, *self.end, *self.center, self.clockwise)
 
     def get_point(self, distance: float) -> Point:
-        """Return the point at ``distance`` mm from the start; it may be outside the arc's ends."""
+        """Return the point at ``distance`` mm from the start, also if it is past an end of the arc."""
         radius = self.radius
         angle = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
         angle += distance / radius if self.clockwise else -distance / radius
@@ -209,7 +209,7 @@ class Arc:
         return Arc(start, end, self.center, self.clockwise)
 
     def make_reversed(self) -> Arc:
-        """Return an arc in the opposite direction."""
+        """Return the same arc with start and end exchanged."""
         return Arc(self.end, self.start, self.center, not self.clockwise)
 
     def _direction(self, at: Point) -> Point:
@@ -222,10 +222,10 @@ Element = Line | Arc
 
 
 def make_arc(start: Point, end: Point, center: Point, *, is_clockwise: bool) -> Arc:
-    """Return an arc whose center is moved to the perpendicular bisector of the chord.
+    """Return an arc with its center corrected so that the radii at both ends are equal.
 
-    The radii at both ends are then equal. Programs round centers to the resolution, and the motion planner
-    corrects them in the same manner.
+    The center is moved to the perpendicular bisector of the chord. Programs round centers to the
+    resolution, and the motion planner corrects them in the same manner.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dz)
@@ -271,9 +271,10 @@ def compute_turn_angle(first: Point, second: Point) -> float:
 
 
 def find_extended_intersections(first: Element, second: Element) -> list[Point]:
-    """Return where the infinite lines or full circles of two elements intersect, at most two points.
+    """Return the intersections of the infinite lines or full circles of two elements.
 
-    A tangent point counts once. Elements on the same line or circle have no intersections.
+    There are at most two points; a tangent point counts once. Elements on the same line or circle have no
+    intersections.
     """
     if isinstance(first, Line):
         return _lines(first, second) if isinstance(second, Line) else _line_circle(first, second)
@@ -293,7 +294,10 @@ def find_intersections(first: Element, second: Element) -> list[Point]:
 
 
 def contains_point(element: Element, point: Point) -> bool:
-    """Return whether a point on an element's infinite line or full circle is within the element."""
+    """Return whether a point is within the ends of an element.
+
+    The point must be on the infinite line or the full circle of the element.
+    """
     return (
         -SAME_POINT_TOLERANCE_MM
         <= element.get_distance_from_start(point)
@@ -365,7 +369,7 @@ def compute_min_distance(first: Element, second: Element) -> float:
 
 
 def _facing_points(element: Element, other: Element) -> list[Point]:
-    """Return an element's inner points whose normal passes through the center of the other element."""
+    """Return points between an element's ends whose normal passes through the other element's center."""
     if isinstance(other, Line):
         return []
     if isinstance(element, Line):

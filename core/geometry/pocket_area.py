@@ -53,7 +53,7 @@ class AreaError(Exception):
 
 
 def close_loop(elements: Sequence[Element]) -> ElementLoop:
-    """Return the elements as a closed loop; a line closes the loop if necessary."""
+    """Return the elements as a closed loop, with a line from the end to the start if they differ."""
     loop = list(elements)
     if loop and dist(loop[-1].end, loop[0].start) > SAME_POINT_TOLERANCE_MM:
         loop.append(Line(loop[-1].end, loop[0].start))
@@ -127,9 +127,9 @@ def is_counterclockwise(loop: Sequence[Element]) -> bool:
 
 
 def find_boundary(curves: Sequence[ElementLoop], contains_point: ContainsPoint) -> list[ElementLoop]:
-    """Return the boundary of the area that ``contains_point`` describes, as sections of the given curves.
+    """Return the sections of the given curves that form the boundary of an area.
 
-    Raises AreaError if the boundary is not closed.
+    ``contains_point`` defines the area. Raises AreaError if the boundary is not closed.
     """
     elements = [part for loop in curves for element in loop for part in _split_large_arcs(element)]
     if not elements:
@@ -163,9 +163,9 @@ def _cut(part: Element, at: Point) -> list[Element]:
 
 
 def _orient_boundary(part: Element, contains_point: ContainsPoint) -> Element | None:
-    """Return the part directed so that the area is on its left, or None.
+    """Return the section directed so that the area is on its left, or None if it is no boundary.
 
-    The result is None if the area is on both sides of the part or on neither side.
+    A section is not a boundary if the area is on both sides of it or on neither side.
     """
     x, y = part.get_point(part.length / 2.0)
     dx, dy = get_left_normal(_direction_halfway(part))
@@ -238,7 +238,7 @@ def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
 
 
 def _chain_loops(parts: Sequence[Element]) -> list[ElementLoop]:
-    """Return the parts as closed loops, in descending order of the longest part of each loop.
+    """Return the sections connected to closed loops, sorted by their longest section, longest first.
 
     Raises AreaError if a loop is not closed.
     """
@@ -267,7 +267,7 @@ def _remove_tails(parts: Sequence[Element]) -> list[Element]:
 
 def _collect_loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], free: npt.NDArray[np.bool_],
           first: int) -> ElementLoop:  # fmt: skip
-    """Return the closed loop that starts with a part, and mark its parts as used.
+    """Return the closed loop that starts with the section ``first``, and mark its sections as used.
 
     If the loop is too short, the result is an empty list.
     """
@@ -292,7 +292,7 @@ def _collect_loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], fre
 
 
 def _turn_between(before: Element, after: Element) -> float:
-    """Return the angle by which the direction changes between two elements.
+    """Return the angle by which the direction changes from one element to the next.
 
     The caller selects the sharpest left turn, so that loops that touch at a point remain separate.
     """
@@ -345,9 +345,9 @@ class AreaChecker:
 
 
 def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
-    """Return the loop with a new start near a point.
+    """Return the same closed loop, but starting near a point.
 
-    The start is the end or the middle of an element, whichever is nearest to the point.
+    The new start is the end or the middle of an element, whichever is nearest to the point.
     """
     best, cut = min(
         (dist(place, point), (index, half))
@@ -360,7 +360,7 @@ def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
 
 
 def start_loop_at(loop: ElementLoop, index: int, distance: float) -> ElementLoop:
-    """Return the loop with a new start, ``distance`` mm after the start of one of its elements."""
+    """Return the same closed loop, but starting ``distance`` mm after the start of one element."""
     element = loop[index]
     turned = [*loop[index + 1 :], *loop[:index]]
     if distance <= SAME_POINT_TOLERANCE_MM or distance >= element.length - SAME_POINT_TOLERANCE_MM:
@@ -374,7 +374,7 @@ def start_loop_at(loop: ElementLoop, index: int, distance: float) -> ElementLoop
 
 
 def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], ElementLoop]:
-    """Return the first ``length`` mm of a loop, and the loop from that point on.
+    """Return the first ``length`` mm of a closed loop, and the loop starting at the split point.
 
     If ``length`` is greater than the length of the loop, the loop is repeated.
     """

@@ -91,9 +91,9 @@ class RotaryAxis:
 
 @dataclass(frozen=True, slots=True)
 class FrameTransform:
-    """The transformation from points of a system to machine positions, in mm.
+    """The transformation from points of a coordinate system to machine positions, in mm.
 
-    The formula is machine = rotation · point + translation. The transformation is valid for fixed rotary
+    The formula is machine = rotation · point + translation. It is valid only for one position of the rotary
     axes.
     """
 
@@ -101,11 +101,11 @@ class FrameTransform:
     translation: Vector
 
     def convert_to_machine_position(self, point: Vector) -> Vector:
-        """Convert a point of the system to the machine position of the linear axes."""
+        """Convert a point of the coordinate system to the machine position of the linear axes, in mm."""
         return add_vectors(apply_matrix(self.rotation, point), self.translation)
 
     def convert_to_frame_point(self, machine: Vector) -> Vector:
-        """Convert a machine position of the linear axes to the point of the system."""
+        """Convert a machine position of the linear axes to the point of the coordinate system, in mm."""
         return apply_matrix(transpose_matrix(self.rotation), subtract_vectors(machine, self.translation))
 
 
@@ -126,12 +126,12 @@ class DatumPreset:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """A mill with X, Y, Z and its rotary axes in order from workpiece to tool (tables before heads).
+    """The axes of a mill: X, Y, Z and the rotary axes in order from workpiece to tool.
 
-    ``origin`` is the machine position of the workpiece zero with all rotary axes at 0.
-    ``basic_rotation_deg`` is the angle of the workpiece system about Z relative to the machine, with the
-    rotary axes at ``axis_zeros``, where they read 0. ``axis_order`` lists all axes in the machine's order.
-    Angles are machine angles unless noted otherwise.
+    Tables precede heads in this order. ``origin`` is the machine position of the workpiece zero with all
+    rotary axes at 0. ``basic_rotation_deg`` is the angle of the workpiece system about Z relative to the
+    machine. It applies with the rotary axes at ``axis_zeros``, where they read 0. ``axis_order`` lists all
+    axes in the machine's order. Angles are machine angles unless noted otherwise.
     """
 
     linear_axes: tuple[LinearAxis, LinearAxis, LinearAxis]
@@ -153,7 +153,7 @@ class Kinematics:
         return {axis.name: 0.0 for axis in self.rotary_axes} | dict(self.axis_zeros)
 
     def apply_preset(self, preset: DatumPreset) -> Kinematics:
-        """Return the machine kinematics with the workpiece zero and rotation of a preset."""
+        """Return the same machine with the workpiece zero and the basic rotation of a preset."""
         zeros = tuple(
             each for each in preset.axis_zeros if self.find_rotary_axis(each[0]) is not None and each[1]
         )
@@ -161,16 +161,15 @@ class Kinematics:
         return replace(moved, origin=moved.move_from_table_zeros(preset.origin))
 
     def move_from_table_zeros(self, point: Vector) -> Vector:
-        """Return the position of a workpiece point after the tables have moved from their zeros to 0.
+        """Return the position of a workpiece point after the tables rotate from their zeros to angle 0.
 
-        ``point`` is the position with the tables at their zeros. Both positions are in machine coordinates
-        in mm.
+        Both positions are in machine coordinates in mm. ``point`` is the position before the rotation.
         """
         turn, shift = self._table_transform(self.zero_angles)
         return apply_matrix(transpose_matrix(turn), subtract_vectors(point, shift))
 
     def move_to_table_zeros(self, point: Vector) -> Vector:
-        """Return the position of a workpiece point after the tables have moved from 0 to their zeros.
+        """Return the position of a workpiece point after the tables rotate from angle 0 to their zeros.
 
         Both positions are in machine coordinates in mm.
         """
@@ -206,7 +205,7 @@ class Kinematics:
         datum: Vector = (0.0, 0.0, 0.0),
         tool_length: float = 0.0,
     ) -> FrameTransform:
-        """Return the transformation from points of a system to positions of the linear axes.
+        """Return the transformation from a coordinate system to positions of the linear axes.
 
         The system has the axes ``frame`` and the origin ``datum`` (mm). Both are specified in the
         machine-parallel system at the workpiece zero, without tilt. The transformation is valid only for
@@ -237,7 +236,10 @@ class Kinematics:
         return [axis for axis in self.rotary_axes if not axis.is_table]
 
     def _table_transform(self, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
-        """Return the rotation and the shift of a point when the tables move from 0 to these angles."""
+        """Return the rotation and the shift of a workpiece point when the tables rotate from 0.
+
+        ``angles`` are the new angles of the tables by axis name.
+        """
         turn, shift = IDENTITY, (0.0, 0.0, 0.0)
         for axis in self.rotary_axes:
             if axis.is_table:
@@ -270,8 +272,8 @@ class PivotMove:
     """A move of the rotary axes from ``start_angles`` to ``end_angles`` around a fixed point.
 
     ``pivot`` is the fixed point in mm, in the machine-parallel system at the workpiece zero. It is
-    ``pivot_distance`` mm below the tip along the tool. ``length`` is in degrees. If ``pivot_end`` is not
-    None, the pivot moves to ``pivot_end`` in a straight line, and ``length`` is in mm.
+    ``pivot_distance`` mm below the tool tip along the tool, and ``length`` is in degrees. If ``pivot_end``
+    is not None, the pivot itself moves straight to ``pivot_end``, and ``length`` is in mm.
     """
 
     kinematics: Kinematics
@@ -333,14 +335,14 @@ class PivotMove:
         return spots
 
     def get_critical_fraction(self) -> float:
-        """Return 0.5, because no fraction of the move is more critical than another."""
+        """Return 0.5, because the axis rotation per path length has no particular maximum."""
         return 0.5
 
 
 def _rotate_with_tables(
     machine: Kinematics, angles: Mapping[str, FloatArray], points: FloatArray
 ) -> FloatArray:
-    """Return points (k, 3) in mm after the tables have moved from 0 to these angles (k,)."""
+    """Return workpiece points (k, 3) in mm after the tables have rotated from 0 to the angles (k,)."""
     for axis in machine.rotary_axes:
         if axis.is_table:
             points = _rotate_about_axis(axis, -angles[axis.name], points)
@@ -348,9 +350,10 @@ def _rotate_with_tables(
 
 
 def _noses_to_tips(machine: Kinematics, angles: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
-    """Return the vectors from the spindle nose (heads at 0) to the tip at head angles (k,), in mm.
+    """Return the vectors from the spindle nose to the tool tip at the head angles (k,), in mm.
 
-    The result has the shape (k, 3), or one row if there are no heads.
+    The vectors start where the nose is with the heads at 0. The result has the shape (k, 3), or one row if
+    there are no heads.
     """
     tips: FloatArray = np.array([[0.0, 0.0, -tool_length]])
     for axis in reversed(machine.rotary_axes):
@@ -360,7 +363,10 @@ def _noses_to_tips(machine: Kinematics, angles: Mapping[str, FloatArray], tool_l
 
 
 def _rotate_about_axis(axis: RotaryAxis, degrees: FloatArray, points: FloatArray) -> FloatArray:
-    """Return points (k, 3), or one point, rotated about the axis by the angles (k,) (Rodrigues' formula)."""
+    """Return points (k, 3), or one point, rotated about an axis by angles (k,) in degrees.
+
+    The formula is that of Rodrigues.
+    """
     line, along, aside = _rotation_terms(axis)
     angle = np.radians(degrees)[:, np.newaxis]
     cosine = np.cos(angle)
@@ -374,7 +380,10 @@ def _rotate_about_axis(axis: RotaryAxis, degrees: FloatArray, points: FloatArray
 
 @lru_cache(maxsize=64)
 def _rotation_terms(axis: RotaryAxis) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return a point of the axis, the projection onto the axis direction, and the cross-product matrix."""
+    """Return the constant terms of Rodrigues' formula for a rotary axis.
+
+    The terms are a point on the axis, the projection onto the axis direction, and the cross-product matrix.
+    """
     x, y, z = axis.direction
     aside = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
     return np.array(axis.point_on_axis), np.outer(axis.direction, axis.direction), aside

@@ -31,7 +31,7 @@ class InvalidFrameError(CodedError, ValueError):
 def compute_exact_cos_sin(degrees: float) -> tuple[float, float]:
     """Return the cosine and the sine of an angle, exact at multiples of 90 degrees.
 
-    Without exact values, a table at 90 degrees would be tilted by 6e-17.
+    With rounded values, a table at 90 degrees would be tilted by 6e-17 rad.
     """
     quarter, rest = divmod(degrees, 90.0)
     if rest == 0.0:
@@ -123,10 +123,7 @@ def make_frame_from_points(first: Vector, second: Vector, third: Vector) -> Matr
 
 
 def make_frame_from_spatial_angles(x_angle: float, y_angle: float, z_angle: float) -> Matrix:
-    """Return the rotation about the fixed axes X, then Y, then Z.
-
-    The angles are ``x_angle``, ``y_angle`` and ``z_angle``.
-    """
+    """Return the rotation by spatial angles: about the fixed X axis, then Y, then Z."""
     return multiply_matrices(
         make_rotation(Z_AXIS, z_angle), make_rotation(Y_AXIS, y_angle), make_rotation(X_AXIS, x_angle)
     )
@@ -172,5 +169,5 @@ def make_frame_from_projections(first: float, second: float, rotation: float) ->
 
 
 def compute_z_rotation_deg(frame: Matrix) -> float:
-    """Return the angle of a frame that is rotated about Z only, in degrees from -180 to 180."""
+    """Return the rotation about Z of a frame that is not tilted, in degrees from -180 to 180."""
     return math.degrees(math.atan2(frame[1][0] - frame[0][1], frame[0][0] + frame[1][1]))

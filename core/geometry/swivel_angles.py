@@ -35,7 +35,7 @@ TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count
 
 
 class SolutionSide(StrEnum):
-    """The requested side of the primary axis.
+    """The side on which the primary rotary axis is requested, as programmed with SYM or SEQ.
 
     The side is relative to the axis's symmetry point (SYM) or basic position (SEQ).
     """
@@ -48,11 +48,11 @@ class SolutionSide(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SwivelSolution:
-    """Angles of the rotary axes, by axis name, that orient the tool.
+    """Angles of the rotary axes, by axis name, that make the tool perpendicular to a plane.
 
-    ``tool_rotation_deg`` is the mathematical rotation that remains about the tool axis.
-    ``symmetry_angle_deg`` is the angle of the primary axis from its symmetry point, and
-    ``primary_angle_deg`` is its angle from the basic position 0.
+    ``tool_rotation_deg`` is the rotation of the plane about the tool axis that the axes do not perform.
+    ``symmetry_angle_deg`` is the angle of the primary axis from its symmetry point. ``primary_angle_deg``
+    is its angle from the basic position 0.
     """
 
     axis_angles: Mapping[str, float]
@@ -82,7 +82,7 @@ class SwivelSolution:
 def find_all_solutions(
     machine: Kinematics, frame: Matrix, *, rotates_table: bool = False
 ) -> list[SwivelSolution]:
-    """Return all solutions with the tool perpendicular to ``frame``, ignoring the axis ranges.
+    """Return all axis angles that make the tool perpendicular to ``frame``, ignoring axis ranges.
 
     ``frame`` is in the machine-parallel system. If the first axis of the chain is parallel to the tool, its
     angle is free, and the axis moves to its zero. If ``rotates_table`` is True, it moves to the angle at
@@ -118,11 +118,10 @@ def choose_solution(
     *,
     rotates_table: bool = False,
 ) -> SwivelSolution | None:
-    """Return the solution with the shortest travel from ``present_angles``, or None.
+    """Return the solution with the shortest travel from ``present_angles``, or None if none exists.
 
-    The result is None if no solution is possible. The solution is on ``side`` and within the axis ranges.
-    The travel is the sum over all axes. If two travels differ by less than TRAVEL_TOLERANCE_DEG, the
-    solution on the positive side is selected.
+    The solution is on ``side`` and within the axis ranges. The travel is the sum over all axes. If two
+    travels differ by less than TRAVEL_TOLERANCE_DEG, the solution on the positive side is selected.
     """
     best: SwivelSolution | None = None
     for made in find_reachable_solutions(machine, frame, present_angles, side, rotates_table=rotates_table):
@@ -179,10 +178,10 @@ def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dic
 
 
 def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
-    """Yield both angles of the axis next to the tool, each with its offset from their mean.
+    """Yield both angles of the axis next to the tool, each with its difference from their mean.
 
-    The larger angle is first. The mean is calculated from the displayed angles from -180 to 180, for either
-    direction of the other axis.
+    The larger angle is first. For either direction of the other axis, the mean is calculated from the
+    displayed angles between -180 and 180.
     """
     middle = math.degrees(math.atan2(dot_product(a1, cross_product(a2, Z_AXIS)), dot_product(a1, Z_AXIS)))
     away = math.degrees(math.atan2(math.hypot(*cross_product(a1, normal)), dot_product(a1, normal)))
@@ -193,7 +192,7 @@ def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tupl
 
 
 def _angle_about(axis: Vector, start: Vector, end: Vector) -> float:
-    """Return the angle in degrees from one direction to another, as seen along ``axis``."""
+    """Return the angle in degrees between two directions, as seen along ``axis``."""
     p, q = (subtract_vectors(each, scale_vector(axis, dot_product(axis, each))) for each in (start, end))
     return math.degrees(math.atan2(dot_product(axis, cross_product(p, q)), dot_product(p, q)))
 
@@ -213,7 +212,7 @@ def _same(machine: Kinematics, one: SwivelSolution, other: SwivelSolution) -> bo
 def _choose_nearest_turn(
     machine: Kinematics, solution: SwivelSolution, present_angles: Mapping[str, float]
 ) -> SwivelSolution | None:
-    """Return the solution with each limited axis at the revolution nearest to its current angle.
+    """Return the solution with whole revolutions added, so that limited axes travel least.
 
     The result is None if an axis is out of range.
     """

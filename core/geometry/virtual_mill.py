@@ -1,4 +1,4 @@
-"""Plane switching: lines and arcs of a virtual mill, and lathe positions X, Z and C along them.
+"""Coordinate transformation (plane switching) from a virtual mill to the lathe axes X, Z and C.
 
 The XC plane is on the face of the part. The ZC plane is its side, unrolled at a diameter. The live tool is
 on the negative X side of the lathe, or on the positive side if ``is_far_side`` is True. As seen from the
@@ -20,11 +20,12 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class FacePlane:
-    """The face plane XC.
+    """The XC plane on the face of the part.
 
-    ``c_start_deg`` is C at the entry in degrees, and ``tool_height_mm`` is the height h of the tool above
-    the axis in mm. A point (X, Y) of the part at the distance rho from the axis is under the tool if X is
-    at -sqrt(rho² - h²), or at the positive value on the far side, and if C has rotated the point to this X.
+    ``c_start_deg`` is C at the start of plane switching, in degrees. ``tool_height_mm`` is the height h of
+    the tool above the axis, in mm. For a point at the distance rho from the axis, the tool is at X =
+    -sqrt(rho² - h²), or at the positive value on the far side, after C has rotated the point under the
+    tool.
     """
 
     c_start_deg: float
@@ -33,7 +34,7 @@ class FacePlane:
 
     @property
     def heading_deg(self) -> float:
-        """Return the angle on the part to which mill X points, in degrees from the negative X side at C0."""
+        """Return the direction of mill X on the part, in degrees from the negative X side at C0."""
         return _heading(self.c_start_deg, far=self.is_far_side)
 
     def convert_to_lathe(self, points: FloatArray, polar_angles: FloatArray) -> FloatArray:
@@ -61,10 +62,10 @@ class FacePlane:
 
 @dataclass(frozen=True, slots=True)
 class SidePlane:
-    """The side plane ZC, unrolled at ``diameter_mm``.
+    """The ZC plane on the side of the part, unrolled at ``diameter_mm``.
 
-    ``c_start_deg`` (degrees) and ``z_start_mm`` (mm) are C and lathe Z at X0 Y0. Mill X points toward the
-    spindle, Y is measured at ``diameter_mm``, and Z is the radius of the tip. Lengths are in mm.
+    ``c_start_deg`` (degrees) and ``z_start_mm`` (mm) are C and lathe Z at mill X0 Y0. Mill X points toward
+    the spindle, Y is measured at ``diameter_mm``, and Z is the radius of the tip. Lengths are in mm.
     """
 
     c_start_deg: float
@@ -99,11 +100,12 @@ _SAMPLES = 721  # points of an arc at which its extent is sampled: 0.5 degree of
 
 @dataclass(frozen=True, slots=True)
 class PlaneMove:
-    """A straight line or, with ``center``, an arc in the mill's frame, with X, Y and Z in mm.
+    """A straight line or, with ``center``, an arc in the coordinates of the virtual mill, in mm.
 
-    On the side of the part, Z is a radius. ``start_angle_rad`` is the continuous polar angle of the start
-    in radians, so that C never jumps by a revolution. It is used only on the face. At the center it is the
-    direction of departure. The end of an arc is within the control's tolerance of its circle.
+    On the side of the part, Z is a radius. ``start_angle_rad`` is used only on the face. It is the
+    continuous polar angle of the start in radians, so that C never jumps by a revolution. For a start on
+    the axis, it is the direction of departure. The end of an arc is within the control's tolerance of its
+    circle.
     """
 
     frame: FacePlane | SidePlane
@@ -138,11 +140,11 @@ class PlaneMove:
 
     @property
     def is_straight(self) -> bool:
-        """Return whether the lathe axes move in proportion to each other."""
+        """Return whether the lathe axes move in constant proportion to each other."""
         return self.center is None and isinstance(self.frame, SidePlane)
 
     def compute_mill_points(self, fractions: FloatArray) -> FloatArray:
-        """Return the mill points (n, 3) at fractions (n,) of the path."""
+        """Return the mill points (n, 3) in mm at the fractions (n,) of the path, from 0 to 1."""
         start, end = np.array(self.start), np.array(self.end)
         points = np.asarray(start + fractions[:, None] * (end - start), dtype=np.float64)
         if self.center is not None:
@@ -180,9 +182,9 @@ class PlaneMove:
         return wound
 
     def split_at_axis(self) -> list[PlaneMove]:
-        """Return the move as a list; a move through the axis is divided into two moves.
+        """Return the move as a list, divided into two moves if it passes through the axis.
 
-        C must turn between these two moves.
+        C must rotate between these two moves.
         """
         if isinstance(self.frame, SidePlane) or self.length <= AXIS_TOLERANCE_MM:
             return [self]
@@ -238,7 +240,7 @@ class PlaneMove:
         return table.min(axis=0), table.max(axis=0)
 
     def _fraction_at_angle(self, angle: float) -> float:
-        """Return the fraction of the arc at this angle around its center.
+        """Return the fraction of the path at which the arc has this angle around its center.
 
         If the arc does not contain the angle, the fraction of the end that is closer to the axis is
         returned.
@@ -252,7 +254,7 @@ class PlaneMove:
         return 0.0 if self.compute_distance_from_axis(0.0) <= self.compute_distance_from_axis(1.0) else 1.0
 
     def _adjusted_center(self) -> tuple[float, float]:
-        """Return the center, moved to the perpendicular bisector of the chord.
+        """Return the center of the arc, moved so that both ends have the same distance from it.
 
         The arc then meets its end exactly.
         """
@@ -266,7 +268,7 @@ class PlaneMove:
         return cx - off * dx, cy - off * dy
 
     def _start_and_sweep(self) -> tuple[float, float]:
-        """Return the start angle, from X toward Y, and the signed sweep, in radians.
+        """Return the start angle and the signed sweep of the arc, in radians from X toward Y.
 
         A clockwise sweep is negative.
         """
@@ -276,11 +278,11 @@ class PlaneMove:
         return compute_arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
 
     def _continuous_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
-        """Return the polar angles (n,) of points on the arc, except for a constant.
+        """Return continuous polar angles (n,) of points on the arc, up to a constant offset.
 
-        The angles are continuous along the arc. If the axis is inside the circle, each result differs by
-        less than 90 degrees from the angle around the center of the arc. Otherwise it differs by less than
-        90 degrees from the direction of the center.
+        If the axis is inside the circle, each result differs by less than 90 degrees from the angle around
+        the center of the arc. Otherwise it differs by less than 90 degrees from the direction of the
+        center.
         """
         cx, cy = self._adjusted_center()
         first, sweep = self._start_and_sweep()

@@ -1,7 +1,7 @@
-"""Arcs, helices, mirroring and scaling in a mill's working plane, and the motion of all axes.
+"""Arcs, helices, mirroring and scaling in a mill's working plane, and moves of all axes.
 
-A point of the program is scaled, then mirrored, then rotated about the tool axis, in whatever order these
-functions are programmed.
+A programmed point is scaled, then mirrored, then rotated about the tool axis. The order in which these
+functions are programmed has no effect.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class ProgramTransform:
 
     @property
     def is_identity(self) -> bool:
-        """Return whether program coordinates and plane coordinates are the same."""
+        """Return whether the transformation leaves all points unchanged."""
         return self == _IDENTITY_TRANSFORM
 
     @property
@@ -59,27 +59,27 @@ class ProgramTransform:
         return ("X" in self.mirrored_axes) != ("Y" in self.mirrored_axes)
 
     def convert_to_plane(self, point: Vector) -> Vector:
-        """Convert a point of the program to the point of the plane."""
+        """Convert a programmed point to coordinates of the working plane."""
         x, y, z = (at * self._sign(axis) * self.scale_factor for axis, at in zip("XYZ", point, strict=True))
         c, s = compute_exact_cos_sin(self.rotation_deg)
         return c * x - s * y, s * x + c * y, z
 
     def convert_to_program(self, point: Vector) -> Vector:
-        """Convert a point of the plane to the point of the program."""
+        """Convert a point of the working plane to program coordinates."""
         c, s = compute_exact_cos_sin(self.rotation_deg)
         turned = c * point[0] + s * point[1], -s * point[0] + c * point[1], point[2]
         x, y, z = (at * self._sign(axis) / self.scale_factor for axis, at in zip("XYZ", turned, strict=True))
         return x, y, z
 
     def transform_arc(self, arc: Arc) -> Arc:
-        """Convert an arc of the program to the arc of the plane."""
+        """Convert a programmed arc to coordinates of the working plane."""
         if self.is_identity:
             return arc
         start, end, centre = (self._flat(at) for at in (arc.start, arc.end, arc.center))
         return Arc(start, end, centre, arc.clockwise != self.reverses_arcs)
 
     def transform_upright_arc(self, arc: Arc, order: AxisOrder) -> tuple[Arc, Matrix]:
-        """Return a scaled arc that is programmed in another plane, and its axis directions.
+        """Return a scaled arc that is programmed in YZ or ZX, and the directions of its axes.
 
         The directions are the rows of a matrix.
         """
@@ -106,13 +106,13 @@ _IDENTITY_TRANSFORM = ProgramTransform()
 
 @dataclass(frozen=True, slots=True)
 class HelixMove:
-    """A helix in the system of a working plane.
+    """A helix in the coordinate system of a working plane.
 
     ``arc`` is in X and Y of the system of ``transform``, while Z moves from ``z_start`` to ``z_end``.
     ``base_position`` contains the machine positions of all axes in the machine's order; X, Y and Z, at
-    ``xyz_columns``, are replaced. Units are mm and degrees. For an upright arc, ``frame`` (by rows)
-    contains the directions of the two axes of its plane and of the third axis. X, Y and Z of the arc then
-    refer to these directions.
+    ``xyz_columns``, are replaced. Units are mm and degrees. For an upright arc (in YZ or ZX), the rows of
+    ``frame`` are the directions of the two axes of its plane and of the third axis. X, Y and Z of the arc
+    then refer to these directions.
     """
 
     transform: FrameTransform
@@ -154,14 +154,14 @@ class HelixMove:
         return rows
 
     def compute_workpiece_points(self, positions: FloatArray) -> FloatArray:
-        """Return the points (k, 3) in the system of the working plane for machine positions (k, axes)."""
+        """Return the working-plane points (k, 3) in mm for machine positions (k, axes)."""
         spots: FloatArray = (
             positions[:, self.xyz_columns] - np.array(self.transform.translation)
         ) @ np.array(self.transform.rotation)
         return spots
 
     def get_critical_fraction(self) -> float:
-        """Return 0.5, because no fraction of the move is more critical than another."""
+        """Return 0.5, because the axis rotation per path length has no particular maximum."""
         return 0.5
 
 
@@ -192,9 +192,9 @@ class AxisMove:
     slides: bool = True
 
     def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Return the minimum and the maximum position of each axis (axes,).
+        """Return the minimum and the maximum position of each axis during the move, shape (axes,).
 
-        For straight moves, only the end is returned.
+        For a straight move, only the end is considered.
         """
         if self.curved_move is None:
             return np.array(self.end), np.array(self.end)

@@ -42,7 +42,7 @@ def _frame(book: CodeBook) -> str:
 
 
 def _parameter_table(book: CodeBook) -> str:
-    """Return the table of cycle parameters, or an empty string for a dialect without cycle parameters."""
+    """Return the table of cycle parameters, or an empty string if the dialect has none."""
     rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.word_meanings.items())
     return f"\n## Cycle parameters\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 

@@ -1,6 +1,6 @@
-"""Interface to the interpreters of all dialects.
+"""Common interface to the interpreters of all program dialects.
 
-An interpreter generates elementary blocks from a program text and a setup.
+An interpreter converts a program text and a setup to elementary blocks.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def _omniturn(source: ProgramSource, strict: bool) -> PassFactory:
 
 
 class _OmniTurn:
-    """A parsed OmniTurn program that can start passes."""
+    """A parsed OmniTurn program from which interpreter passes can be started."""
 
     def __init__(self, program: Program) -> None:
         self.program = program
@@ -144,7 +144,7 @@ _READERS: Mapping[Dialect, Callable[[ProgramSource, bool], PassFactory]] = {
 
 
 class SharedProgram:
-    """A program that is parsed for its first pass and then shared by all passes.
+    """A program that is parsed once, for its first interpreter pass, and then shared by all passes.
 
     Parsing a million blocks takes almost a second, which is too long for the executor to wait. Several
     threads can start passes at the same time.
@@ -166,11 +166,11 @@ class SharedProgram:
         _ = self._begin
 
     def has_same_source(self, other: SharedProgram) -> bool:
-        """Return whether the other program has the same text and is parsed in the same mode."""
+        """Return whether another program has the same text and the same parsing mode."""
         return self.source == other.source and self._strict == other._strict
 
     def start_pass(self, setup: Setup) -> InterpreterPass:
-        """Return a new pass through the program with this setup."""
+        """Start a new interpreter pass through the program with this setup, and return it."""
         dialect = self.source.dialect
         if refused := _refusal(dialect, setup):
             return refused
@@ -179,7 +179,7 @@ class SharedProgram:
         return self._begin(setup)
 
     def start_branching_pass(self, setup: Setup, branch_record: BranchRecord) -> BranchingPass | None:
-        """Return a pass that can execute both branches of conditional calls.
+        """Start a pass that can execute both branches of conditional calls, and return it.
 
         ``branch_record`` selects the branches. Returns None if the program does not read any inputs.
         """

@@ -1,6 +1,6 @@
 """Loading of called programs together with the main program.
 
-The executed text is therefore the same as the proved text.
+Thus, the program that is executed is exactly the program that was proved.
 """
 
 from __future__ import annotations
@@ -72,10 +72,7 @@ def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> It
 
 
 def _alternative_names(name: str, dialect: Dialect) -> tuple[str, ...]:
-    """Return other possible file names for a call.
-
-    SINUMERIK can also call a main program by its name.
-    """
+    """Return other file names that a call can also mean, because SINUMERIK can call main programs."""
     return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 
 

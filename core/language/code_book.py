@@ -1,7 +1,7 @@
-"""Code book of a dialect, with the meanings, examples and error examples of all codes, words and cycles.
+"""Code book of a dialect, with the meaning and examples of each code, word and cycle.
 
-The editor uses the code book to explain and complete words. Pages of ``docs`` are generated from the code
-book, and tests prove its examples and error examples.
+The editor uses the code book to explain and complete words. Pages of ``docs`` are generated from it, and
+tests check that its examples are accepted and its error examples are rejected.
 """
 
 from __future__ import annotations
@@ -23,13 +23,15 @@ _NO_LETTER_BEFORE = r"(?<![A-Z_$])"
 
 @dataclass(frozen=True, slots=True)
 class CodeBookEntry:
-    """One code of the code book, with its ``head`` and the ``words`` that follow it.
+    """One code of the code book: its ``head``, and the ``words`` that follow the head.
 
-    ``example`` contains lines that use the code. If ``whole`` is True, they are a complete program.
-    Otherwise, they are inserted between ``head`` and ``lines_after_example`` of the book. ``behind``
-    contains the lines after the program end. ``files`` contains other programs in the same folder (name and
-    text). ``refused`` contains lines that cause an error when they replace the example, and ``why`` is part
-    of the error message. ``insert`` is the completion if it is longer than the head.
+    - ``example`` contains lines that use the code. If ``whole`` is True, they are a complete program.
+      Otherwise, they are inserted between ``head`` and ``lines_after_example`` of the book.
+    - ``behind`` contains the lines after the program end.
+    - ``files`` contains other programs in the same folder (name and text).
+    - ``refused`` contains lines that cause an error when they replace the example.
+    - ``why`` is part of the message of this error.
+    - ``insert`` is the completion if it is longer than the head.
     """
 
     head: str
@@ -57,11 +59,13 @@ class CodeBookEntry:
 
 @dataclass(frozen=True)
 class CodeBook:
-    """Code book of one dialect, with its chapters of entries.
+    """Code book of one dialect, with its entries in chapters.
 
-    ``head`` and ``lines_after_example`` are the lines before and after each example. ``comment_sign`` is the
-    character that starts a comment. ``word_meanings`` explains the words of codes, either for all codes
-    (``R``) or for one code (``G83.R``). The pattern ``word_pattern`` finds these words.
+    - ``head`` and ``lines_after_example`` are the lines before and after each example.
+    - ``comment_sign`` is the character that starts a comment.
+    - ``word_meanings`` explains the words of codes, either for all codes (``R``) or for one code
+      (``G83.R``).
+    - ``word_pattern`` is the pattern that finds these words.
     """
 
     chapters: tuple[tuple[str, tuple[CodeBookEntry, ...]], ...]
@@ -72,7 +76,7 @@ class CodeBook:
     word_pattern: str = r"[A-Z_][A-Z0-9_]*"
 
     def list_words(self, entry: CodeBookEntry) -> tuple[tuple[str, str], ...]:
-        """Return each word of a code that has a meaning in the book, together with this meaning."""
+        """Return the words that can follow a code, each with its meaning; unexplained words are omitted."""
         found = dict.fromkeys(re.findall(self.word_pattern, f"{entry.words} {entry.insert}".strip()))
         said = (
             (word, self.word_meanings.get(f"{entry.head}.{word}", self.word_meanings.get(word, "")))
@@ -86,11 +90,11 @@ class CodeBook:
         return tuple(entry for _, entries in self.chapters for entry in entries)
 
     def at(self, line: str, column: int) -> CodeBookEntry | None:
-        """Return the entry of the code at the cursor.
+        """Return the entry of the code at the cursor, or None if the line has no known code.
 
-        If the cursor is not at a code, the entry of the nearest code to the left of the cursor is returned,
-        or the entry of the first code in the line. ``column`` counts from 1 and may be one past the end of
-        the line. Returns None in a comment and in a line without a known code.
+        If the cursor is not at a code, the result is the nearest code to its left or, if there is none, the
+        first code in the line. ``column`` counts from 1 and may be one past the end of the line. Also
+        returns None in a comment.
         """
         code = line.upper().split(self.comment_sign, 1)[0]
         if column - 1 > len(code):
@@ -119,7 +123,7 @@ class CodeBook:
 
     @cached_property
     def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, CodeBookEntry]], ...]:
-        """Return a pattern for each group of heads that differ only in their number.
+        """Return a pattern for each group of codes that differ only in their number, such as G0 and G1.
 
         Each pattern is paired with the entries of its group, by number.
         """

@@ -1,11 +1,15 @@
 """Reader of code books.
 
-A folder ``code_books/LANGUAGE`` contains ``book.toml`` and one TOML file per subject. Each table ``[["Title
-of the chapter"]]`` is one entry with the fields of ``CodeBookEntry`` as keys. A chapter may continue in the
-next file. ``heads`` instead of ``head`` makes one entry for each head. ``{name}`` in a text is replaced by
-the text with that name in ``[parts]``, or by the text of that key of the entry. ``[usual]`` contains
-default texts of the entries. ``refused`` may be a table of replacements. The example with these
-replacements must then be rejected. ``[meanings]`` explains the words that follow codes.
+A folder ``code_books/LANGUAGE`` contains ``book.toml`` and one TOML file per subject.
+
+- Each table ``[["Title of the chapter"]]`` is one entry with the fields of ``CodeBookEntry`` as keys.
+- A chapter may continue in the next file.
+- ``heads`` instead of ``head`` makes one entry for each head.
+- ``{name}`` in a text is replaced by the text of that name in ``[parts]``, or by that field of the
+  entry.
+- ``[usual]`` contains default texts of the entries.
+- ``refused`` may be a table of replacements, with which the example must be rejected.
+- ``[meanings]`` explains the words that follow codes.
 """
 
 from __future__ import annotations
@@ -37,8 +41,8 @@ _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 def read_book(folder: Path) -> CodeBook:
     """Return the code book of a folder.
 
-    Raises ValueError with the file and the code if an entry is invalid, and with the code if a code has
-    more than one entry.
+    Raises ValueError if an entry is invalid or a code has more than one entry. The message names the code
+    and, for an invalid entry, the file.
     """
     frame = tomllib.loads((folder / "book.toml").read_text(encoding="utf-8"))
     chapters: dict[str, list[CodeBookEntry]] = {}
@@ -111,9 +115,9 @@ def _fill_placeholders(text: str, known: Mapping[str, Any]) -> str:
 
 
 def _replace_pieces(example: str, pieces: Mapping[str, str]) -> str:
-    """Return the example with each of these texts replaced.
+    """Return the example after replacing each key of ``pieces`` with its value.
 
-    Raises ValueError if the example does not contain one of the texts.
+    Raises ValueError if the example does not contain one of the keys.
     """
     for before, after in pieces.items():
         if before not in example:

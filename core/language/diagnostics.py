@@ -23,11 +23,13 @@ class Severity(StrEnum):
 class Diagnostic:
     """One finding in a program.
 
-    Lines and columns count from 1. Column 0 refers to the whole line, and line 0 refers to the whole file.
-    ``check_name`` is the name of the check that made the finding. ``block_number`` is the elementary block,
-    or 0 without a block. A repeated finding has its first location and its ``occurrence_count``.
-    ``assumptions`` are the assumptions on which the finding depends (``stock``, ``T3``).
-    ``downgrade_reason`` is the reason why the finding is only a note.
+    Lines and columns count from 1. Column 0 means the whole line, and line 0 means the whole file.
+
+    - ``check_name`` is the name of the check that made the finding.
+    - ``block_number`` is the elementary block, or 0 if the finding does not belong to a block.
+    - ``occurrence_count`` is the number of occurrences; a repeated finding has the location of the first.
+    - ``assumptions`` are the assumptions on which the finding depends, such as ``stock`` or ``T3``.
+    - ``downgrade_reason`` is the reason why the finding is only a note.
     """
 
     line: int

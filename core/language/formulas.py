@@ -77,11 +77,12 @@ class FormulaError(Exception):
 class FormulaGrammar:
     """The notation of formulas in a dialect, in capitals.
 
-    ``number_pattern`` and ``parameter_pattern`` match one operand. The groups of a parameter are its
-    letters and its number. ``operators`` maps each operator to its precedence (a higher value binds more
-    tightly) and name. ``functions`` maps functions to names, and ``constants`` maps constants to values.
-    ``operand_separator`` separates the operands of a function. If it is empty, functions have one operand
-    without parentheses.
+    - ``number_pattern`` and ``parameter_pattern`` match one operand. The groups of the parameter pattern
+      are the letters and the number of the parameter.
+    - ``operators`` maps each operator to its precedence and name; a higher value binds more tightly.
+    - ``functions`` maps functions to names, and ``constants`` maps constants to values.
+    - ``operand_separator`` separates the operands of a function. If it is empty, each function has one
+      operand without parentheses.
     """
 
     number_pattern: re.Pattern[str]
@@ -153,7 +154,7 @@ class FormulaReader(LineReader):
         return self._expression(0)
 
     def _expression(self, weakest: int) -> Formula:
-        """Read operands and operators with a precedence of at least ``weakest``, from left to right."""
+        """Read operands and operators, from left to right; ``weakest`` is the lowest operator precedence."""
         self._depth += 1
         if self._depth > _MAX_DEPTH:
             raise FormulaError(
@@ -186,7 +187,7 @@ class FormulaReader(LineReader):
         return self._word(at) or self._parameter_or_number(at)
 
     def _word(self, index: int) -> Formula | None:
-        """Read a constant, or a function with its operands, or return None for any other text."""
+        """Read a constant or a function with its operands; return None if the text is neither."""
         grammar = self._grammar
         if word := grammar.find_function(self.uppercase_text, index):
             self.index += len(word)

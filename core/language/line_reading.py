@@ -11,7 +11,7 @@ SIGNED_NUMBER = rf"[+-]?{UNSIGNED_NUMBER}"
 
 
 class LineReader:
-    """A position in a line at which patterns are matched.
+    """Reader of a line, which matches patterns at its current position in the line.
 
     ``uppercase_text`` is the line in capitals.
     """

@@ -32,7 +32,7 @@ def list_driver_tables(drivers: Sequence[DriverDeclaration]) -> tuple[DriverTabl
 
 
 def list_driver_subtables(drivers: Sequence[DriverDeclaration], table_path: str) -> tuple[str, ...]:
-    """Return the names of the tables that drivers add to the table ``table_path`` of the control."""
+    """Return the names of the subtables that drivers add to the control's own table ``table_path``."""
     parted = (table.path.rpartition(".") for table in list_driver_tables(drivers))
     return tuple(name for parent, _, name in parted if parent == table_path)
 
@@ -79,7 +79,7 @@ class DriverTableReader:
 def list_existing_tables(
     file_data: Mapping[str, object], drivers: Sequence[DriverDeclaration]
 ) -> tuple[str, ...]:
-    """Return the paths of the driver tables that a file contains or that always exist."""
+    """Return the paths of the driver tables that apply: those in the file and those always read."""
     return tuple(
         table.path
         for table in list_driver_tables(drivers)

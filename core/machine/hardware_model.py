@@ -63,7 +63,8 @@ class AnalogInputModel:
 class HomingModel:
     """The homing parameters of a real drive.
 
-    They are the CiA 402 method, the slow speed, and the position of home relative to the reference mark.
+    ``method`` is the CiA 402 homing method, ``latch`` is the slow speed, and ``offset`` is the position of
+    home relative to the reference mark.
     """
 
     method: int = 0  # 0: not specified

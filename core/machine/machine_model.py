@@ -248,10 +248,10 @@ class Interlocks:
 
 @make_key_table
 class ClampingModel:
-    """The chuck or collet and the tailstock, in mm and rpm, where 0 means not specified.
+    """The chuck or collet and the tailstock, in mm and rpm; a value of 0 means not specified.
 
-    ``stick_out`` is measured from the front of the chuck or collet to part zero. A tailstock has a quill.
-    The tip of its center, with the included angle ``centre_point`` in degrees, is at Z ``centre_at``.
+    ``stick_out`` is the distance from the front of the chuck or collet to part zero. The tip of the
+    tailstock center is at Z ``centre_at``, and ``centre_point`` is its included angle in degrees.
     """
 
     diameter: float = declare_key(

@@ -242,7 +242,10 @@ def _of_slides(values: FileValues, key: str) -> list[float]:
 
 
 def _slowest_axis_speed(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the maximum speed of the slowest linear axis, because a feed may be in any direction."""
+    """Return the maximum speed of the slowest linear axis as the default limit of the feed.
+
+    A feed may be in any direction, so each axis must reach it.
+    """
     return min(_of_slides(reading.values, "vmax"), default=None)
 
 
@@ -251,7 +254,10 @@ def _by_hand(reading: MachineReading, _place: str) -> DerivedValue:
 
 
 def _coarsest_count(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the largest count size, because a programmed step must be at least one count on every axis."""
+    """Return the largest count size of the linear axes as the default resolution.
+
+    A programmed step must be at least one count on every axis.
+    """
     return max(_of_slides(reading.values, "count"), default=None)
 
 
@@ -326,9 +332,9 @@ def _c_count(reading: MachineReading, _place: str) -> DerivedValue:
 
 
 def _c_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return an acceleration that reaches full speed in 1/3 s.
+    """Return the default acceleration of the C axis, which reaches full speed in 1/3 s.
 
-    The acceleration is limited to the acceleration of the spindle, which is also the C axis.
+    It is limited to the acceleration of the spindle, because the spindle is also the C axis.
     """
     values = reading.values
     spindle, vmax = _number(values, "spindle.accel_rpm_s"), _number(values, "axis.C.vmax")

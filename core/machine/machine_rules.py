@@ -152,7 +152,7 @@ def _homing(axis: str) -> ValueRule:
 
 
 def _home_order_rules() -> tuple[ValueRule, ...]:
-    """Return the rules that two axes must not home at the same time."""
+    """Return the rules by which no two axes may have the same place in the homing order."""
 
     def rule(one: str, other: str) -> ValueRule:
         def wrong(values: FileValues) -> str:
@@ -270,7 +270,10 @@ _QUEUE = "the setpoint queue would run empty"
 
 
 def _find_turret_error(values: FileValues) -> str:
-    """Return the error for a turret. No driver can index a turret, so T2 would cut with another tool."""
+    """Return the error for a turret, which is not allowed.
+
+    No driver can index a turret, so the program would continue with the wrong tool after T2.
+    """
     if values.text("tooling.kind") != "turret":
         return ""
     return (

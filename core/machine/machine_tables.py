@@ -137,7 +137,7 @@ class IgnoredMCodeKeys:
 
 
 class _SpindleDriver:
-    """The key of [spindle] whose choices come from the drivers."""
+    """Key ``driver`` of the table [spindle], whose choices come from the drivers."""
 
     driver: str = declare_key(
         default="sim",

@@ -16,11 +16,13 @@ MAX_TOUCH_DELAY_S = 0.1  # s, longest time from the touch to the command to brak
 class SetterModel:
     """The position of the stylus of a tool setter, and the motion of a touch-off.
 
-    Values are in mm and mm/s, with X as a radius. ``x`` and ``z`` are the middle of the stylus, measured
-    from the spindle axis and part zero. ``width`` is the size of the stylus, whose faces are at half this
-    distance from the middle. ``overtravel`` is the distance by which the stylus may be pushed. The tool
-    searches for the stylus at ``speed`` within the distance ``search``, retracts by ``back_off``, and
-    touches the stylus again at ``slow``.
+    Values are in mm and mm/s, with X as a radius.
+
+    - ``x`` and ``z`` are the center of the stylus, measured from the spindle axis and part zero.
+    - ``width`` is the size of the stylus between opposite faces.
+    - ``overtravel`` is the distance by which the stylus may be pushed.
+    - The tool searches for the stylus at ``speed`` within the distance ``search``.
+    - The tool then retracts by ``back_off`` and touches the stylus again at ``slow``.
     """
 
     x: float = declare_key(

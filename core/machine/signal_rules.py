@@ -274,9 +274,9 @@ def _is_screen_button(
 
 
 def _suggest_line(file: MachineFileReading, drivers: Sequence[DriverDeclaration], switch: str) -> str:
-    """Return the message with the line to add for the input of the switch.
+    """Return a message that suggests the line of [io.in] that defines the input of this switch.
 
-    Without this input, the switch would always be on AUTO.
+    Without this input, the switch would always be at AUTO.
     """
     backend = _backend(file.values, drivers)
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"
@@ -301,7 +301,7 @@ def _free_input(
 def _normalize_terminal(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration], terminal: str
 ) -> object:
-    """Return a value that is equal for different spellings of the same terminal."""
+    """Return a normal form of a terminal name, which is equal for all spellings of the terminal."""
     for driver in drivers:
         found = driver.normalize_terminal(file, terminal) if driver.normalize_terminal is not None else None
         if found is not None:

@@ -51,11 +51,12 @@ class AxisLike(Protocol):
 class MotionLimits:
     """The speed and acceleration limits of the axes, with the linear axes first.
 
-    Units are mm/s and mm/s², or degrees/s and degrees/s². A lathe has the order X, Z, C. ``interval`` (s)
-    is the time between two setpoints. Within an interval, an axis changes its velocity by at most ``amax *
-    interval``, which also limits the velocity step at a corner. ``grain`` (mm) is the resolution of the
-    programmed words. Joints of short chords may be moved by this amount on each axis; 0 leaves every joint
-    at its programmed position.
+    Units are mm/s and mm/s², or degrees/s and degrees/s². A lathe has the order X, Z, C.
+
+    - ``interval`` (s) is the time between two setpoints. Within an interval, an axis changes its velocity
+      by at most ``amax * interval``. This also limits the velocity step at a corner.
+    - ``grain`` (mm) is the resolution of the programmed words. The junction between two short chords may
+      be moved by this distance on each axis. With 0, every junction remains at its programmed position.
 
     Raises MotionError if a speed, an acceleration or the interval is not positive and finite, or if
     ``grain`` is negative or not finite.
@@ -86,8 +87,8 @@ class MotionLimits:
     ) -> MotionLimits:
         """Return the limits of a machine's axes.
 
-        ``corner_tolerance`` (mm) is the distance by which a joint between chords may be moved in X and Z
-        together. Each axis may always move the joint by one encoder count.
+        ``corner_tolerance`` (mm) is the distance by which the junction between two chords may be moved, in
+        X and Z together. Each axis may always move the junction by one encoder count.
         """
         return cls(
             vmax=tuple(axis.max_speed for axis in axes),

@@ -104,14 +104,18 @@ _read_columns = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", 
 class BlockTable:
     """A table of m blocks, with one array per column.
 
-    ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) are in machine coordinates. Positions are stored
-    in memory axis by axis, because columns are faster than rows. ``axis`` (m,) is the machine X of the
-    spindle centerline, from which radii are measured. ``locked`` (m,) is True while the spindle is engaged
-    as the C axis; the revolutions of C then count for a feed per revolution. ``surface`` (m,) is the
-    surface speed in mm/s, or NaN without a surface speed. ``min_rpm`` and ``max_rpm`` (m,) are the limits
-    of the spindle speed for this surface speed. ``curved_moves`` has m entries: a curved move on which the
-    axes are not proportional, such as a move of the virtual mill, or None. ``length`` (m,) is specified for
-    blocks that contain all axes. It is NaN for blocks of a lathe, whose length follows from X, Z and C.
+    Positions are stored in memory axis by axis, because columns are faster than rows.
+
+    - ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) are in machine coordinates.
+    - ``axis`` (m,) is the machine X of the spindle centerline, from which radii are measured.
+    - ``locked`` (m,) is True while the spindle is engaged as the C axis. A feed per revolution then
+      refers to the revolutions of C.
+    - ``surface`` (m,) is the surface speed in mm/s, or NaN without a surface speed.
+    - ``min_rpm`` and ``max_rpm`` (m,) are the limits of the spindle speed for this surface speed.
+    - ``curved_moves`` has m entries: a move on which the axes are not proportional, such as a move of the
+      virtual mill, or None for any other move.
+    - ``length`` (m,) is the path length of blocks that specify all axes. For a lathe, it is NaN, because
+      the length follows from X, Z and C.
     """
 
     n: FloatArray

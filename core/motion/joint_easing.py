@@ -1,8 +1,7 @@
-"""Smoothing of the joints between short chords, with the joints as arrays.
+"""Smoothing of the joints between short chords; a joint is the junction of two path elements.
 
 The points are complex numbers, X + iZ, so that a running sum or a selection processes both axes at once.
-Factors of single axes are arrays with two values for each joint, in the order in which the points are in
-memory.
+Factors for single axes are arrays with two values for each joint, in the memory order of the points.
 """
 
 from __future__ import annotations
@@ -24,10 +23,10 @@ Points = npt.NDArray[np.complex128]
 
 
 class _Window(NamedTuple):
-    """The windows of neighbors around m joints.
+    """The range of neighbors around each of m joints, over which a mean is calculated.
 
-    The sum over a window of ``joint_count`` joints is the running sum at ``last_index`` minus the running
-    sum at ``first_index``. ``joint_count`` (2m,) has two equal values for each joint.
+    The sum over ``joint_count`` joints is the running sum at ``last_index`` minus the running sum at
+    ``first_index``. ``joint_count`` (2m,) has two equal values for each joint.
     """
 
     first_index: IntArray
@@ -65,11 +64,11 @@ def _twice(values: npt.NDArray[np.generic]) -> FloatArray:
 
 
 def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_shifts: FloatArray) -> Points:
-    """Return the joints (m,) moved toward the mean of their neighbors.
+    """Return the joints (m,) between path elements, moved toward the mean of their neighbors.
 
     ``distances`` contains the distances of the joints along the path. Each joint moves by at most
-    ``allowed`` along each axis. Every run of joints where ``is_free`` (m,) is True is smoothed separately, so
-    that smoothing never crosses a corner.
+    ``allowed`` along each axis. Each run of consecutive joints where ``is_free`` (m,) is True is smoothed
+    separately, so that smoothing never crosses a corner.
     """
     window = _Window.create(np.minimum(_clear(is_free), MAX_NEIGHBOR_COUNT))
     last = window.last_index - 1
@@ -77,7 +76,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
     off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 
     def mean(of: Points) -> Points:
-        """Return the mean of the neighbors, moved along their line to the path distance of the joint.
+        """Return the mean of the neighbors, shifted along their line to the joint's distance.
 
         The joints of a straight line therefore remain on the line.
         """
@@ -128,11 +127,11 @@ def _clear(free: BoolArray) -> IntArray:
 
 
 class _Near(NamedTuple):
-    """The joints of the same run within AROUND joints of each joint, found in doubling steps.
+    """For each joint, its neighbors in the same run up to ``MAX_NEIGHBOR_COUNT``, in doubling steps.
 
-    Each item of ``doubling_steps`` is a distance in coordinates (2 for one joint) and an array. The array
-    has, for each coordinate, 1.0 if the coordinate at that distance after it belongs to the same run, and
-    0.0 otherwise. It is None if only one run exists.
+    Each item of ``doubling_steps`` is a distance in coordinates (2 for one joint) and an array. For each
+    coordinate, the array contains 1.0 if the coordinate at that distance after it belongs to the same run,
+    and 0.0 otherwise. The array is None if only one run exists.
     """
 
     doubling_steps: tuple[tuple[int, FloatArray | None], ...]
@@ -152,7 +151,7 @@ class _Near(NamedTuple):
         return cls(tuple((step, (run[step:] == run[:-step]).astype(np.float64)) for step in steps))
 
     def find_largest(self, values: FloatArray) -> FloatArray:
-        """Return the largest value (2m,) within AROUND joints of each joint, but not less than 0."""
+        """Return the largest value (2m,) within ``MAX_NEIGHBOR_COUNT`` joints of each joint, at least 0."""
         ahead, back = values.copy(), values.copy()
         for step, same in self.doubling_steps:
             later, earlier = ahead[step:], back[:-step]
@@ -164,7 +163,7 @@ class _Near(NamedTuple):
 
 
 def _doublings() -> Iterator[int]:
-    """Yield the shifts by which windows of one joint grow to windows of AROUND + 1 joints."""
+    """Yield the shifts by which windows grow from one joint to ``MAX_NEIGHBOR_COUNT`` + 1 joints."""
     reach = 1
     while reach <= MAX_NEIGHBOR_COUNT:
         step = min(reach, MAX_NEIGHBOR_COUNT + 1 - reach)

@@ -1,10 +1,10 @@
-"""The path as pieces with their limits and blocks, including blocks in which C also turns.
+"""The path of a motion as pieces with limits, including blocks in which C also rotates.
 
-C moves together with X and Z in moves of a virtual mill, and when a feed per revolution counts the
-revolutions of C. The length of such a piece is measured like its feed: along the path of the
-mill or along the path of X and Z. The ``direction`` of the piece is the motion of X, Z and C per unit of
-length. Limits, corners, look-ahead and feed hold therefore work as for any other line. A curved move is
-divided into chords in X, Z and C. The reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
+C moves together with X and Z in moves of a virtual mill, and if a feed per revolution refers to the
+revolutions of C. The length of such a piece is measured along the path of the mill or of X and Z, as its
+feed is. The ``direction`` of the piece is the motion of X, Z and C per unit of length. Limits, corners,
+look-ahead and feed hold therefore work as for any other line. A curved move is divided into chords in X, Z
+and C. The reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
 """
 
 from __future__ import annotations
@@ -90,11 +90,11 @@ def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, in
 
 
 def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits) -> FloatArray:
-    """Return the fractions (k+1,) of a curved move between which the axes may move proportionally.
+    """Return the fractions (k+1,) of a curved move at which it is divided into chords.
 
-    The chords deviate from the move by at most MAX_CHORD_ERROR_MM, measured on the part. Neighboring chords
-    differ so little in direction that the joint between them permits the feed ``feed_mm_s``, unless the
-    move itself has a corner at that joint.
+    Along a chord, the axes move proportionally. The chords deviate from the move by at most
+    MAX_CHORD_ERROR_MM, measured on the part. Their directions differ so little that the feed ``feed_mm_s``
+    is possible where two chords meet, unless the move itself has a corner there.
     """
     share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.get_critical_fraction()
     if np.abs(share - nearest).min() > _ROUNDING:
@@ -206,13 +206,17 @@ def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> Path
 class MotionPath:
     """A path in machine coordinates that can be planned, with n pieces of m blocks.
 
-    ``joint_distances`` (n+1,) are the distances of the joints along the path in mm. They continue from
-    earlier pieces that a builder has dropped. ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in
-    mm/s² are the limits along the pieces. ``joint_limits`` (n+1,) are the squared speed limits of the
-    joints, infinite at both ends. The block ``block_numbers[i]`` has the pieces
-    ``first_pieces[i]:first_pieces[i+1]``; a block without length has no pieces. ``start_position`` (axes,)
-    is the first point of the path. The last ``loose_joint_count`` joints may still move, by the resolution
-    of the words, when more blocks are added.
+    A joint is the junction of two pieces.
+
+    - ``joint_distances`` (n+1,) are the distances of the joints along the path in mm. They include the
+      length of earlier pieces that a builder has dropped.
+    - ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in mm/s² are the limits along the pieces.
+    - ``joint_limits`` (n+1,) are the squared speed limits of the joints, infinite at both ends.
+    - The block ``block_numbers[i]`` has the pieces ``first_pieces[i]:first_pieces[i+1]``; a block without
+      length has no pieces.
+    - ``start_position`` (axes,) is the first point of the path.
+    - The last ``loose_joint_count`` joints may still move, by the resolution of the words, when blocks
+      are added.
     """
 
     pieces: PathPieces
@@ -236,9 +240,9 @@ class MotionPath:
 
     @property
     def corner_reach_mm(self) -> float:
-        """Return the largest distance around a joint that affects the limit of the joint, in mm.
+        """Return the distance around a corner in which the path affects its speed limit, in mm.
 
-        This is the path that is traveled in one interval at the highest speed.
+        This is the distance that is traveled in one interval at the highest speed.
         """
         return float(self.limits.interval * self.speed_caps.max(initial=0.0))
 
@@ -257,9 +261,9 @@ class MotionPath:
         )
 
     def piece_at(self, distances: FloatArray) -> IntArray:
-        """Return the index of the piece at each distance.
+        """Return the index of the piece at each distance along the path.
 
-        At a joint, this is the piece that starts there.
+        At the junction of two pieces, this is the second piece.
         """
         found: IntArray = np.searchsorted(self.joint_distances, distances, side="right") - 1
         return np.clip(found, 0, max(len(self) - 1, 0))
@@ -335,9 +339,9 @@ class PathBuilder:
         self._path = None
 
     def _append_pieces(self, pieces: PathPieces, reached: float) -> None:
-        """Append pieces, and smooth the joints of short chords before the previous end again.
+        """Append pieces to the path, and smooth the short chords before its previous end again.
 
-        The new pieces affect these joints.
+        The new pieces affect the positions at which these chords meet.
         """
         known = concatenate_pieces([*self._parts, pieces[:0]])
         if self._written is None or not len(known):  # blocks without length leave nothing to continue
@@ -374,7 +378,8 @@ class PathBuilder:
     def drop_blocks_before(self, block_number: int) -> None:
         """Drop the blocks before block ``block_number``, except those that affect its corner limit.
 
-        These are the last block with a length and, for short chords, the blocks within one interval.
+        The last block with a length and, for short chords, the blocks within one interval affect this
+        limit.
         """
         path = self.build_path()
         keep = int(np.searchsorted(path.block_numbers, block_number))

@@ -1,8 +1,8 @@
-"""The plan of a path: look-ahead, squared joint speeds, and phases of constant acceleration.
+"""Motion plan of a path: look-ahead, speeds at piece junctions, and acceleration phases.
 
-To add a jerk limit, change ``build_profile``, which gives each piece an acceleration, a cruise and a
-deceleration. A jerk limit replaces these three phases by seven phases, and ``2·a·length`` by the speed that
-such a ramp reaches.
+To add a jerk limit, change ``build_profile``, which divides each piece into acceleration, cruise and
+deceleration. Use seven phases instead of these three, and replace ``2·a·length`` by the speed that such a
+ramp reaches.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
 
 
 def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
-    """Return, for the start of each row, the limit that follows from the earlier rows."""
+    """Return the limit at the start of each row of values that results from all rows before it."""
     carry, carries = np.inf, []
     for low, total in zip(lows, totals, strict=True):
         carries.append(carry)
@@ -186,11 +186,15 @@ def plan_motion(
     """Return the fastest motion from ``start_distance`` to rest.
 
     The motion starts at ``start_speed``; the default distance is the start of the path. It ends at the end
-    of the path or, if ``stop_early`` is True, as soon as braking permits. A scale of 0 stops the motion
-    before the first feed (or rapid) piece, or immediately if the motion can no longer stop before that
-    piece. A speed above a new, lower feed is reduced with full acceleration. Limits of axes, arcs and
-    corners always apply. Raises MotionError if a value is not valid, or if the speed is too high for the
-    next corner or for a stop on this path. Such a state does not come from a plan on this path.
+    of the path or, if ``stop_early`` is True, as soon as braking permits.
+
+    - A scale of 0 stops the motion before the first piece at feed (or at rapid), or immediately if the
+      motion can no longer stop before that piece.
+    - A speed above a new, lower feed is reduced with full acceleration.
+    - Limits of axes, arcs and corners always apply.
+
+    Raises MotionError if a value is not valid, or if the speed is too high for the next corner or for a
+    stop on this path. Such a speed does not result from a plan on this path.
     """
     _demand_sane(start_speed, feed_scale, rapid_scale)
     at = _start(path, start_distance)
@@ -214,11 +218,11 @@ def plan_motion(
 
 
 def find_last_settled_joint(path: MotionPath, start_distance: float | None = None) -> int:
-    """Return the last joint whose planned speed cannot be changed by further pieces, or -1.
+    """Return the last joint (junction of pieces) whose planned speed is final, or -1 without one.
 
-    The next piece may form a sharp corner with the last piece, or no corner. The speed at the start of the
-    last piece may therefore have any value up to its limit. A joint is settled if its speed is the same for
-    0 and for this limit.
+    Further pieces cannot change this speed. The next piece may form a sharp corner with the last piece, or
+    no corner. The speed at the start of the last piece may therefore have any value up to its limit. A
+    joint is settled if its speed is the same for 0 and for this limit.
     """
     first = int(path.piece_at(np.array([_start(path, start_distance)]))[0])
     # Later pieces may raise the limits of joints of short chords near the end.
@@ -288,7 +292,7 @@ class _PieceRun:
 
 
 def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
-    """Return the squared speeds (n+1,) at the joints; the first value is v²."""
+    """Return the squared speeds (n+1,) at the ends of the pieces; the first value is v²."""
     limit = run.max_squared_speeds.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])

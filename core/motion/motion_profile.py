@@ -255,7 +255,7 @@ class MotionProfile:
         return make_axis_segments(self.path, self._window(start_time_s, end_time_s), time_origin_s)
 
     def cut_at_distance(self, distance: float) -> MotionProfile:
-        """Return the part of the profile up to ``distance``, which must be that of a joint.
+        """Return the part of the profile up to ``distance``, which must be at the junction of two pieces.
 
         The part may end in motion.
         """
@@ -271,9 +271,10 @@ class MotionProfile:
         )
 
     def _joint_times(self) -> FloatArray:
-        """Return the times of all joints, calculated from the phases of their pieces.
+        """Return the times at which the motion passes the junctions of the pieces.
 
-        Near a stop, exact times cannot be calculated from distances.
+        They are calculated from the phases, because near a stop, exact times cannot be calculated from
+        distances.
         """
         joints = np.arange(len(self.path) + 1)
         times = np.append(self.phases.start_times_s, self.duration_s)[

@@ -1,9 +1,9 @@
-"""Lines and arcs as arrays for the motion planner, and smoothing of joints between short chords.
+"""Lines and arcs as arrays for the motion planner, and smoothing between short chords.
 
 Programmed points are rounded to the resolution. With chords of 0.01 mm, this rounding changes the direction
-at every joint far more than the original curve does. Each joint is therefore moved, by at most one
-resolution step per axis, to the curve that its neighbors indicate. Ends of runs of chords, corners, arcs,
-long lines and moves of other axes remain as programmed.
+at every joint (junction of two pieces) far more than the original curve does. Each joint is therefore
+moved, by at most one resolution step per axis, to the curve that its neighbors indicate. Ends of runs of
+chords, corners, arcs, long lines and moves of other axes remain as programmed.
 """
 
 from __future__ import annotations
@@ -32,13 +32,16 @@ _TURNS = 4.0  # resolution steps per chord length; a larger turn is not caused b
 class PathPieces:
     """Arrays of n lines and arcs in machine coordinates.
 
-    Lengths are in mm, or degrees for C, angles are in radians, and speeds are in mm/s. A line has ``start``
-    (n, axes) and ``direction`` (n, axes), which is the change of the axes per unit of path. The path of a
-    lathe is measured in X and Z, or in degrees if only C turns. Blocks of other machines specify their
-    length. An arc has ``curvatures`` ±1/radius, positive for clockwise; they are 0 for lines. ``angle`` is
-    the angle of the start of the arc, with x = center x + radius·sin and z = center z + radius·cos. The
-    ``direction`` of an arc contains only the motion of C. ``block`` is the number of the block, and
-    ``rate`` is the programmed speed.
+    Lengths are in mm, or degrees for C, angles are in radians, and speeds are in mm/s.
+
+    - A line has ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path.
+    - The path of a lathe is measured in X and Z, or in degrees if only C rotates. Blocks of other
+      machines specify their length.
+    - An arc has ``curvatures`` of ±1/radius, positive for clockwise; they are 0 for lines.
+    - ``angle`` is the angle at the start of the arc: x = center x + radius·sin, z = center z +
+      radius·cos.
+    - The ``direction`` of an arc contains only the motion of C.
+    - ``block`` is the number of the block, and ``rate`` is the programmed speed.
     """
 
     block: IntArray
@@ -182,9 +185,9 @@ def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
 
 
 def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
-    """Return the pieces with each joint moved by at most ``limits.grain`` per axis.
+    """Return the pieces with each junction moved by at most ``limits.grain`` per axis.
 
-    The first and the last point remain unchanged.
+    The first and the last point of the path remain unchanged.
     """
     inner = _is_free_joint(pieces, limits)
     if not inner.any():
@@ -203,7 +206,7 @@ def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
 
 
 def _joint_positions(pieces: PathPieces) -> FloatArray:
-    """Return the start positions of the pieces and the end position of the last piece (n+1, axes)."""
+    """Return the start points of all pieces and the end point of the last piece (n+1, axes)."""
     return np.concatenate([pieces.start, pieces[-1:].point(pieces.length[-1:])])
 
 
@@ -269,9 +272,9 @@ def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
 
 
 def _is_free_joint(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
-    """Return a mask (n-1,) of the joints that may be smoothed.
+    """Return a mask (n-1,) of the junctions of neighboring pieces that may be smoothed.
 
-    These are joints between two short chords whose direction changes no more than rounding can cause.
+    At such a junction, two short chords meet whose directions differ no more than rounding can cause.
     """
     if limits.grain <= 0.0 or len(pieces) < 3:
         return np.zeros(max(len(pieces) - 1, 0), dtype=bool)

@@ -1,13 +1,13 @@
-"""Programmed speeds, and speed and acceleration limits of pieces, corners and runs of chords.
+"""Programmed speeds, and speed and acceleration limits of path elements, corners and chord chains.
 
-Words are rounded to the resolution. With chords of 0.01 mm, this rounding changes the direction at every
-joint far more than the curve does. An axis does not follow the single changes of direction, but their sum
-between two setpoints. The demand on an axis is the second difference of its setpoints, |P(s+r) - 2·P(s) +
-P(s-r)| / interval², where r is the distance of one interval. This module compares that value with the limit
-of the axis.
+A path element is called a piece, and the junction of two pieces is called a joint. Program words are
+rounded to the resolution. With chords of 0.01 mm, this rounding changes the direction at each joint far
+more than the curve does. An axis follows only the sum of the direction changes between two setpoints. Its
+demand is the second difference of the setpoints, |P(s+r) - 2·P(s) + P(s-r)| / interval², where r is the
+distance traveled in one interval. This module compares the demand with the acceleration limit of the axis.
 
-The formulas and their reasons are in docs/decisions/0014-time-law.md. No value here depends on an override.
-A plan that starts in motion therefore has the same limits as the plan that it replaces.
+The formulas are explained in docs/decisions/0014-time-law.md. No value here depends on an override, so a
+plan that starts in motion has the same limits as the plan that it replaces.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ ARC_SAMPLE_COUNT = 65  # points at which the radius of an arc is sampled for the
 
 
 class JointLimits(NamedTuple):
-    """Speed limits and acceleration demands of k joints.
+    """Speed limits and acceleration demands at k junctions (joints) of path elements.
 
     ``squared_speeds`` (k,) are in mm²/s², and ``required_acceleration`` (k, axes) is in mm/s².
     """
@@ -59,13 +59,13 @@ def find_joint_limits(
     *,
     has_more_pieces: bool,
 ) -> JointLimits:
-    """Return the limits of the joints of ``single_limits``, considering the path around each joint.
+    """Return the limits at the joints of ``single_limits``, considering the path around each joint.
 
-    The joints are passed at ``max_speeds`` (k,) mm/s or slower. ``single_limits`` contains the limit of each
-    joint considered separately; the returned limits are never lower. Joint i is between the pieces i and
-    i+1. The path is assumed to continue straight at both ends. If ``has_more_pieces`` is True, joints
-    within one interval of the end are considered separately and reserve the full acceleration, so that
-    limits can only increase as the path grows.
+    Joint i is the junction of pieces i and i+1, passed at ``max_speeds`` (k,) mm/s or slower.
+    ``single_limits`` contains the limit of each joint considered separately; the returned limits are never
+    lower. The path is assumed to continue straight at both ends. If ``has_more_pieces`` is True, joints
+    within one interval of the end are considered separately and reserve the full acceleration. Later pieces
+    can then only increase the limits.
     """
     if not len(single_limits.joint_numbers):
         return single_limits
@@ -106,9 +106,10 @@ def _points(pieces: PathPieces, s: FloatArray, where: FloatArray) -> FloatArray:
 def find_piece_limits(
     pieces: PathPieces, limits: MotionLimits, *, has_more_pieces: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the speed caps (n,), accelerations (n,) and squared speed limits of the joints (n+1,).
+    """Return the speed caps (n,), accelerations (n,) and joint limits (n+1,) of the path pieces.
 
-    ``has_more_pieces`` is True if more pieces will follow. The joint limits at both ends are infinite.
+    The joint limits are squared speeds, and are infinite at both ends of the path. ``has_more_pieces`` is
+    True if more pieces will follow.
     """
     cap = find_speed_caps(pieces, limits)
     speeds = find_expected_speeds(pieces, cap)
@@ -129,9 +130,9 @@ def find_piece_limits(
 
 
 def find_speed_caps(pieces: PathPieces, limits: MotionLimits) -> FloatArray:
-    """Return the speeds (n,) in mm/s that each piece permits.
+    """Return the highest permitted speed (n,) of each path piece in mm/s.
 
-    They are limited by the axis limits and by the centripetal acceleration.
+    The speed is limited by the axis limits and by the centripetal acceleration.
     """
     caps = find_min_ratio(limits.speeds, np.abs(pieces.direction))
     arc = pieces.curvatures != 0.0
@@ -141,7 +142,7 @@ def find_speed_caps(pieces: PathPieces, limits: MotionLimits) -> FloatArray:
 
 
 def find_expected_speeds(pieces: PathPieces, caps: FloatArray) -> FloatArray:
-    """Return the highest speeds (n,) of the pieces at any override, in mm/s.
+    """Return the speeds (n,) of the path pieces at the maximum override, within ``caps``, in mm/s.
 
     Arcs are planned for these speeds.
     """
@@ -149,10 +150,10 @@ def find_expected_speeds(pieces: PathPieces, caps: FloatArray) -> FloatArray:
 
 
 def find_accelerations(pieces: PathPieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Return the accelerations (n,) along the pieces in mm/s².
+    """Return the permitted acceleration (n,) along each path piece in mm/s².
 
-    On arcs, this is the tangential part that remains when ``speeds`` require the centripetal part of the
-    vector sum.
+    On an arc, this is the tangential acceleration that remains after the centripetal acceleration at
+    ``speeds``.
     """
     along = find_min_ratio(limits.max_acceleration_array, np.abs(pieces.direction))
     arc = pieces.curvatures != 0.0
@@ -190,9 +191,9 @@ def limit_velocity_steps(
     """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the interval limit.
 
     A corner changes the velocity by v·|Δu|. The motion may brake before the corner and accelerate after it
-    with ``accelerations`` (n-1,) mm/s². The condition is therefore (v + a·interval/2)·|Δu| ≤ amax·interval. A
-    full reversal requires a stop. Setpoints that are half an interval before or after the corner exceed the
-    limit by at most an eighth. The result is infinite without a change of direction.
+    at ``accelerations`` (n-1,) mm/s². The condition is therefore (v + a·interval/2)·|Δu| ≤ amax·interval. A
+    full reversal requires a stop. A setpoint half an interval from the corner may exceed the limit by at
+    most an eighth. Without a change of direction, the result is infinite.
     """
     sharp = find_min_ratio(limits.max_acceleration_array * limits.interval, direction_changes)
     caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * accelerations, 0.0) ** 2
@@ -200,13 +201,15 @@ def limit_velocity_steps(
 
 
 def limit_curve_speeds(pieces: PathPieces, direction_changes: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Return the squared speeds (n-1,) in mm²/s² of joints that are close to other joints.
+    """Return the squared speed limits (n-1,) in mm²/s² of joints that are close to other joints.
 
-    Each joint is considered separately. For short chords, v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean
-    length of the neighbors. For chords of a circle, this is the centripetal limit of the circle for any
-    chord length. For a second corner within the interval, v²·|Δu|/ℓ ≤ amax, where ℓ is the length of the
-    shorter neighbor. Two such corners together use the fraction (2 - ℓ/vT)·ℓ/vT of amax, which is never
-    more than 1.
+    Each joint is considered separately. ℓ is a length of the neighboring pieces:
+
+    - Short chords: v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean length of the neighbors. For chords of a
+      circle, this equals the centripetal limit of the circle, whatever the chord length.
+    - A second corner within the interval: v²·|Δu|/ℓ ≤ amax, where ℓ is the length of the shorter
+      neighbor. Two such corners together use the fraction (2 - ℓ/vT)·ℓ/vT of amax, which is never more
+      than 1.
     """
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
@@ -223,7 +226,10 @@ def _chord_demand(
     *,
     more: bool,
 ) -> JointLimits:
-    """Return the limits of short chords over one interval, for joints that would otherwise be slow."""
+    """Return the limits of short chords over one setpoint interval.
+
+    They apply at joints where the limits of the single corners would force a low speed.
+    """
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
@@ -243,13 +249,13 @@ def find_spare_acceleration(
     *,
     has_more_pieces: bool,
 ) -> FloatArray:
-    """Return the acceleration (n,) that remains for short chords while they follow a curve.
+    """Return the tangential acceleration (n,) that remains while short chords follow a curve.
 
-    Chords that are passed within one setpoint interval act as a curve. They use v²·|Δu|/ℓ of each axis, or
-    the demand of the whole interval (``JointLimits``); the rest, (amax - used)/|u|, remains. At least a
-    fifth of amax remains because of the corner limits. If ``has_more_pieces`` is True, the last chord gets
-    exactly this fifth, so that a later corner cannot reduce it. The result is infinite for longer lines and
-    for arcs.
+    Chords that are passed within one setpoint interval act as a curve. The curve uses v²·|Δu|/ℓ of each
+    axis, or the demand over the whole interval (``JointLimits``). The remainder is (amax - used)/|u|. The
+    corner limits ensure that at least a fifth of amax remains. If ``has_more_pieces`` is True, the last
+    chord gets exactly this fifth, so that a later corner cannot reduce it. For longer lines and for arcs,
+    the result is infinite.
     """
     amax = limits.max_acceleration_array
     spare = np.full(len(pieces), np.inf)
@@ -275,10 +281,12 @@ def find_spare_acceleration(
 def find_block_speeds(table: BlockTable) -> FloatArray:
     """Return the speed (m,) of each block in mm/s.
 
-    For blocks with constant surface speed, this is the speed at the middle of their radii. Raises
-    MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, for a
-    surface speed at the spindle centerline without an upper limit of the spindle speed, and for a thread
-    that does not advance along Z.
+    A block with constant surface speed has the speed at the middle of its radii. Raises MotionError for:
+
+    - a feed that is not positive
+    - a feed per revolution while the spindle is stopped
+    - a surface speed at the spindle centerline without an upper limit of the spindle speed
+    - a thread that does not advance along Z
     """
     _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
     surface = depends_on_radius(table)
@@ -304,9 +312,9 @@ def find_block_speeds(table: BlockTable) -> FloatArray:
 
 
 def _per_lead(table: BlockTable) -> FloatArray:
-    """Return the ratio of path length to travel along Z (m,) for threads, and 1 for other blocks.
+    """Return the ratio of path length to travel along Z (m,) for thread blocks, and 1 for other blocks.
 
-    The lead of a thread is measured along the axis of the thread.
+    The lead of a screw thread is measured along the axis of the thread.
     """
     _refuse(
         table,
@@ -325,9 +333,10 @@ def depends_on_radius(table: BlockTable) -> BoolArray:
 
 
 def find_surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
-    """Return the results of ``find_surface_rpm`` of ``core.geometry`` for arrays, in rpm.
+    """Return the spindle speeds in rpm that constant surface speed requires at the given radii.
 
-    The result is NaN without a surface speed, and for a surface speed of 0 at the centerline.
+    This is ``find_surface_rpm`` of ``core.geometry`` for arrays. The result is NaN without a surface speed,
+    and for a surface speed of 0 at the centerline.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         rpm = 60.0 * table.surface / (2.0 * np.pi * np.abs(radius))
@@ -342,11 +351,11 @@ def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
 
 
 def split_piece_by_radius(pieces: PathPieces, table: BlockTable, index: int) -> PathPieces:
-    """Return piece ``index`` divided into parts within which the rpm changes by at most 2 %.
+    """Return path piece ``index`` divided into parts within which the rpm changes by at most 2 %.
 
-    Each part has the speed of its middle. On a line across the axis, the time of a part is exact, because
-    1/v is linear in the radius. The piece is not divided where the rpm is at its limit. The number of parts
-    is at most ln(max/min rpm)/ln 1.02 per pass.
+    Each part has the speed of its middle. On a line across the spindle axis, the time of a part is exact,
+    because 1/v is linear in the radius. The piece is not divided where the rpm is at its limit. The number
+    of parts is at most ln(max/min rpm)/ln 1.02 per pass.
     """
     piece, owner = pieces[index : index + 1], _table_row(table, index)
     length = float(piece.length[0])
@@ -381,9 +390,9 @@ def _radii(piece: PathPieces, owner: BlockTable, at: FloatArray) -> FloatArray:
 
 
 def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> FloatArray:
-    """Return the distances at which the radius-dependent rpm reaches a level.
+    """Return the distances along the piece at which the radius-dependent rpm reaches a dividing level.
 
-    The levels are a geometric series.
+    The levels form a geometric series.
     """
     if piece.curvatures[0] == 0.0:
         x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]
@@ -399,7 +408,7 @@ def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> Fl
 
 
 def _linear_radius_cuts(owner: BlockTable, s0: float, s1: float, r0: float, r1: float) -> FloatArray:
-    """Return the distances at which the rpm reaches a level on a part with a linear change of radius.
+    """Return the distances at which the rpm reaches a dividing level while the radius changes linearly.
 
     The radius changes from ``r0`` to ``r1`` between the distances ``s0`` and ``s1``.
     """

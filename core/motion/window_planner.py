@@ -1,4 +1,4 @@
-"""Planning of whole programs with limited memory, one window at a time, and sampling for a trace."""
+"""Planner of whole programs in limited memory, one window at a time, with sampling for a trace."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.motion.motion_profile import MotionProfile
 
 
 class PlannedChunk(NamedTuple):
-    """A final part of the planned motion.
+    """A part of the planned motion that later blocks can no longer change.
 
     ``start_time_s`` is the start of the chunk in seconds since the start of the planner. ``profile`` starts
     at time 0 and may start and end in motion; the next chunk continues the motion. ``block_numbers`` are
@@ -33,11 +33,11 @@ class PlannedChunk(NamedTuple):
 
 
 class WindowPlanner:
-    """A planner of blocks as they arrive, with about ``window`` blocks in memory.
+    """A planner of motion for blocks as they arrive, with about ``window`` blocks in memory.
 
-    The result equals a single plan of the whole program. Each window yields only the part whose speeds
-    cannot be changed by later blocks, because its braking ends at a corner or a feed inside the window. If
-    no part is final, the window grows.
+    The result equals a single plan of the whole program. Each window yields only the motion that is final.
+    Motion is final if later blocks cannot change its speeds, because its braking ends at a corner or a feed
+    inside the window. If no motion is final, the window grows.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
@@ -64,7 +64,7 @@ class WindowPlanner:
         return self._t
 
     def plan_blocks(self, blocks: Iterable[MotionBlock | MoveSeries]) -> Iterator[PlannedChunk]:
-        """Read blocks lazily and yield the motion that is final.
+        """Read blocks lazily and yield the motion that later blocks cannot change.
 
         No block is read before the result is iterated. Raises MotionError for a block that cannot be
         planned.
@@ -102,7 +102,7 @@ class WindowPlanner:
         yield self._accept_profile(self._plan(), joint)
 
     def _accept_profile(self, profile: MotionProfile, joint: int | None) -> PlannedChunk:
-        """Return the chunk of ``profile`` up to ``joint``, and continue planning from there.
+        """Return the chunk of ``profile`` up to ``joint``, from which planning then continues.
 
         If ``joint`` is None, the chunk contains the whole profile.
         """

@@ -1,8 +1,8 @@
-"""A tool that machines a turned part: the material that it removes, and collisions of its body.
+"""Tool that machines a turned part: material removal, and collisions of its body.
 
-An outside tool removes all material further out than its edge, because material outside the edge becomes a
-chip or would hit the holder. A boring tool removes all material closer to the axis. A face tool removes
-only the material that its outline covers.
+An outside tool removes all material further out than its edge, because such material becomes a chip or
+would hit the holder. A boring tool removes all material closer to the axis. A face tool removes only the
+material that its outline covers.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ class _OutlineSides:
 
 
 class _OutlineSet(NamedTuple):
-    """Convex outlines with their least Z and r and their greatest Z.
+    """Convex outlines with their common limits: the least Z and r, and the greatest Z.
 
-    The limits are infinitely far away if the set is empty.
+    If the set is empty, the limits are infinite.
     """
 
     sides: list[_OutlineSides]
@@ -69,8 +69,8 @@ class Cutter:
     """A tool given by its outlines (k, 2) in Z and r about the control point, prepared for sweeping.
 
     ``is_drill`` means that the tool is rotationally symmetrical about the spindle axis. ``is_rear`` means
-    that the tool works at negative X, where its outlines are given. ``edge_height_mm`` is the height of its
-    edges along r, in mm.
+    that the tool works at negative X, where its outlines are given. ``edge_height_mm`` is the extent of its
+    cutting edges along r, in mm.
     """
 
     def __init__(
@@ -97,10 +97,10 @@ class Cutter:
         return bool(self._body.sides)
 
     def find_trailing_edge_angle(self, cutting_direction: int) -> float:
-        """Return the angle in degrees from Z at which the trailing edge rises from the tip.
+        """Return the angle in degrees between the trailing edge and Z, measured at the tip.
 
-        ``cutting_direction`` is the sign of the Z motion while cutting. The result is 90 if no trailing
-        edge rises.
+        ``cutting_direction`` is the sign of the Z motion while cutting. The result is 90 if the tool has no
+        trailing edge that rises from the tip.
         """
         if cutting_direction not in self._clears:
             self._clears[cutting_direction] = self._clearance(cutting_direction)
@@ -117,7 +117,7 @@ class Cutter:
     def cut_material(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Remove the material that the edges sweep on a straight move, and return the cut.
 
-        The move is that of the control point.
+        ``start`` and ``end`` are positions of the control point.
         """
         return self._swept(part, start, end, cut=True)
 
@@ -128,7 +128,7 @@ class Cutter:
     def cut_with_body(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Remove the material that the holder and the shank hit, and return the cut.
 
-        Each collision is therefore reported only once.
+        Because the material is removed, each collision is reported only once.
         """
         met = NO_CUT
         start, end = self._ends_on_working_side(start, end)
@@ -162,10 +162,10 @@ class Cutter:
     def cut_thread(
         self, part: TurnedPart, start: Point, end: Point, lead_mm: float, revolutions: float
     ) -> Cut:
-        """Cut a thread in the section plane, where the edge passes once per revolution.
+        """Cut a screw thread in the section plane, where the edge passes once per revolution.
 
-        ``revolutions`` is the number of revolutions since the pass started in step with the spindle. If the
-        lead is finer than a column, the thread is cut like a cylinder, because the columns cannot show it.
+        ``revolutions`` is the number of revolutions since the synchronized pass started. A lead shorter
+        than a column of the part is cut like a cylinder, because the columns cannot show the thread.
         """
         if lead_mm <= part.columns.step_mm:
             return self.cut_material(part, start, end)
@@ -179,7 +179,7 @@ class Cutter:
         return met
 
     def _is_clear(self, part: TurnedPart, outlines: _OutlineSet, start: Point, end: Point) -> bool:
-        """Return whether the outlines remain in front of the part or outside its diameter."""
+        """Return whether the outlines remain in front of the part's face or outside its diameter."""
         columns, low = part.columns, outlines.min_point
         if min(start[0], end[0]) + low[0] > columns.first_z_mm + columns.step_mm * columns.column_count:
             return True
@@ -196,7 +196,7 @@ class Cutter:
         return place[0], place[1] * self.x_sign
 
     def _ends_on_working_side(self, start: Point, end: Point) -> tuple[Point, Point]:
-        """Return both ends of a move, relative to the side of the axis on which the outlines are.
+        """Return the start and end of a move, converted to the side of the axis with the outlines.
 
         A round tool works on both sides.
         """
@@ -227,7 +227,7 @@ class Cutter:
 
 
 def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, end: Point) -> Cut:
-    """Return the cut that a boring bar of excessive diameter makes at the opposite wall of a bore."""
+    """Return the cut that a boring bar that is too large for the bore makes at the opposite wall."""
     first, near = sweep_edge(outline.near_edge, start, end, part.columns)
     return part.cut_inside(first, -near)
 
@@ -299,7 +299,7 @@ class NeighborTools:
     def find_struck_tool(self, part: TurnedPart, tool: int, path: Iterable[tuple[Point, Point]]) -> int:
         """Return the number of the first other tool that hits material while ``tool`` moves.
 
-        The result is 0 if no other tool hits material on the path.
+        The result is 0 if no other tool hits material on ``path``.
         """
         if tool not in self._offsets:
             return 0

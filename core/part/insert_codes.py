@@ -5,11 +5,15 @@ circle of 12.7 mm, a thickness of 4.76 mm and a nose radius of 0.8 mm (1/32 in).
 (shape, clearance, tolerance, type, size, thickness, corner) and ANSI B212.4 (sizes in fractions of an
 inch). They were compared with the catalogs of Mitsubishi, Widia, Palbit and Denitool.
 
-``20x20``, ``3/4"`` and ``16mm`` are sizes of a standard shank. ``MCLNR 2020K12`` (ISO 5608) and
-``MCLNR-124B`` (ANSI B212.5) are holders with a shank, and ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2``
-are boring bars. The reach and the head are typical values and not those of one manufacturer. If they must
-be exact within 1 mm, measure the holder and specify its outline. ``0,4 18,4 18,60 0,60`` is an outline in
-mm, with Z and X from the control point. Any other text is treated as a name.
+Holder texts:
+
+- ``20x20``, ``3/4"`` and ``16mm`` are sizes of a standard shank.
+- ``MCLNR 2020K12`` (ISO 5608) and ``MCLNR-124B`` (ANSI B212.5) are holders with a shank.
+- ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` are boring bars.
+- ``0,4 18,4 18,60 0,60`` is an outline in mm, with Z and X from the control point.
+
+Any other text is treated as a name. The reach and the head are typical values, not those of one
+manufacturer. If they must be exact within 1 mm, measure the holder and specify its outline.
 """
 
 from __future__ import annotations
@@ -123,11 +127,11 @@ class InsertCodeError(CodedError, ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Insert:
-    """An indexable insert, in degrees and mm.
+    """The geometry of an indexable insert, in degrees and mm.
 
-    ``corner_angles`` and ``edge_lengths`` are the interior angles and the lengths, counterclockwise from
-    the cutting corner. ``inscribed_circle`` is a diameter. A round insert has no corners and no edges, and
-    its nose is the whole circle.
+    ``corner_angles`` and ``edge_lengths`` are the interior angles and the edge lengths, counterclockwise
+    from the cutting corner. ``inscribed_circle`` is a diameter. A round insert has no corners and no edges,
+    and its nose is the whole circle.
     """
 
     shape: str
@@ -179,7 +183,7 @@ def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Inser
 
 
 def list_metric_circle_sizes(shape: str) -> dict[str, float]:
-    """Return the inscribed circles in mm by the two digits of ISO 1832.
+    """Return the inscribed circles in mm, with the two size digits of the ISO 1832 code as keys.
 
     The digits are the edge length in whole mm, rounded down.
     """
@@ -215,7 +219,7 @@ def decode_insert_code(code: str) -> Insert:
 
 
 def _check_letters(code: str, head: str, *, is_old_code: bool) -> None:
-    """Check the four letters of a code.
+    """Raise InsertCodeError if one of the four letters at the start of a code is invalid.
 
     Older inch codes do not have the last letter (TPG 322).
     """
@@ -247,7 +251,7 @@ def _check_letters(code: str, head: str, *, is_old_code: bool) -> None:
 
 @dataclass(slots=True)
 class _CodeDigits:
-    """The remaining digits of a code, read from left to right."""
+    """Reader of the digits of an insert code, from left to right."""
 
     code: str
     shape: str
@@ -255,7 +259,11 @@ class _CodeDigits:
     last_read_position: int  # position of the last character read, without blanks and dashes
 
     def remove_digits(self, found: str, what: str, known: Mapping[str, float]) -> float:
-        """Remove the next characters of the code and return their value."""
+        """Remove the digits ``found`` from the start of the code, and return their value in ``known``.
+
+        ``what`` is the quantity that the digits specify, for messages. Raises InsertCodeError if the digits
+        are missing or unknown.
+        """
         if not found or len(found) < len(min(known, key=len)):
             place, known_codes = self.last_read_position + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
@@ -370,7 +378,7 @@ class ToolHolder:
 
 
 def parse_holder(text: str) -> ToolHolder | None:
-    """Return the holder that a text describes, or None for an empty string or a mere name."""
+    """Return the holder that a text describes, or None if the text is empty or only a name."""
     words = text.strip()
     if points := parse_outline(words):
         return ToolHolder(outline=points)

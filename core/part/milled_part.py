@@ -34,7 +34,7 @@ _LEVELS = 8  # exact floors of one path; a surface with more levels has no floor
 
 
 class RayCut(NamedTuple):
-    """A cut on rays, given by its columns, its rays and the interval of r that it covers."""
+    """A cut on rays from the part's axis: its columns, its rays and the interval of r."""
 
     columns: slice
     rays: IntArray
@@ -58,7 +58,7 @@ class RadialMillMove(NamedTuple):
 
 
 class MilledPart:
-    """A polar field of material from which mills and turning tools remove material, in mm."""
+    """The material of a part as a polar field, from which mills and turning tools cut, in mm."""
 
     def __init__(self, field: PolarField) -> None:
         self.field = field
@@ -68,9 +68,9 @@ class MilledPart:
     def remove_turned_material(
         self, first_column: int, start: FloatArray, end: FloatArray
     ) -> RemovedMaterial:
-        """Remove the material between two radii (m,), from column ``first_column`` on.
+        """Remove the material between two radii (m,) in each column, from column ``first_column`` on.
 
-        ``start`` and ``end`` are the radii of each column.
+        ``start`` and ``end`` are the inner and outer radii.
         """
         columns = slice(first_column, first_column + len(start))
         return self.field.find_removed_material(columns, slice(None), start[:, None], end[:, None])
@@ -122,7 +122,7 @@ class MilledPart:
     def _axial_cuts(
         self, path: FloatArray, radius: float, length: float, levels: FloatArray
     ) -> Iterator[RayCut]:
-        """Yield the cut of each column.
+        """Yield the cut of an axial mill in each column.
 
         ``levels`` are the depths that the end of the mill must reach to cut a column.
         """
@@ -152,10 +152,11 @@ class MilledPart:
         """Mill along ``path`` (m, 3) with the tool on a radius of the part.
 
         The path contains r of the tool end, z, and the polar angle in degrees. ``axis_offset`` is the
-        offset of the tool's axis from the part's axis, positive toward increasing angles.
-        ``cutting_length`` and ``cone_height`` are described in ``mill_axial``. Moves only in r, only in Z
-        or, with the tool axis through the part axis, only in the angle are exact. Other moves are divided
-        into steps that leave 0.001 mm.
+        offset of the tool's axis from the part's axis, positive toward increasing angles. See
+        ``mill_axial`` for ``cutting_length`` and ``cone_height``.
+
+        A move only in r, only in Z or, with the tool axis through the part axis, only in the angle is
+        exact. Any other move is divided into steps with an error of at most 0.001 mm.
         """
         met = NO_MATERIAL
         runs = list(self._group_strokes(path, radius, axis_offset))
@@ -206,7 +207,7 @@ class MilledPart:
         *,
         covers_whole_columns: bool = False,
     ) -> Iterator[RayCut]:
-        """Yield the cut of a run of strokes at the middles of the columns.
+        """Yield the cut of consecutive radial mill moves, calculated at the middles of the columns.
 
         If ``covers_whole_columns`` is True, the cut covers every column that it touches.
         """
@@ -235,7 +236,7 @@ class MilledPart:
     def _group_strokes(
         self, path: FloatArray, radius: float, height: float
     ) -> Iterator[list[RadialMillMove]]:
-        """Yield groups of consecutive strokes with an extent of at most the mill's radius."""
+        """Yield groups of consecutive mill moves that extend over at most the mill's radius."""
         outside = float(self.field.outer_radii.max(initial=radius))
         run: list[RadialMillMove] = []
         for stroke in self._strokes(path, radius, height, outside):
@@ -285,9 +286,9 @@ class MilledPart:
 
 
 class _DiscSweep:
-    """The area that a disc covers along the lines of a path, or along fractions of these lines.
+    """The area that a moving disc (the end of a mill) covers along the lines of a path.
 
-    The area of whole lines is cached.
+    The area can be limited to fractions of the lines. The area of whole lines is cached.
     """
 
     def __init__(self, path: FloatArray, radius: float, angles: FloatArray) -> None:
@@ -322,7 +323,7 @@ class _DiscSweep:
 
 
 def _level_fractions(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
-    """Return the fractions (levels, lines) of each line between which the mill is at each level.
+    """Return the fractions (levels, lines) of each path line between which the mill is at each Z level.
 
     If the mill does not reach a level, the first fraction is greater than the second.
     """
@@ -335,7 +336,7 @@ def _level_fractions(path: FloatArray, levels: FloatArray, length: float) -> tup
 
 
 def _path_lines(path: FloatArray) -> FloatArray:
-    """Return the path with at least two points.
+    """Return the path with a single point repeated, so that it has at least one line.
 
     Raises PartError if the path is empty or does not have three columns.
     """
@@ -356,9 +357,9 @@ def _floor_levels(path: FloatArray, length: float) -> FloatArray:
 
 
 def _iter_cone_steps(radius: float, point: float) -> Iterator[tuple[float, float]]:
-    """Yield the flat mills that approximate a mill with a cone of height ``point``.
+    """Yield flat-ended mills that together approximate a mill with a cone of height ``point``.
 
-    Each mill is given by its end offset and its radius.
+    Each flat mill is given by the offset of its end and by its radius.
     """
     count = min(max(math.ceil(point / 0.05), 8), 24) if point else 0
     for k in range(count):
@@ -369,7 +370,7 @@ def _iter_cone_steps(radius: float, point: float) -> Iterator[tuple[float, float
 def _parts_inside(
     path: FloatArray, outside: float, reach: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield the parts of a radial path with r less than ``outside`` and Z within ``reach``."""
+    """Yield the parts of a radial mill path with r less than ``outside`` and Z within ``reach``."""
     deltas_mm = np.diff(path, axis=0)
     first, last = np.zeros(len(deltas_mm)), np.ones(len(deltas_mm))
     for axis, least, most in ((0, -math.inf, outside), (1, *reach.tolist())):
@@ -385,7 +386,7 @@ def _lifted(run: list[RadialMillMove], rise: float) -> list[RadialMillMove]:
 
 
 def _is_overlapped(run: list[RadialMillMove], stroke: RadialMillMove, radius: float, outside: float) -> bool:
-    """Return whether a stroke is completely within the mill's radius of the first stroke of a run."""
+    """Return whether a mill move is entirely within the mill's radius of the first move of a group."""
     first = run[0]
     along = max(stroke.front_z_mm, first.front_z_mm) - min(stroke.back_z_mm, first.back_z_mm)
     turned = outside * (

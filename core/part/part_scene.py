@@ -39,7 +39,7 @@ class PartScene(NamedTuple):
 
 
 def make_color_table(colors: PartColors) -> ImageArray:
-    """Return the color table (colors, shades) of 0xAARRGGBB values.
+    """Return the shades of each color as 0xAARRGGBB values, as an array (colors, shades).
 
     A color is dark at a brightness of 0, unchanged at 0.7, and lighter above that.
     """

@@ -33,7 +33,7 @@ ColumnEnds = tuple[float, float]
 
 
 class RemovedMaterial(NamedTuple):
-    """The material in a cut.
+    """The dimensions of the material that a cut removes.
 
     ``volume_mm3`` is in mm³, and ``depth_mm`` is the greatest thickness along r. The cut extends from
     ``back_z_mm`` to ``front_z_mm`` in Z and from ``min_radius_mm`` to ``max_radius_mm`` in r, in mm.
@@ -67,8 +67,9 @@ NO_MATERIAL = RemovedMaterial()
 class PolarField:
     """The material of a part in polar coordinates, in mm.
 
-    ``column_edges`` (columns + 1,) are Z, ascending. ``inner_radii`` and ``outer_radii`` (layers, columns,
-    rays) are r. Ray j is at the angle 2π·j / rays, measured from the part's X toward its Y.
+    ``column_edges`` (columns + 1,) are the Z positions of the column edges, ascending. ``inner_radii`` and
+    ``outer_radii`` (layers, columns, rays) are the limits of the material along r. Ray j is at the angle
+    2π·j / rays, measured from the part's X toward its Y.
     """
 
     def __init__(
@@ -220,7 +221,7 @@ class PolarField:
         cut_inner: FloatArray,
         cut_outer: FloatArray,
     ) -> None:
-        """Store the material inside ``cut_inner`` and outside ``cut_outer`` in each layer."""
+        """Store the material that a cut from ``cut_inner`` to ``cut_outer`` leaves in each layer."""
         inner, outer = cut_inner > low + _TOUCH, high > cut_outer + _TOUCH
         both = inner & outer
         new_low = np.where(inner, low, np.where(outer, cut_outer, 0.0))
@@ -242,7 +243,10 @@ class PolarField:
         top: FloatArray,
         both: npt.NDArray[np.bool_],
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the layers with the pieces from ``cut_outer`` to ``top`` added on the divided rays."""
+        """Return the layers with an added layer for the material outside the cut on rays that it divides.
+
+        This material extends from ``cut_outer`` to ``top``.
+        """
         column, ray = np.nonzero(both.any(axis=0))
         split = both[:, column, ray]
         pieces_low = np.concatenate((low[:, column, ray], np.where(split, cut_outer[:, column, ray], 0.0)))
@@ -261,7 +265,7 @@ class PolarField:
 
 
 def sort_intervals(inner_radii: RealArray, outer_radii: RealArray) -> tuple[RealArray, RealArray]:
-    """Return the intervals in ascending order along the first axis.
+    """Return the intervals of r in ascending order along the first axis of the arrays.
 
     Empty intervals are last, and their radii are 0.
     """
@@ -366,7 +370,7 @@ def restore_field(copy: FieldCopy) -> PolarField:
 
 
 def _share_column(low: FloatArray, high: FloatArray, known: FloatArray | None) -> FloatArray:
-    """Return a column without empty layers, or ``known`` if it is equal.
+    """Return a column without empty layers, or ``known`` if it is equal, so that copies share memory.
 
     The column has one ray if all rays are equal.
     """

@@ -28,10 +28,11 @@ _AXIS_TOLERANCE_MM = 1e-6  # mm
 def find_capsule_intervals(
     start: FloatArray, end: FloatArray, radius: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the intervals of r in which discs that move from ``start`` to ``end`` (m, 2) cover rays.
+    """Return the intervals of r in which moving discs cover rays from the part's axis.
 
-    The rays are at ``angles`` (n,), and both results have the shape (m, n). If a ray is not covered, the
-    first result is not less than the second. Units are mm and radians.
+    The discs move from ``start`` to ``end`` (m, 2). The rays are at ``angles`` (n,), and both results have
+    the shape (m, n). If a ray is not covered, the first result is not less than the second. Units are mm
+    and radians.
     """
     cos, sin = np.cos(angles), np.sin(angles)
     low0, high0 = _discs(start, radius, cos, sin)
@@ -55,7 +56,7 @@ def _discs(
 def _rectangle_intervals(
     start: FloatArray, end: FloatArray, radius: float, cos: FloatArray, sin: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the intervals that are covered by the rectangle between the first and the last disc."""
+    """Return the intervals of r that are covered by the rectangle between the start and end discs."""
     displacement = end - start
     length = np.hypot(displacement[:, :1], displacement[:, 1:])
     unit = displacement / np.maximum(length, _TINY)
@@ -91,10 +92,10 @@ def _cleaned(
 
 
 def unite_intervals(starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the union of intervals (m, n) along the first axis, ascending, in the fewest layers (k, n).
+    """Return the union of intervals (m, n) along the first axis, as ascending disjoint layers (k, n).
 
-    An interval is empty if its end is not greater than its start. Empty intervals of the result are at
-    infinity.
+    The number of layers k is as small as possible. An interval is empty if its end is not greater than its
+    start. Empty intervals of the result are at infinity.
     """
     there = ends > starts
     starts, ends = np.where(there, starts, np.inf), np.where(there, ends, -np.inf)
@@ -119,8 +120,9 @@ def find_radial_mill_intervals(
     """Return the intervals of r (columns, rays) that a mill on a radius of the part covers.
 
     ``ray_angles_rad`` (rays,) is the angle from the tool's axis to each ray in radians. ``half_widths``
-    (columns,) is half the width of the mill at each column, or 0. The mill extends from ``end_radius``
-    outward by ``length``. ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
+    (columns,) is half the width of the mill at each column, or 0 where the mill does not reach. The mill
+    extends from ``end_radius`` outward by ``length``. ``axis_offset`` is the offset of its axis from the
+    part's axis. Lengths are in mm.
     """
     low, high = clip_interval(np.cos(ray_angles_rad), end_radius, end_radius + length)
     if axis_offset:
@@ -137,7 +139,7 @@ def find_radial_mill_intervals(
 def find_nearest_angles(ray_angles_rad: FloatArray, rotation_rad: float) -> FloatArray:
     """Return the smallest signed angle between each ray and a rotating tool axis, in radians.
 
-    The tool axis rotates by ``rotation_rad`` radians. ``ray_angles_rad`` (rays,) is the angle from the start
+    The tool axis rotates by ``rotation_rad``. ``ray_angles_rad`` (rays,) is the angle from the start
     position of the tool axis to each ray.
     """
     middle = np.remainder(ray_angles_rad - 0.5 * rotation_rad + np.pi, 2.0 * np.pi) - np.pi
@@ -207,7 +209,7 @@ def _count_chords(move: PlaneMove, chord: float) -> int:
 
 
 def _is_too_close_to_axis(move: PlaneMove) -> bool:
-    """Return whether a face mill passes closer to the axis than its height permits."""
+    """Return whether a face mill passes closer to the axis than its height offset permits."""
     return (
         not isinstance(move.frame, SidePlane)
         and move.compute_distance_from_axis(move.get_critical_fraction())

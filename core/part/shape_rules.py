@@ -1,4 +1,4 @@
-"""The fields that apply to each kind of tool, and rules that find contradictions in a tool shape."""
+"""Rules for tool shapes: the fields that apply to each kind of tool, and contradictions to report."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Tool, holder and chuck in the solid picture, as layers that are merged with the part by depth.
+"""Tool, holder and chuck in the solid picture, as image layers merged with the part by depth.
 
 The outlines of a tool become prisms below its rake face, which is in the plane of turning. A rotating tool
-becomes a solid of revolution. The points of these bodies are one pixel apart and are not cached, because
+becomes a solid of revolution. The points of these bodies are one pixel apart. They are not cached, because
 there are few of them.
 """
 
@@ -75,10 +75,10 @@ class ImageLayer(NamedTuple):
 
 
 class _LitFace(NamedTuple):
-    """The points of a face with their brightness.
+    """The surface points of a face with their brightness under the picture's lighting.
 
-    ``points`` (n, 3) are Z, X and height in mm. ``shade`` is the brightness from 0 to 1, as an array (n,)
-    or one value.
+    ``points`` (n, 3) are Z, X and height in mm. ``brightness`` is from 0 to 1, as an array (n,) or one
+    value.
     """
 
     points: FloatArray
@@ -133,8 +133,8 @@ def make_tool_layers(
 ) -> Iterator[ImageLayer]:
     """Yield the image layers of the body and the edges of a tool.
 
-    ``depth_steps_per_pixel`` is the number of depth steps per pixel. The depth is counted from a plane
-    ``far_depth`` pixels beyond the axis.
+    The depth of a pixel is measured from a plane ``far_depth`` pixels on the far side of the axis, with
+    ``depth_steps_per_pixel`` steps per pixel.
     """
     eye = _make_viewer(view, width, height)
     for polygons, lift, thick, colour, ghost in (
@@ -151,7 +151,7 @@ def make_tool_layers(
 
 
 def _make_viewer(view: SolidView, width: int, height: int) -> _Viewer:
-    """Return the viewer, with larger visible ranges for tilted views."""
+    """Return the viewer of a view. A tilted view has larger visible ranges."""
     cos, _ = view.azimuth_cos_sin
     across = (0.5 * height / view.pixels_per_mm + _HOLDER) / max(
         abs(math.sin(math.radians(view.tilt_deg))), 0.25
@@ -178,7 +178,7 @@ def _faces(
 def _prism_faces(polygon: FloatArray, lift: float, thick: float, eye: _Viewer) -> Iterator[_LitFace]:
     """Yield the visible faces of a prism with a convex outline.
 
-    The upper face of the prism is at the height ``lift``.
+    The upper face is at the height ``lift``.
     """
     for height, normal in ((lift, (0.0, 0.0, 1.0)), (-thick, (0.0, 0.0, -1.0))):
         if (shade := _face_brightness(eye, np.array(normal))) > 0.0:
@@ -234,7 +234,10 @@ def _revolved_surface(polygon: FloatArray, round_: RoundAxis, eye: _Viewer) -> _
 
 
 def _crossing_range(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the range that a convex outline covers at each of the given positions on an axis, or NaN."""
+    """Return the range that a convex outline covers across an axis at each given position.
+
+    The range is NaN where the outline does not reach the position.
+    """
     a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
     place = at[:, None]
     edge_delta = b[..., axis] - a[..., axis]

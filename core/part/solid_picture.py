@@ -47,9 +47,9 @@ _FACING_AWAY = -2  # used instead of a color
 
 
 class _PointGroup(NamedTuple):
-    """A group of points that are drawn together: a wall, a patch or a cut face.
+    """A group of surface points that are drawn together: a wall, a patch or a cut face.
 
-    ``first_point_index`` is the number of the first point.
+    ``first_point_index`` is the index of the first point of the group.
     """
 
     first_point_index: int
@@ -65,7 +65,7 @@ class _PointGroup(NamedTuple):
 class SolidPicture:
     """A painter that draws a solid repeatedly.
 
-    It caches the data that does not change between two pictures.
+    It caches the data that does not change from one picture to the next.
     """
 
     def __init__(self, colors: PartColors | None = None) -> None:
@@ -89,9 +89,9 @@ class SolidPicture:
     ) -> ImageArray:
         """Return the picture as an array (height, width).
 
-        ``version`` changes when the material changes. ``hits`` are ranges of Z that are drawn in red.
-        ``is_preview`` draws blocks of two by two pixels in a third of the time, for a part that is being
-        cut.
+        ``version`` changes when the material changes. ``hit_z_spans`` are ranges of Z that are drawn in
+        red. ``is_preview`` draws blocks of two by two pixels in a third of the time, for a part that is
+        being cut.
         """
         if is_preview:
             half, small = (
@@ -138,7 +138,7 @@ class SolidPicture:
 
 
 class _PictureDrawing:
-    """The drawing of one picture: points are converted to pixels, and then the nearest points are lit."""
+    """One picture in progress: points are projected to pixels, and then the nearest points are lit."""
 
     def __init__(self, surface: SolidSurface, view: SolidView, width: int, height: int) -> None:
         self.surface, self.view, self.width, self.height = surface, view, width, height
@@ -162,7 +162,7 @@ class _PictureDrawing:
     def _wall(self, wall: LayerWall) -> None:
         """Draw the visible points of a wall.
 
-        Columns that slope along Z may be visible beyond the horizon.
+        Columns that slope along Z may be visible even if a cylinder at this angle would face away.
         """
         if wall.faces_axis and not self._seen_inside():
             return
@@ -232,11 +232,11 @@ class _PictureDrawing:
         *,
         masked: bool = False,
     ) -> None:
-        """Store the nearest point of each pixel.
+        """Draw a group of points, and store only the nearest point of each pixel.
 
-        The depth and the number of a point are combined in one value, of which the greatest is stored.
-        ``z``, ``r`` and the sine and cosine of phi have compatible shapes (n, k). Points are numbered along
-        k first. If ``masked`` is True, some points are missing.
+        The depth and the index of a point are combined in one value, and the greatest value at each pixel
+        is stored. ``z``, ``r`` and the sine and cosine of phi have compatible shapes (n, k). Points are
+        numbered along k first. If ``masked`` is True, some points are missing.
         """
         across = max(r.shape[1], up.shape[-1])
         block = max(_BLOCK // across, 1)
@@ -311,7 +311,7 @@ class _PictureDrawing:
     def _smooth(self, pixel: IntArray, shade: Float32Array, rough: BoolArray) -> None:
         """Set the brightness of each rough point to the mean of the rough points around it.
 
-        The mean includes 5 × 5 pixels.
+        The mean covers the 5 × 5 pixels around the point.
         """
         at, wide = pixel[rough], self.width
         light, count = (np.zeros(self.height * wide, np.float32) for _ in range(2))
@@ -443,7 +443,7 @@ def _smoother(before: Float32Array, next_change: Float32Array) -> Float32Array:
 
 
 def _remove_specks(codes: CodeArray) -> CodeArray:
-    """Replace rim points that face away, and isolated points, by the median of their neighbors.
+    """Replace points on the rim that face away, and isolated points, by the median of their neighbors.
 
     The median of three points is applied horizontally, then vertically.
     """
@@ -458,7 +458,7 @@ def _remove_specks(codes: CodeArray) -> CodeArray:
 
 
 def _draw_edges(codes: CodeArray, depth: npt.NDArray[np.int32]) -> None:
-    """Darken the deeper side of an edge to show a step between two faces of equal brightness.
+    """Darken the deeper side of each step in depth, to separate two faces of equal brightness.
 
     A point is on the deeper side if it is deeper than the mean of its two neighbors by more than ``_EDGE``.
     """

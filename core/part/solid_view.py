@@ -18,13 +18,14 @@ from core.part.ray_cuts import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class SolidView:
-    """The view of a part.
+    """The view of a solid part: direction of the viewer, scale and cut-open range.
 
-    ``azimuth_deg`` rotates the viewer from the side (0) to the face (90) or the chuck (-90). ``tilt_deg``
-    raises the viewer: 0 is the position of the operator, and 90 is the view from above, like the path view.
-    ``roll_deg`` is the angle of C. Angles are in degrees. ``pixels_per_mm`` is the scale, and
-    ``center_z_mm`` is the Z of the middle of the picture. ``open_range_deg`` is the range of phi that is
-    cut out, within -180 to 180 degrees, or None.
+    - ``azimuth_deg`` rotates the viewer from the side (0) to the face (90) or the chuck (-90).
+    - ``tilt_deg`` raises the viewer: 0 is the position of the operator, and 90 is the view from above.
+    - ``roll_deg`` is the angle of C.
+    - ``pixels_per_mm`` is the scale, and ``center_z_mm`` is the Z of the middle of the picture.
+    - ``open_range_deg`` is the range of phi that is cut open, within -180 to 180, or None if the part is
+      closed.
     """
 
     azimuth_deg: float = 30.0
@@ -48,7 +49,7 @@ class SolidView:
         return np.asarray(np.remainder(phi + math.pi, 2.0 * math.pi) - math.pi, dtype=np.float64)
 
     def is_cut_open(self, phi: FloatArray) -> npt.NDArray[np.bool_]:
-        """Return a mask of the values of phi (radians) that are cut out."""
+        """Return a mask of the values of phi (radians) that are within the cut-open range."""
         if self.open_range_deg is None:
             return np.zeros(phi.shape, dtype=np.bool_)
         first, last = (math.radians(edge) for edge in self.open_range_deg)

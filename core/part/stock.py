@@ -78,11 +78,11 @@ def make_tube(
 
 
 def calculate_critical_rpm(stock: Stock, stick_out: float) -> float:
-    """Return the first critical speed in rpm of a bar that extends ``stick_out`` mm from its chuck to Z0.
+    """Return the first critical speed of a bar that extends from the chuck to Z0, in rpm.
 
-    The result is 0 if the bar does not extend from the chuck. The formula is that of a beam clamped at one
-    end, 1.8751² · √(E·I / (ρ·A)) / L², with E and ρ of brass, which gives the lowest speed of the materials
-    that are turned. A bent bar whirls below this speed.
+    ``stick_out`` is the length of this bar in mm; the result is 0 if it is not positive. The formula is
+    that of a beam clamped at one end, 1.8751² · √(E·I / (ρ·A)) / L². E and ρ are those of brass, which
+    gives the lowest speed of the usual turned materials. A bent bar whirls below this speed.
     """
     length = stick_out + stock.front_z_mm
     if length <= 0.0:
@@ -94,12 +94,14 @@ def calculate_critical_rpm(stock: Stock, stick_out: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Clamping:
-    """A chuck or collet in the part's frame, in mm, with its front face at Z = -``stick_out``.
+    """A chuck or collet in the part's frame, in mm, with an optional tailstock.
 
-    ``jaw_length`` is the length by which the jaws or the nose of a collet extend from the body. A
-    ``max_rpm`` of 0 means not specified. ``quill_diameter`` is the diameter of a tailstock quill, or 0
-    without a tailstock. The tip of the tailstock center, with the included angle ``center_angle_deg`` in
-    degrees, is at Z ``center_z_mm``.
+    - The front face is at Z = -``stick_out``.
+    - ``jaw_length`` is the length by which the jaws or the nose of a collet extend from the body.
+    - A ``max_rpm`` of 0 means not specified.
+    - ``quill_diameter`` is the diameter of the tailstock quill, or 0 without a tailstock.
+    - The tip of the tailstock center is at ``center_z_mm``. Its included angle is ``center_angle_deg``
+      degrees.
     """
 
     diameter: float
@@ -126,7 +128,7 @@ class Clamping:
 
     @property
     def tailstock_solid(self) -> Stock | None:
-        """Return the center and the quill of the tailstock, or None without a tailstock."""
+        """Return the center and the quill of the tailstock as a solid, or None without a tailstock."""
         if not self.quill_diameter:
             return None
         radius = self.quill_diameter / 2.0

@@ -48,7 +48,7 @@ class StockSpec:
     def stock(self, back_z_mm: float, unit_mm: float) -> Stock:
         """Return the bar, tube or profile that is specified.
 
-        ``back_z_mm`` is the least Z that is cut, in mm. ``unit_mm`` is the length unit of the program, in
+        ``back_z_mm`` is the least Z of all cuts, in mm. ``unit_mm`` is the length unit of the program, in
         mm. Raises StockError if the text of a profile is invalid.
         """
         if self.points:

@@ -36,8 +36,8 @@ _MAX_SUBDIVISION = 4  # largest number of interpolated rays per ray
 class Solid(NamedTuple):
     """A solid in columns and rays; a turned part has one ray.
 
-    ``column_edges`` (columns + 1,) are Z. ``inner_radii`` and ``outer_radii`` (layers, columns, rays) are
-    r.
+    ``column_edges`` (columns + 1,) are the Z positions of the column edges. ``inner_radii`` and
+    ``outer_radii`` (layers, columns, rays) are the limits of the material along r.
     """
 
     column_edges: FloatArray
@@ -62,12 +62,12 @@ def make_turned_solid(column_edges: FloatArray, inner_radii: FloatArray, outer_r
 
 
 class SurfacePatch(NamedTuple):
-    """Surface points that are not on the walls of rays, with their normals.
+    """Surface points of faces and flanks, which are not on the walls along rays, with their normals.
 
     ``z_px`` and ``radius_px`` are Z and r in pixels. The normals are given along r, the angle and Z.
-    ``half_ray_numbers`` (n,) counts halves of the step between rays. It is None if the points are rings,
-    with a point at every ray. ``is_rough`` means that the wall crosses columns and rays, so that its
-    normals vary from point to point.
+    ``half_ray_numbers`` (n,) are the angular positions in half steps between rays, or None if the points
+    are rings with a point at every ray. ``is_rough`` means that the wall crosses columns and rays, so that
+    its normals vary from point to point.
     """
 
     z_px: Float32Array
@@ -80,12 +80,15 @@ class SurfacePatch(NamedTuple):
 
 
 class LayerWall(NamedTuple):
-    """One side of one layer, with its radius (columns, rays) in pixels in some ``columns`` of the surface.
+    """The inner or outer side of one layer of a solid, as radii (columns, rays) in pixels.
 
-    ``faces_axis`` means that the wall faces the axis. ``bore_radius_px`` (columns,) is specified for the
-    innermost wall and contains its usual radius. ``is_complete`` means that no point is missing.
-    ``is_sloped`` is a mask of the columns whose radius changes along Z. ``max_slope_rad`` is the greatest
-    angle in radians between a normal and the radius.
+    - ``columns`` are the columns of the surface to which the wall belongs.
+    - ``faces_axis`` means that the wall faces the axis.
+    - ``bore_radius_px`` (columns,) is the usual radius of the innermost wall, and only specified for this
+      wall.
+    - ``is_complete`` means that no point is missing.
+    - ``is_sloped`` is a mask of the columns whose radius changes along Z.
+    - ``max_slope_rad`` is the greatest angle in radians between a normal and the radius.
     """
 
     columns: IntArray
@@ -160,7 +163,7 @@ class SolidSurface:
         return leaning, math.atan(float(steady.max(initial=0.0)) * 720.0 / (2.0 * math.pi))
 
     def _make_faces(self, face_direction: int, solid: Solid, drawn: tuple[float, float]) -> SurfacePatch:
-        """Return the surface of each column that the next column does not cover.
+        """Return the exposed face of each column, where the next column has less material.
 
         No face is made at the edge of the picture, because the part does not end there.
         """
@@ -195,9 +198,9 @@ class SolidSurface:
         )
 
     def _is_straight(self, column: IntArray, ray: IntArray, *, round_: bool) -> npt.NDArray[np.bool_]:
-        """Return a mask of the cells where a step continues unchanged on both sides.
+        """Return a mask of the cells at which a step in thickness continues unchanged on both sides.
 
-        The step is followed in the column of the cell or on its ray.
+        The step is followed along the column of the cell or along its ray.
         """
         own = self._thickness_step(column, ray, round_=round_)
         limit, thick = 0.5 * np.abs(own), self.thickness_px[column, ray]
@@ -221,7 +224,7 @@ class SolidSurface:
         return self.thickness_px[ahead, ray] - self.thickness_px[previous, ray]
 
     def _make_flanks(self) -> SurfacePatch:
-        """Return the surface of each ray that the next ray on either side does not cover."""
+        """Return the exposed flank of each ray, where the next ray on either side has less material."""
         here, there = _differing_cells(self.inner_radii, self.outer_radii, 1.0, round_=True)
         one, other = self._flank(here, there, 1), self._flank(there, here, -1)
         return SurfacePatch(
@@ -299,7 +302,10 @@ def _sample_layer(
 def _neighbor_columns(
     edges: FloatArray, at: FloatArray, scale: float
 ) -> tuple[IntArray, IntArray, Float32Array, Float32Array]:
-    """Return, for each Z, its column, the nearest neighbor with its share, and the step limit in pixels."""
+    """Return, for each Z, the column, its nearest neighbor, the neighbor's weight, and the step limit.
+
+    The step limit is in pixels.
+    """
     middles = 0.5 * (edges[1:] + edges[:-1])
     own = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(middles) - 1)
     neighbor = np.clip(own + np.where(at > middles[own], 1, -1), 0, len(middles) - 1)
@@ -332,7 +338,7 @@ def _mixed(
 
 
 def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int) -> Float32Array:
-    """Return the rays with interpolated rays added where neighboring rays form one surface."""
+    """Return the radii with interpolated rays inserted where neighboring rays form one surface."""
     if times == 1:
         return r
     change = np.roll(r, -1, axis=1)
@@ -348,7 +354,7 @@ def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int)
 def _differing_cells(
     low: list[Float32Array], high: list[Float32Array], min_difference: float, *, round_: bool
 ) -> tuple[CellIndices, CellIndices]:
-    """Return the cells that differ from the next cell by over ``min_difference``, and the next cells.
+    """Return cells that differ from the next cell by over ``min_difference``, and these next cells.
 
     The next cell is along Z, or around the part if ``round_`` is True.
     """
@@ -370,10 +376,7 @@ def _differing_cells(
 def _uncovered_cells(
     low: list[Float32Array], high: list[Float32Array], own: CellIndices, other: CellIndices, min_length: float
 ) -> tuple[IntArray, Float32Array, Float32Array]:
-    """Return the cells of ``own`` with material that ``other`` does not cover.
-
-    The limits of r of this material are also returned.
-    """
+    """Return the cells of ``own`` with material that ``other`` does not cover, and its limits of r."""
     deep = np.zeros(len(own[0]), np.bool_)
     for r in high[1:]:
         if r.any():

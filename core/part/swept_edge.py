@@ -1,6 +1,6 @@
-"""The area that a tool's edge sweeps on a straight move, as the least radius in each column along Z.
+"""Area that a tool's edge sweeps on a straight move, as the least radius in each column along Z.
 
-An edge is one side of a convex outline, either facing the axis or facing away from it. Its sweep along a
+An edge is the side of a convex outline that faces the axis or faces away from it. Its sweep along a
 straight line is the convex hull of the edge at both ends of the line. The hull consists of the edge up to
 the point where it is tangent to the move, the move itself, and the rest of the edge.
 """
@@ -38,7 +38,7 @@ class Columns(NamedTuple):
         return middles
 
     def find_column(self, z: float) -> int:
-        """Return the index of the first column whose middle is not before ``z``.
+        """Return the index of the first column whose middle is at ``z`` or greater.
 
         The index is limited to the range of the columns.
         """
@@ -46,7 +46,7 @@ class Columns(NamedTuple):
 
 
 class AxisFacingEdge(NamedTuple):
-    """The side of a convex outline that faces the axis.
+    """The side of a convex outline that faces the axis, as a chain of k points.
 
     ``z`` (k,) is ascending, ``r`` has the shape (k,), and ``slope`` (k - 1,) is ascending.
     """
@@ -82,8 +82,8 @@ def sweep_edge(
 ) -> tuple[int, FloatArray]:
     """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
-    ``start`` and ``end`` are the positions of the outline's origin. Columns at both ends are left out if
-    the edge does not reach a radius less than ``below`` in them.
+    ``start`` and ``end`` are the positions of the outline's origin. Columns at both ends are omitted if the
+    edge does not reach a radius less than ``max_radius_mm`` in them.
     """
     (z1, r1), (z0, r0) = (start, end) if start[0] <= end[0] else (end, start)
     z_travel_mm = z0 - z1
@@ -100,7 +100,7 @@ def sweep_edge(
 
 
 def _ends_below(z: FloatArray, r: FloatArray, below: float) -> Point:
-    """Return both ends along Z of the part of a convex chain (k,) with r less than ``below``."""
+    """Return the two Z values between which a convex chain (k,) has an r less than ``below``."""
     inside = (r < below).nonzero()[0]
     if not len(inside):
         return float(z[0]), float(z[0])

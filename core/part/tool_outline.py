@@ -1,10 +1,10 @@
-"""Outlines of tools in the plane of turning: cutting edges and bodies, by kind and size.
+"""Outlines of tools in the plane of turning: cutting edges and bodies, by tool kind and dimensions.
 
-Every tool is drawn in one pose, in which it points to the chuck and the axis (quadrant 3, 8 for a
-symmetrical tool, 7 for a drill). It is then mirrored to the side of its tip. X retains its sign. The holder
-of a front tool is at X+ of its tip, and the holder of a rear tool is at X−. A boring bar may extend across
-the axis, where |X| applies. Dimensions that are not specified are those of the usual standard holders, and
-the names of these dimensions are listed.
+Every tool is drawn in one orientation, in which it points to the chuck and the axis (quadrant 3, 8 for a
+symmetrical tool, 7 for a drill). It is then mirrored to the quadrant of its tip. X retains its sign: the
+holder of a front tool is at X+ of its tip, and the holder of a rear tool is at X−. A boring bar may extend
+across the axis, where |X| applies. Standard holder dimensions replace dimensions that are not specified,
+and the names of these dimensions are listed.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class ToolOutline:
 
 @dataclass(slots=True)
 class _OutlineDrawing:
-    """The drawing of one tool in the pose that all tools share."""
+    """The outline of one tool while it is drawn, in the standard orientation of all tools."""
 
     shape: ToolShape
     cutting_outlines: list[FloatArray] = field(default_factory=list)
@@ -86,9 +86,9 @@ class _OutlineDrawing:
     assumed_fields: list[str] = field(default_factory=list)
 
     def get_size(self, name: str, usual: float) -> float:
-        """Return the size in a field of the shape, or the usual size if the field is not specified.
+        """Return the value of a dimension field of the shape, or ``usual`` if the field is not specified.
 
-        The name of a field with the usual size is recorded.
+        A field for which the usual value is used is recorded by name.
         """
         stated = float(getattr(self.shape, name))
         if stated > 0.0:
@@ -116,9 +116,9 @@ class _OutlineDrawing:
 
     @property
     def tip_position(self) -> FloatArray:
-        """Return the position of the tip relative to the center of the nose, in nose radii.
+        """Return the tip position relative to the nose center, in nose radii.
 
-        The position applies to the pose of the drawing.
+        The position applies to the standard orientation of the drawing.
         """
         if self.shape.tip in {0, 9}:
             return np.zeros(2)
@@ -150,9 +150,9 @@ def make_outline(shape: ToolShape) -> ToolOutline:
 
 
 def make_nose_circle(radius: float, tip: int) -> ToolOutline:
-    """Return the nose circle as the outline of a tool without a shape.
+    """Return the nose circle as the outline of a tool without a specified shape.
 
-    Without a radius, the circle is very small.
+    Without a specified nose radius, the circle is very small.
     """
     size = radius or MAX_NOSE_CHORD_ERROR_MM * 10.0
     z, r = TIP_DIRECTIONS[tip]
@@ -199,7 +199,7 @@ def _insert(drawing: _OutlineDrawing, usual_circle: float) -> Insert:
 
 
 def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]) -> float:
-    """Return the direction of the end cutting edge from the tip, in degrees from +z to +r."""
+    """Return the direction of the insert's end cutting edge from the tip, in degrees from +z to +r."""
     shape, holder, point = drawing.shape, drawing.holder, insert.point_angle
     entry = shape.entry or holder.entering_angle_deg
     if not entry and (not drawing.is_tip_in_quadrant or shape.hand is Hand.NEUTRAL):
@@ -212,7 +212,10 @@ def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, 
 def _seat_insert(
     drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the outlines of the insert and of its seated part, relative to the control point."""
+    """Return the outlines of the insert and of its seated part, relative to the control point.
+
+    The seated part is the insert without the overhang at its edges.
+    """
     radius = insert.nose_radius
     seat = 1.0 - 2.0 * min(1.0, _INSERT_OVERHANG_FRACTION * insert.inscribed_circle) / insert.inscribed_circle
     if not insert.corner_angles:
@@ -247,7 +250,7 @@ _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  
 
 
 def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
-    """Add the head from the seat to the shank, and the shank up to the stick-out length."""
+    """Add the holder's head between insert seat and shank, and the shank up to the stick-out length."""
     drawing.body_outlines.append(find_convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
@@ -272,7 +275,7 @@ _INSERT_BARS = ((12.0, 32.0), (9.0, 20.0), (6.0, 12.0), (0.0, 8.0))  # inscribed
 
 
 def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float, head: float) -> None:
-    """Add a bar toward +z, with its axis at the distance ``axis`` from the tip.
+    """Add a boring bar toward +z, with its axis at the distance ``axis`` from the tip.
 
     For back boring, z is mirrored.
     """
@@ -311,7 +314,7 @@ def _grooving(drawing: _OutlineDrawing) -> None:
 
 
 def _left_edge_end(drawing: _OutlineDrawing, width: float, nose: float) -> float:
-    """Return the left end of an edge.
+    """Return the z of the left end of the cutting edge, relative to the control point.
 
     The control point is the corner of the edge, its middle or a nose center.
     """
@@ -340,7 +343,7 @@ def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: flo
 
 
 def _draw_threading(drawing: _OutlineDrawing) -> None:
-    """Draw a V-shaped point with a nose radius, or with a flat of 1/8 of the pitch (ISO 68-1)."""
+    """Draw the V-shaped point of a threading tool, with a nose radius or a 1/8 pitch flat (ISO 68-1)."""
     shape = drawing.shape
     angle = math.radians(drawing.get_size("point", _POINTS[ToolKind.THREADING]))
     high = shape.length or max(shape.pitch, 3.0)
@@ -371,12 +374,12 @@ def _cylinder(start: float, end: float, radius: float) -> FloatArray:
 
 
 def _mirror_half(upper: list[tuple[float, float]]) -> FloatArray:
-    """Return a convex polygon that is mirrored from its half at r ≥ 0, ordered along z."""
+    """Return the convex polygon whose upper half (r ≥ 0), ordered along z, is given."""
     return find_convex_hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
 
 
 def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -> None:
-    """Add the shank up to the clamping, and the clamping itself if its position is specified."""
+    """Add the shank of a round tool up to the clamping, and the clamping if its position is specified."""
     end = drawing.shape.stick_out or length + 2.0 * diameter
     if end > length:
         drawing.body_outlines.append(_cylinder(length, end, diameter / 2.0))
@@ -425,7 +428,7 @@ def _reamer(drawing: _OutlineDrawing) -> None:
 
 
 def _draw_tap(drawing: _OutlineDrawing) -> None:
-    """Draw a tap with a chamfer lead that is three pitches long and starts below the core (ISO 68-1)."""
+    """Draw a tap with a chamfer of three pitches that starts below the core diameter (ISO 68-1)."""
     diameter = drawing.get_size("diameter", 6.0)
     pitch = drawing.get_size("pitch", diameter / 6.0)
     length = drawing.get_size("length", 2.5 * diameter + _TAP_LEAD * pitch)

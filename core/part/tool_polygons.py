@@ -54,8 +54,8 @@ def make_arc_points(
 ) -> FloatArray:
     """Return points (k, 2) on an arc about the origin, including its extremes in z and r.
 
-    ``start_rad`` and ``sweep_rad`` are in radians. A chord with the half angle t deviates by radius·(1 - cos
-    t). A diameter that is turned with the extreme of a quadrant is exact.
+    ``start_rad`` and ``sweep_rad`` are in radians. A chord with the half angle t deviates by radius·(1 -
+    cos t). Because the extremes are included, a diameter that is cut by an extreme of the nose is exact.
     """
     most = (
         2.0 * math.acos(max(0.0, 1.0 - max_chord_error / radius))

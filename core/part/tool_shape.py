@@ -45,20 +45,21 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ToolShape:
-    """The shape of one tool, in mm and degrees.
+    """The shape of one tool, in mm and degrees; for 0 or an empty string, a standard size is used.
 
-    A value of 0 or an empty string means not specified; a standard size is then used.
-
-    ``tip`` is the quadrant 0 to 9 of the tip as seen from the nose center. For a rotating tool, it is the
-    direction of its end: 7 (or 0) along the spindle toward the chuck, 8 across the spindle from the front,
-    6 across the spindle from the rear. ``insert`` is an ISO 1832 or ANSI B212.4 code. ``holder`` is a shank
-    size (``20x20``, ``3/4"``), a holder code or any name. ``width`` is the width of a groove. ``diameter``
-    is the diameter of a round tool or of a boring bar. ``point`` is the included angle of a thread, or of
-    the point of a drill or center drill. ``length`` is the cutting length: the length of the flutes of a
-    drill, or the depth of the flanks of a thread. ``stick_out`` is the length up to the clamping. ``entry``
-    is the entering angle of the main edge; 0 means the angle of the holder or the usual angle for the
-    insert. ``rear`` means that the tool works at negative X. ``profile`` is the outline of a form tool, as
-    points (z, r) from the control point.
+    - ``tip`` is the quadrant 0 to 9 of the tip as seen from the nose center. For a rotating tool, it is
+      the direction of the tool end: 7 (or 0) along the spindle toward the chuck, 8 or 6 across the
+      spindle from the front or rear.
+    - ``insert`` is an ISO 1832 or ANSI B212.4 code.
+    - ``holder`` is a shank size (``20x20``, ``3/4"``), a holder code or any name.
+    - ``width`` is the width of a groove, and ``diameter`` that of a round tool or a boring bar.
+    - ``point`` is the included angle of a thread, or of the point of a drill or center drill.
+    - ``length`` is the cutting length: the flutes of a drill, or the depth of thread flanks.
+    - ``stick_out`` is the length up to the clamping.
+    - ``entry`` is the entering angle of the main edge; 0 means the angle of the holder or the usual angle
+      of the insert.
+    - ``rear`` means that the tool works at negative X.
+    - ``profile`` is the outline of a form tool, as points (z, r) from the control point.
     """
 
     kind: ToolKind = ToolKind.TURNING
@@ -87,7 +88,7 @@ class ToolShape:
     def internal(self) -> bool:
         """Return whether the tool works in a bore.
 
-        Such a tool is a boring tool, or a grooving or threading tool on a bar.
+        Boring tools work in a bore, and so do grooving and threading tools on a bar.
         """
         on_a_bar = self.kind in {ToolKind.GROOVING, ToolKind.THREADING} and self.diameter > 0.0
         return self.kind is ToolKind.BORING or on_a_bar

@@ -1,8 +1,8 @@
-"""The material of a turned part: intervals of r in columns along Z.
+"""Material of a turned part: intervals of r in columns along Z.
 
 A column usually has one interval of r, and more with a face groove or a ring. The intervals are stored in
 layers from the axis outward. Radii are exact in the middle of a column, so cylinders, cones and arcs are as
-exact as the cutting outline. A shoulder is within half a column of its position.
+exact as the outline of the tool. A shoulder is within half a column of its position.
 """
 
 from __future__ import annotations
@@ -64,10 +64,10 @@ def _distances_from_line(points: FloatArray, start: FloatArray, end: FloatArray)
 
 
 class Cut(NamedTuple):
-    """The material that one move cuts.
+    """The dimensions of the material that one move removes.
 
     Lengths are in mm, the area of the half section is in mm², and the volume is in mm³. ``depth_mm`` is the
-    greatest thickness along r. ``width_mm`` is the length along Z that is cut, from ``back_z_mm`` to
+    greatest thickness along r. ``width_mm`` is the cut length along Z, from ``back_z_mm`` to
     ``front_z_mm``.
     """
 
@@ -125,7 +125,7 @@ def _radius_range(r0: float, r1: float) -> tuple[float, float]:
 class TurnedPart:
     """A part in the lathe, with its material as radii in mm.
 
-    The material extends from ``inner_radii`` to ``outer_radii`` (layers, columns).
+    The material in each column extends from ``inner_radii`` to ``outer_radii`` (layers, columns).
     """
 
     def __init__(self, stock: Stock, column_width: float = DEFAULT_COLUMN_WIDTH_MM) -> None:
@@ -238,9 +238,9 @@ class TurnedPart:
     def cut_between(
         self, first_column: int, inner_radii: FloatArray, outer_radii: FloatArray, *, remove: bool = True
     ) -> Cut:
-        """Return all material between ``inner_radii`` and ``outer_radii`` (m,).
+        """Return all material between ``inner_radii`` and ``outer_radii`` (m,), from ``first_column`` on.
 
-        The first radii are those of column ``first_column``. The material is removed if ``remove`` is True.
+        The material is removed if ``remove`` is True.
         """
         there = slice(first_column, first_column + len(inner_radii))
         met = NO_CUT
@@ -256,7 +256,7 @@ class TurnedPart:
     def _split_layer(self, layer: int, there: slice, start: FloatArray, end: FloatArray) -> None:
         """Remove the radii from ``start`` to ``end`` from one layer.
 
-        Material further out is moved to a separate layer.
+        Material of the layer outside ``end`` is moved to a separate layer.
         """
         low, high = self.inner_radii[layer, there].copy(), self.outer_radii[layer, there].copy()
         taken = end > start
@@ -313,7 +313,7 @@ class TurnedPart:
         return met
 
     def drop_parted_pieces(self) -> None:
-        """Drop the pieces that were parted off while they were supported."""
+        """Drop the parted-off pieces that remained in place while the holder was checked for collisions."""
         self.holds_parted_pieces = False
         if self._parted:
             self._parted = False
@@ -322,9 +322,9 @@ class TurnedPart:
     # --- parting off
 
     def _drop_unconnected(self) -> None:
-        """Drop the material that is not connected to the end in the chuck.
+        """Drop the material that is no longer connected to the end in the chuck.
 
-        Chips are not counted as pieces.
+        Pieces as small as chips are not counted as parted pieces.
         """
         metal = np.any(self.outer_radii > self.inner_radii + _TOUCH, axis=0)
         there = np.flatnonzero(metal)

@@ -30,7 +30,8 @@ class ToolLifeState(Enum):
 class ToolLife:
     """The life of one tool since its insert was changed.
 
-    A limit of 0 means no limit. ``stops`` means that no further part starts after the end of the tool life.
+    A limit of 0 means no limit. If ``stops`` is True, no further part starts after the end of the tool
+    life.
     """
 
     number: int
@@ -67,7 +68,7 @@ class ToolLife:
     def remaining_part_count(self) -> int | None:
         """Return the number of complete parts until the end of the tool life, or None if it is unknown.
 
-        The number is calculated from the use per part.
+        For a time limit, the number is calculated from the average time per part.
         """
         left = []
         if self.limit_parts:
@@ -80,7 +81,7 @@ class ToolLife:
 
     @property
     def words(self) -> str:
-        """Return the used tool life as text, such as ``50 of 50 parts`` or ``31 of 30 min``.
+        """Return the used part of the tool life as text, such as ``50 of 50 parts`` or ``31 of 30 min``.
 
         With two limits, the text refers to the limit that will be reached first.
         """

@@ -1,6 +1,6 @@
 """Assumed shapes of tools without a specified shape, derived from comments and moves.
 
-A comment next to T has priority; the words that shops use are recognized. Without a comment, the shape is
+A comment next to the T word has priority; common shop terms are recognized. Without a comment, the shape is
 derived from the moves. The proof reports all assumptions. No holder is assumed, so collisions of holders
 are not checked.
 """
@@ -110,8 +110,8 @@ class ToolUse:
     def first_rapid_position(self) -> TipMove | Block | None:
         """Return the first position at the part, for a tool that makes only rapid moves.
 
-        The position is the end of a rapid made while the spindle or C is active. The result is None if the
-        tool feeds or if its rapids have another purpose.
+        The position is the end of a rapid while the spindle or C is active. The result is None if the tool
+        makes a feed, or if its rapids have another purpose.
         """
         if self.is_bar_stop:
             return None
@@ -190,9 +190,9 @@ class AssumedTool:
 def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], thread_moves: Iterable[TipMove]) -> float:
     """Return the assumed width in mm of a cutting edge without a specified width.
 
-    The width is 2 mm, or the width that a thread needs to start in the groove. Only threads that lead out
-    of the part need this width. The edge of a threading tool is at most as wide as the lead, with half of
-    it on either side.
+    The width is 2 mm, or the width that a screw thread needs to start in the groove. Only threads that lead
+    out of the part need this width. The edge of a threading tool is at most as wide as the lead, with half
+    of the width on either side of the control point.
     """
     forward = shape.direction[0]  # direction of the corner that is set; the edge extends back from it
     plunged = {m.points[-1][0] for m in moves if not m.is_fast and _square(m)}
@@ -254,9 +254,9 @@ def _on_axis(cuts: Iterable[TipMove]) -> bool:
 
 
 def _has_plunge(cuts: Sequence[TipMove]) -> bool:
-    """Return whether a tool cuts perpendicular to the axis inside the part.
+    """Return whether a tool cuts perpendicular to the axis inside the part, as a grooving tool does.
 
-    The result is False if a cut along Z is longer than one that cleans a groove.
+    The result is False if a cut along Z is longer than a cut that cleans the bottom of a groove.
     """
     if not cuts or any(move.kind is BlockKind.ARC for move in cuts):
         return False
@@ -270,7 +270,10 @@ def _to_centre(cuts: Iterable[TipMove]) -> bool:
 
 
 def works_in_bore(moves: Sequence[TipMove]) -> bool:
-    """Return whether a tool retracts toward the axis more often than away from it."""
+    """Return whether a tool works in a bore, according to its retracts or, if undecided, its contour.
+
+    A tool in a bore retracts toward the axis more often than away from it.
+    """
     votes = 0
     for before, move in pairwise(moves):
         inside = move.points[0][0] < 0.0
@@ -284,7 +287,7 @@ def works_in_bore(moves: Sequence[TipMove]) -> bool:
 def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -> bool:
     """Return whether the contour is that of a bore, with radii that decrease from face to chuck.
 
-    This rule is used if the retracts do not give a decision.
+    This rule is used if the directions of the retracts do not show whether the tool works in a bore.
     """
     feeds_toward_chuck = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
     falls = sum(abs(m.points[-1][1]) - abs(m.points[0][1]) for m in feeds if m.points[-1][0] < -_SQUARE)
@@ -317,12 +320,12 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
 
 
 def _normalize_comment(comment: str) -> str:
-    """Return the comment in capitals, with each P between two digits replaced by a decimal point."""
+    """Return the comment in capitals, with each P between two digits replaced by a decimal point (3P5)."""
     return _POINT_SIGN.sub(".", comment.upper())
 
 
 def parse_edge_width(comment: str) -> float:
-    """Return the width in mm that a comment specifies, or 0.
+    """Return the width in mm that a comment specifies, or 0 if the comment specifies no width.
 
     Examples are .045 WIDE, 045 WIDE (thousandths of an inch) and 3MM WIDE.
     """
@@ -373,7 +376,7 @@ def has_releasing_tap_holder(tool_use: ToolUse) -> bool:
 def _is_at_rear(moves: Sequence[TipMove]) -> bool:
     """Return whether a tool works at negative X.
 
-    Facing slightly beyond the axis is ignored.
+    A face cut that ends slightly past the axis does not count.
     """
     cuts = [move for move in moves if not move.is_fast]
     radii_past_face = [r for move in cuts for z, r in move.points if z < -_SQUARE]
@@ -402,7 +405,7 @@ def _plunges_outward(moves: Iterable[TipMove]) -> bool:
 
 
 def _find_tip_quadrant(use: ToolUse, *, rear: bool) -> int:
-    """Return the tip quadrant of the edge corner to which the tool is set.
+    """Return the tip quadrant of the edge corner that is the tool's set point.
 
     This is the left corner unless a comment names the right corner.
     """
@@ -413,7 +416,10 @@ def _find_tip_quadrant(use: ToolUse, *, rear: bool) -> int:
 
 
 def _parse_diameter(comment: str) -> float:
-    """Return the diameter in mm that a comment such as 1/4 DRILL or DRILL .250 DIA specifies, or 0."""
+    """Return the diameter in mm that a comment specifies, or 0 if the comment specifies none.
+
+    Examples are 1/4 DRILL and DRILL .250 DIA.
+    """
     text = _normalize_comment(comment)
     if found := re.search(_MILLIMETERS, text):
         return float(found[1])

@@ -57,7 +57,10 @@ def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> 
 
 
 def _find_block_before_opening(history: PartHistory) -> list[int]:
-    """Return a list with the number of the block before the collet last opens, or an empty list."""
+    """Return a list with the number of the block before the collet opens for the last time.
+
+    The list is empty if the collet does not open.
+    """
     for step in reversed(history.steps):
         if not isinstance(step, TipMove | LiveToolStep) and step.action == ColletSwitch(closed=False):
             return [max(step.n - 1, 0)]

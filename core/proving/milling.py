@@ -62,7 +62,7 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
 
 
 def cut_path_at_fractions(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
-    """Return the part of a path between two fractions of the path, from 0 to 1."""
+    """Return the section of a path between two fractions of its length, each from 0 to 1."""
     at = np.linspace(0.0, 1.0, len(path))
     shares = np.concatenate(
         ([start_fraction], at[(at > start_fraction) & (at < end_fraction)], [end_fraction])
@@ -78,7 +78,7 @@ def calculate_point_height_mm(shape: ToolShape) -> float:
 
 
 class MillingState:
-    """A turned part with its polar field.
+    """A turned part, together with the polar field from which live tools remove material.
 
     Material that is turned off later is also removed from the field.
     """
@@ -132,7 +132,7 @@ class MillingState:
         return part.mill_radial(move.path, radius, length, cone_height=point)
 
     def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
-        """Return whether a live tool follows a face that it would cut if it were .001 in deeper."""
+        """Return whether a live tool moves along a face without cutting, but would cut if .001 in deeper."""
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:

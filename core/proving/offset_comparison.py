@@ -1,7 +1,7 @@
-"""Comparison of the part with other offsets: the features and findings with each set of offsets.
+"""Comparison of the part that results from other offsets: its features and findings.
 
-The tools are at the positions that the offsets of the proof specify. With the other offsets, the axes move
-to other positions, and the part becomes larger, smaller, longer or shorter.
+The tools are at the positions that the offsets of the proof specify. With other offsets, the axes move to
+other positions, so the part becomes larger, smaller, longer or shorter.
 
 A feature is a straight line of the profile: a diameter along Z, or a shoulder across Z. Cones, arcs and the
 nose radius in a corner are not features.
@@ -36,7 +36,7 @@ FEATURE_TOLERANCE_MM = 0.0012  # mm; smaller differences are ignored
 
 
 class FeatureKind(StrEnum):
-    """The kind of a straight line in a profile."""
+    """The kind of a profile feature: a diameter or a shoulder, on the outside or in the bore."""
 
     DIAMETER = "diameter"
     SHOULDER = "shoulder"
@@ -98,7 +98,7 @@ def _of(profile: ProfilePoints, along: FeatureKind, across: FeatureKind) -> Iter
 
 
 def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
-    """Return the end of straight line ``k`` that has no fillet, next to its longer neighbor.
+    """Return the end of profile line ``k`` next to its longer neighbor, where it has no fillet.
 
     The nose radius at the other end counts as part of the line if it is within the profile tolerance.
     """
@@ -133,7 +133,7 @@ def match_features(own_features: Sequence[PartFeature], other_features: Sequence
 
 @dataclass(frozen=True, slots=True)
 class ComparedPart:
-    """The result of the other offsets.
+    """The part that results from other offsets, compared with the proved part.
 
     It contains the proof, the part, the pairs of features, and the findings that occur in only one of the
     two proofs.
@@ -193,7 +193,7 @@ def prove_other_offsets(
 
 
 def _tip_positions(setup: Setup) -> dict[int, tuple[float, float]]:
-    """Return the positions at which the tips are at part zero, by T number and by G54 to G59."""
+    """Return the machine positions of tool tips at part zero, by T number and by G54 to G59."""
     own = {n: (tool.x, tool.z) for n, tool in setup.tools.items()}
     return own | {n: (zero.x, zero.z) for n, zero in setup.zero.items()}
 

@@ -1,4 +1,4 @@
-"""The part at any time of a program, reproduced from stored copies.
+"""Part at any block of a program, calculated with the help of stored copies.
 
 All results are independent arrays, because another thread may display them.
 """
@@ -79,7 +79,7 @@ class StepCollector:
 
     @property
     def overflow_reason(self) -> str:
-        """Return the reason why the part cannot be made, as a sentence, or an empty string."""
+        """Return the reason why the program has too many blocks to show its part, or an empty string."""
         if self._blocks <= MAX_MOVES:
             return ""
         hint = "use 'turndesk prove --stock' for longer programs"
@@ -300,7 +300,8 @@ class PartHistory:
     def _milled_part(self, step: LiveToolStep, fraction: float) -> PartSimulation:
         """Return the part while a block of a live tool is in progress.
 
-        The calculation continues from the previous view if possible.
+        If the previous call was for the same block and an earlier position, the calculation continues from
+        its result.
         """
         done, gone, ahead = self._ahead or (-1, 0.0, self._making)
         if done != self._done or gone > fraction:
@@ -311,9 +312,9 @@ class PartHistory:
         return ahead
 
     def _tip_range(self, current_step: ProgramStep | None) -> tuple[Point, Point] | None:
-        """Return the travel limits of the machine as tip positions.
+        """Return the travel limits of the machine, converted to tip positions (Z, r), or None if unknown.
 
-        The limits are shifted by the offset of the last moving block.
+        The conversion uses the offset of the last moving block.
         """
         last = self.steps[max(0, self._done - 200) : self._done]
         for step in (*((current_step,) if current_step is not None else ()), *reversed(last)):

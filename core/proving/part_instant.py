@@ -192,7 +192,7 @@ def _milled_hit(finding: Diagnostic, removed: RemovedMaterial) -> MaterialHit | 
 
 
 class PartCopies:
-    """Copies of the part by the number of completed steps.
+    """Copies of the part, each stored by the number of completed program steps.
 
     If there are too many copies, every second copy is dropped. Copies of a milled part share the columns
     that did not change between them.

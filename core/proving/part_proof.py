@@ -86,7 +86,7 @@ _WEAKER_CHECKS = {
 
 
 def _remove_weaker_findings(report: Iterable[Diagnostic], findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics without the warnings that an error about the part confirms.
+    """Return the diagnostics without warnings that an error about the part makes redundant.
 
     The error must be on the line of the warning or on a later line.
     """

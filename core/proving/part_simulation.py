@@ -1,4 +1,4 @@
-"""The part while a program makes it block by block, and the list of data that the checks lacked."""
+"""Simulation of the part while a program makes it, and the list of data that the checks lacked."""
 
 from __future__ import annotations
 

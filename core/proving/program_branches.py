@@ -216,7 +216,7 @@ class _BranchPass:
 
 
 def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
-    """Return the message after the last two input states of its path, for the operator to check."""
+    """Return the message with a preceding condition that names the last two input states of its path."""
     if len(choices) == 1:
         return Message("If {input}: {message}", input=choices[0].description, message=message)
     return Message(
@@ -315,7 +315,7 @@ class BranchProof:
     def _record_rest_state(
         self, current_pass: _BranchPass, proof_pass: ProofPass, timeline: Timeline
     ) -> None:
-        """Record the state at a conditional call, from which the copy of the pass continues."""
+        """Record the machine state at a conditional call, from which the other path continues."""
         branch_pass = (
             current_pass.branches_by_call[current_pass.answered_call_count]
             if current_pass.answered_call_count < len(current_pass.branches_by_call)

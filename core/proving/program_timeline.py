@@ -1,4 +1,4 @@
-"""A program on a time scale with the start and end of each elementary block, planned as in a run."""
+"""Timeline of a program, with the start and end of each elementary block, planned as in a run."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ BlockGroup = list[Block] | StraightMoveSeries
 
 
 class PendingBlocks:
-    """Blocks that have been passed to the planner but have no times yet.
+    """Blocks that have been passed to the motion planner but have no times yet.
 
-    A series is divided only if necessary.
+    A series of moves is divided only if necessary.
     """
 
     def __init__(self) -> None:
@@ -318,9 +318,9 @@ class Timeline:
         return span
 
     def _follow_css(self, rpm: float) -> None:
-        """Set the spindle speed to ``rpm``, the value that constant surface speed has reached.
+        """Set the spindle speed to ``rpm``, which constant surface speed (CSS) has reached.
 
-        If the spindle has not yet reached its speed, command a ramp to ``rpm``.
+        If the spindle has not yet reached its speed, command a ramp to ``rpm`` instead.
         """
         if self._speed_wanted:
             self.spindle.command_speed(self.time_s, rpm)
@@ -386,7 +386,7 @@ class Timeline:
 
 
 def _template_block(each: Block | StraightMoveSeries) -> Block:
-    """Return the block itself, or the pattern block of a series."""
+    """Return the block itself, or the pattern block from which the moves of a series are made."""
     return each.pattern if isinstance(each, StraightMoveSeries) else each
 
 

@@ -133,7 +133,7 @@ class ProgramTools:
         return said is None or (said.kind in GROOVING_TOOLS and not said.width)
 
     def _assume_sizes(self) -> None:
-        """Set the unknown sizes of drills and grooving tools from the tools that are used after them."""
+        """Set the unknown sizes of drills and grooving tools, derived from the cuts of later tools."""
         bore = [
             m
             for n, use in self.tool_uses.items()
@@ -214,7 +214,8 @@ class ProgramTools:
     def find_uncut_feeds(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
         """Yield the line, block number and message for each tool or feed that cuts nothing.
 
-        These are tools that never feed, and feeds away from the part.
+        These are tools that make no feed. If ``stock`` is None, they also include ``longest_feed_away`` and
+        the first feed of each live tool.
         """
         cutting = [use for n, use in self.tool_uses.items() if self.find_shape(n) is not None]
         for use in cutting:
@@ -256,7 +257,10 @@ class ProgramTools:
 
     @property
     def longest_feed_away(self) -> TipMove | None:
-        """Return the longest feed away from the chuck, or None unless the feeds in total lead away."""
+        """Return the longest feed away from the chuck, if all feeds in total lead away from it.
+
+        The result is None otherwise, and if part zero is at the chuck.
+        """
         feeds = [
             m for n, use in self.tool_uses.items() if self.find_shape(n) for m in use.moves if not m.is_fast
         ]
@@ -340,9 +344,9 @@ def _find_face_z(moves: Sequence[TipMove]) -> float:
 
 
 def _cuts_face(move: TipMove) -> bool:
-    """Return whether a move goes from outside to the axis near Z0.
+    """Return whether a move goes from outside to the axis near Z0, as a face cut does.
 
-    Such a move may be a rapid because G00 was left active by mistake.
+    The move may also be a rapid, because a G00 may have remained active by mistake.
     """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     across = abs(z1 - z0) <= _SAME and abs(r1) < _CENTRE < abs(r0) - _CENTRE
@@ -350,7 +354,7 @@ def _cuts_face(move: TipMove) -> bool:
 
 
 def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: float) -> float:
-    """Return a bar radius slightly above the largest cut, but so small that no rapid hits the bar.
+    """Return the assumed bar radius: slightly above the largest cut, but clear of all rapids.
 
     If only grooves or faces are cut, the bar is slightly smaller than the start of the largest of these
     cuts.

@@ -151,7 +151,7 @@ class ProgramTotals:
                 self._add_spindle_speeds(rpm)
 
     def _add_curved(self, blocks: Sequence[Block], length: FloatArray) -> None:
-        """Set the lengths of moves that are not straight lines of X and Z."""
+        """Correct the lengths of blocks that are not straight moves of X and Z."""
         for index, block in enumerate(blocks):
             if block.travel is not None:
                 length[index] = 0.0 if block.has_angular_feed else block.travel.length
@@ -283,9 +283,9 @@ class ProofPass:
                 return
 
     def _collect_needs(self, blocks: BlockGroup) -> None:
-        """Collect the required machine functions.
+        """Record the machine functions that blocks require.
 
-        Only a controller with its own planner can lack such functions.
+        Only a controller with its own motion planner can lack such functions.
         """
         if blocks and self._machine.backend == "grblhal":
             # all blocks of a series need the same

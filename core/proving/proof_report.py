@@ -1,4 +1,4 @@
-"""Results of a proof and of the part, in mm and seconds with X as a radius."""
+"""Result types of a program proof and of its part, in mm and seconds with X as a radius."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The setpoints of a program, one row per sampling interval, as the drives would receive them."""
+"""Setpoints of a program at equal time intervals, as the drives would receive them."""
 
 from __future__ import annotations
 
@@ -87,9 +87,9 @@ class _SpanSampler:
         return SetpointRows(t, at, turned, lines)
 
     def _turned(self, speeds: FloatArray) -> FloatArray:
-        """Return the spindle angles in degrees.
+        """Return the accumulated spindle angle in degrees at the end of each interval.
 
-        They are calculated with the mean of the speeds at both ends of each interval.
+        Within an interval, the mean of the speeds at both ends is used.
         """
         before = np.concatenate([[self._rpm], speeds])
         steps = (before[:-1] + speeds) / 2 * self._dt * 6  # 1 rpm is 6 degrees/s
@@ -100,10 +100,10 @@ class _SpanSampler:
         return angles[1:]
 
     def _speeds(self, t: FloatArray, machine_x: FloatArray, by_radius: Mapping[int, Block]) -> FloatArray:
-        """Return the signed rpm of the rows.
+        """Return the signed spindle speeds in rpm at the times of the rows.
 
-        ``by_radius`` contains the blocks with constant surface speed. The forecast of the timeline is not
-        changed, because its waits must not depend on the sampling.
+        ``by_radius`` contains the blocks with constant surface speed. The timeline's own spindle forecast
+        is not changed, because its waits must not depend on the sampling.
         """
         speeds = self._spindle.speeds_at(t)
         for row, block in by_radius.items():

@@ -1,4 +1,4 @@
-"""Times that the machine needs for spindle ramps, the collet, and the start and end of a motion."""
+"""Forecast of spindle ramps, collet times, and the time to start and end a motion."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ class SpindleForecast:
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
     def calculate_slow_time_s(self, threshold_rpm: float) -> float:
-        """Return the time at which a stopping spindle becomes slower than ``threshold_rpm``.
+        """Return the time in seconds at which a stopping spindle falls below ``threshold_rpm``.
 
         The time is in the past if the spindle is already slower.
         """

@@ -41,7 +41,7 @@ IterStartBlocks = Callable[[tuple[float, ...]], Iterable[Block]]
 
 
 class CollisionBody(Enum):
-    """The bodies that a tool may hit."""
+    """The bodies that a tool can hit on its first move: the part, the chuck and the tailstock."""
 
     PART = "part"
     CHUCK = "into-chuck"
@@ -65,14 +65,15 @@ class StartState:
 
 @dataclass(frozen=True, slots=True)
 class FirstMove:
-    """The finding about a first move.
+    """The first move of a start, with the collision found on it, if any.
 
-    ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``part_zero`` is the machine
-    X and Z at which the displayed tip is at part zero. It belongs to the tool that hits a body, or
-    otherwise to the tool at the end of the move. ``hit_body`` is the body that ``tool_number`` hits at
-    ``hit_z_mm`` (part's frame). If ``is_inside_at_start`` is True, the tool is inside the body before it
-    moves. ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or an empty string if no
-    direction is certain to be safe.
+    - ``path`` is the move in machine X and Z in mm, with a flag for each rapid.
+    - ``part_zero`` is the machine X and Z at which the displayed tip is at part zero. It belongs to the
+      tool that hits a body, or otherwise to the tool at the end of the move.
+    - ``hit_body`` is the body that ``tool_number`` hits at ``hit_z_mm`` (part's frame).
+    - ``is_inside_at_start`` means that the tool is inside the body before it moves.
+    - ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or an empty string if no
+      direction is certain to be safe.
     """
 
     path: tuple[tuple[float, float, bool], ...]
@@ -175,10 +176,10 @@ class StartCheck:
         )
 
     def _is_assumed(self, body: CollisionBody, tool: int, start_state: StartState) -> bool:
-        """Return whether the finding depends on an assumption.
+        """Return whether a detected collision depends on assumptions about the stock or the tool.
 
         A tool that was stopped in a cut is certainly in the part. Without an active tool, the position of
-        the tip is unknown.
+        the tip is unknown, so the collision is only assumed.
         """
         if tool == 0:
             return True
@@ -235,8 +236,7 @@ class StartCheck:
     def _find_bore_hit(self, metal: TurnedPart, start_state: StartState) -> tuple[int, float, bool] | None:
         """Return the hit of a tool that stopped in a bore, or None if no material is outside its tip.
 
-        The first move may remain in the bore, but the moves of the next tools would move this tool through
-        the wall.
+        Although the first move may remain in the bore, later moves would move this tool through the wall.
         """
         zero = self._part_zero_for_tool(start_state.active_tool)
         if zero is None:
@@ -250,7 +250,10 @@ class StartCheck:
         return None
 
     def _is_intended_cut(self, body: CollisionBody, move: TipMove, start_state: StartState) -> bool:
-        """Return whether the move is intended to cut the material that it hits."""
+        """Return whether a move that hits the part is a feed with a turning spindle, so that it may cut.
+
+        The result is always False for a program that starts at its first line.
+        """
         return (
             body is CollisionBody.PART
             and not start_state.starts_at_first_line

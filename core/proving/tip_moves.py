@@ -76,14 +76,14 @@ motion.
 
 
 class StepConverter:
-    """A converter of the blocks of a program, in program order, to steps.
+    """A converter of program blocks to simulation steps, called in program order.
 
     A G92 before the first move of a tool specifies the position of part zero. A later G92 shifts the part,
     like G10.
 
     ``tip_positions`` are the true positions at which tips are at part zero, as machine X and Z in mm, by T
-    number or by G54 to G59. If the active offsets differ from these positions, the tool is displaced from
-    its programmed position.
+    number or by G54 to G59. If the active offsets differ from them, the tool is displaced from its
+    programmed position.
     """
 
     def __init__(self, tip_positions: Mapping[int, MachineXZ] | None = None) -> None:

@@ -85,10 +85,12 @@ def list_machine_channels(
 class ScopeRecord:
     """Samples of a period of time; values that a driver does not report are NaN.
 
-    ``times_s`` (n,) are seconds of the monotonic clock in ascending order. ``values_by_channel`` has an
-    array (n,) for each channel name. ``start_time_utc_s`` is the time of the first sample in seconds since
-    1970. ``sampling_rate_hz`` is the driver's sampling rate in samples per second. Quantities of the
-    control retain the value of the last tick.
+    - ``times_s`` (n,) are seconds of the monotonic clock in ascending order.
+    - ``values_by_channel`` has an array (n,) for each channel name.
+    - ``start_time_utc_s`` is the time of the first sample in seconds since 1970.
+    - ``sampling_rate_hz`` is the driver's sampling rate in samples per second.
+
+    Channels of the control, such as the feed override, have their value at the last tick in each sample.
     """
 
     channels: tuple[Channel, ...]
@@ -176,7 +178,7 @@ def make_damage_error(path: Path, error: Exception) -> RecordError:
 
 
 def why(path: Path, error: OSError) -> RecordError:
-    """Return a RecordError for an OSError that occurred with the file ``path``."""
+    """Return a RecordError that explains an OSError with the file ``path``."""
     if isinstance(error, TooLargeError):
         return RecordError(
             Message(
@@ -231,10 +233,10 @@ def calculate_acceleration(
 
 
 def calculate_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPLE_SPAN_S) -> FloatArray:
-    """Return the speed minus its mean over ``span_s`` seconds.
+    """Return the speed ripple: the speed minus its mean over ``span_s`` seconds.
 
-    Ripple with a whole number of waves in the span cancels out of the mean. The values of the first and the
-    last half span are NaN.
+    If a whole number of ripple waves fits into the span, the mean contains no ripple. The values of the
+    first and the last half span are NaN.
     """
     k = _half(times, span_s)
     found = np.full(len(times), np.nan)

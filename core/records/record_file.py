@@ -216,7 +216,7 @@ def save_csv(record: ScopeRecord, path: Path) -> None:
 
 
 def _texts(column: FloatArray, *, whole: bool) -> list[str]:
-    """Return the values of a column as strings with all digits.
+    """Return the numbers of a CSV column as strings, either as integers or with all digits.
 
     Unknown values become empty strings.
     """

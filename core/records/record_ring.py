@@ -293,7 +293,7 @@ def make_record(
 
 
 class _Source:
-    """An accessor for the values of each channel in the rows."""
+    """An accessor for the values of each channel in the samples and ticks of a ring."""
 
     def __init__(self, layout: RingLayout, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
         self._recorded, self._samples, self._ticks, self._seen = layout, samples, ticks, np.asarray(seen)
@@ -337,7 +337,7 @@ class _Source:
         return bits
 
     def _worst(self, column: int) -> FloatArray:
-        """Return the largest value of all ticks since the previous sample.
+        """Return, for each sample, the largest value of a tick column since the previous sample.
 
         Several ticks can occur between two samples, because fewer samples are taken at standstill.
         """

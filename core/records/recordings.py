@@ -14,7 +14,7 @@ MAX_ALARM_RECORDS = 50  # records of alarms that are stored
 
 
 class ScopeRecordings:
-    """The ring and the folder of the record files, readable from any thread.
+    """The ring of the last minutes and the folder of the record files, readable from any thread.
 
     ``folder`` is None if no files are written. If the ring file cannot be written, the samples are only in
     memory, and ``storage_error`` is the reason.

@@ -164,7 +164,7 @@ def create_ring_file(folder: Path, name: str, ring: ScopeRing) -> RingFile:
 
 
 def _free(path: Path) -> bool:
-    """Return whether no other process is writing the file.
+    """Return whether a ring file is free, because no other process is writing it.
 
     Raises OSError if the file cannot be opened.
     """
@@ -195,7 +195,7 @@ def is_ring_file(path: Path) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """The header of a ring file."""
+    """The data in the header of a ring file that was opened for reading."""
 
     ring_layout: RingLayout
     row_capacities: tuple[int, int]
@@ -292,7 +292,7 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
 
 
 def _unrolled(data: FloatArray, whole: int, begun: int) -> FloatArray:
-    """Return the rows in chronological order.
+    """Return the complete rows of a ring buffer in chronological order.
 
     Rows that were being written during reading or at a crash are omitted.
     """

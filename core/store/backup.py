@@ -184,9 +184,9 @@ def _read_users(path: Path) -> tuple[UserRow, ...]:
 
 
 def _replace_users(rows: tuple[UserRow, ...] | None, copy: sqlite3.Connection) -> None:
-    """Replace the users of the restored copy by ``rows``.
+    """Replace the users in a restored copy of the store by ``rows``, the users of this machine.
 
-    If ``rows`` is None, no store existed before, so the copy retains the users of the backup.
+    If ``rows`` is None, this machine had no store, so the copy retains the users of the backup.
     """
     if rows or (rows is not None and row_checksums.list_checksummed_columns(copy, "people")):
         database.upgrade_tables(copy, database.load_migrations())
@@ -220,9 +220,9 @@ def _save_old_store(path: Path) -> Path:
 
 
 def _empty_log(path: Path) -> None:
-    """Write the changes in the log to the store file.
+    """Write all changes that are in the write-ahead log to the store file.
 
-    The log of a damaged store remains. Raises StoreError if another process is reading the store.
+    The log of a damaged store is retained. Raises StoreError if another process is reading the store.
     """
     busy = 0
     with (
@@ -309,7 +309,7 @@ def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
 def _count_differences(
     now: sqlite3.Connection, then: sqlite3.Connection, *, has_checksums: bool
 ) -> tuple[tuple[str, int], ...]:
-    """Return the number of different items for each table.
+    """Return, for each table, the number of items that differ between the store and the backup.
 
     Items are compared by checksum and text, and not by time.
     """

@@ -47,10 +47,11 @@ _OTHERS = {
 
 
 def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Restore damaged rows from the history, and discard damaged rows that can start from zero.
+    """Repair damaged rows, and return one message for each of them.
 
-    The result contains one message for each row. A row is restored if its last history entry matches the
-    saved checksum. It is also restored if this entry equals the row, so that only the checksum is damaged.
+    A row is restored if its last history entry matches the saved checksum. It is also restored if this
+    entry equals the row, so that only the checksum is damaged. Damaged rows without a history whose values
+    can restart from zero are discarded.
     """
     messages: list[str] = []
     connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # no table has a key of this type
@@ -86,9 +87,9 @@ def _begin_anew(connection: sqlite3.Connection, program: RowKey) -> str:
 
 
 def _retire_damaged_feature(connection: sqlite3.Connection, feature: RowKey) -> str:
-    """Retire a damaged feature.
+    """Retire a damaged measured feature, and return the message for the operator.
 
-    If the feature has a value that no feature can have, delete it with its readings.
+    If the row contains a value that is not valid for any feature, the row and its readings are deleted.
     """
     row = row_checksums.read_row(connection, "part_features", feature)
     which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
@@ -125,7 +126,7 @@ _DISCARD_FUNCTIONS = {"runs": _begin_anew, "part_features": _retire_damaged_feat
 
 
 def _discard_row(connection: sqlite3.Connection, table: str, key: RowKey) -> str:
-    """Discard a row that cannot be entered again and is useless without its values.
+    """Discard a damaged row that cannot be entered again, and return the message for the operator.
 
     If this deletes the row, its checksum is deleted too.
     """

@@ -164,7 +164,7 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
 
 
 def _find_damage(connection: sqlite3.Connection) -> list[str]:
-    """Return SQLite's messages about damaged pages, indexes and types."""
+    """Return SQLite's messages about damaged pages, inconsistent indexes and values of the wrong type."""
     found = connection.execute(f"PRAGMA integrity_check({_MAX_MESSAGES})")
     return [str(text) for (text,) in found if text != "ok"]
 
@@ -366,7 +366,7 @@ def create_store_folder(folder: Path) -> None:
 
 
 def _refuse_lost_file(path: Path) -> None:
-    """Raise StoreError if the database is missing but its log exists.
+    """Raise StoreError if the database file is missing although its write-ahead log exists.
 
     SQLite would otherwise apply the log to the new, empty database.
     """

@@ -36,7 +36,7 @@ Pair = tuple[int, int]
 
 
 class _Frame(NamedTuple):
-    """An entry of the log with the data from which its checksum is calculated.
+    """An entry (frame) of the write-ahead log, with the data from which its checksum is calculated.
 
     ``is_commit`` is True for the last entry of a change.
     """
@@ -84,10 +84,10 @@ def _frames(content: bytes, page: int) -> list[_Frame]:
 
 
 def _has_equal_salt(its: Pair, salts: tuple[int, ...]) -> bool:
-    """Return whether one of two salts matches the salts of the log.
+    """Return whether at least one of an entry's two salts matches the salts of the log.
 
-    An entry of an earlier use of the log has two different salts. If one salt of an entry is damaged, the
-    other salt still matches.
+    An entry of an earlier use of the log has two different salts. If one salt of a current entry is
+    damaged, the other salt still matches.
     """
     return its[0] == salts[0] or its[1] == salts[1]
 

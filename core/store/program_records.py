@@ -135,10 +135,7 @@ def find_damaged_versions(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def _flatten_number(number: object) -> str:
-    """Return a version number as a single line of text.
-
-    A damaged number may be any text.
-    """
+    """Return a version number as a single line of text, even if it is damaged and may be any text."""
     return " ".join(str(number).split())
 
 
@@ -285,7 +282,7 @@ def transfer_records(connection: sqlite3.Connection, old_name: str, new_name: st
 
 
 def _row(connection: sqlite3.Connection, program: str) -> str:
-    """Create the program's row in the table ``runs`` if it is missing, and return its record key."""
+    """Return the record key of a program, and create its row in the table ``runs`` if it is missing."""
     key = find_loaded_key(connection, program)
     connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
     return key

@@ -75,7 +75,7 @@ _LEFT_OUT = {"program_versions": "text"}  # the text is long, and the row alread
 
 
 class TextBytes(bytes):
-    """A text as the bytes in the file, which may not be valid UTF-8 if the text is damaged."""
+    """A text value of the database as its stored bytes, which may be invalid UTF-8 if it is damaged."""
 
 
 def calculate_checksum(table: str, values: RowValues) -> str:
@@ -148,7 +148,7 @@ def find_broken_rows(
 ) -> frozenset[RowKey]:
     """Return the keys of rows that do not match their checksums, including rows that no longer exist.
 
-    ``since`` limits the check of a history to the entries from this key on.
+    ``first_key`` limits the check of a history to the entries from this key on.
     """
     rows, sums = _rows(connection, table, first_key), _sums(connection, table, first_key)
     return frozenset(
@@ -264,7 +264,7 @@ def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _key(value: ColumnValue) -> RowKey:
-    """Return a key as an integer or a string.
+    """Return a row key from the checksum table as an integer or a string.
 
     A damaged key becomes a string that matches no other key.
     """

@@ -126,10 +126,7 @@ class Store:
     def run_query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
     ) -> T:
-        """Call ``function`` with the connection for reading, and return its result.
-
-        The given arguments are also passed to the function.
-        """
+        """Call ``function`` with the read connection and the given arguments, and return its result."""
         with self.read() as connection:
             return function(connection, *args, **named)
 

@@ -93,10 +93,7 @@ class StoreAccess(Protocol):
     def run_query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
     ) -> T:
-        """Call ``function`` with the connection for reading, and return its result.
-
-        The given arguments are also passed to the function.
-        """
+        """Call ``function`` with the read connection and the given arguments, and return its result."""
 
     def write(self, operation: Operation[T]) -> Future[T]:
         """Run ``operation`` in its own transaction.

@@ -59,7 +59,7 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
 
 
 def _damaged() -> sqlite3.DatabaseError:
-    """Return the error that SQLite raises for a file with an unreadable schema."""
+    """Return the error that SQLite would raise for a store file with an unreadable schema."""
     error = sqlite3.DatabaseError("malformed database schema")
     error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
     return error
@@ -95,9 +95,9 @@ def get_log_and_index_paths(path: Path) -> tuple[Path, Path]:
 class WriterLock:
     """The advisory lock file of the store, locked from construction until ``close``.
 
-    If another process briefly has the lock in order to read the owner of the store, locking is retried for
-    0.1 s. ``pause`` waits between two attempts, for a time in seconds. Raises StoreError if the store is
-    already locked or the lock file cannot be opened.
+    Another process may briefly hold the lock while it reads which process has the store open. Locking is
+    therefore retried for 0.1 s. ``pause`` waits between two attempts, for a time in seconds. Raises
+    StoreError if the store is already locked or the lock file cannot be opened.
     """
 
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:

@@ -106,7 +106,7 @@ def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
 
 
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
-    """Return a StoreError for an error with the store in ``path``."""
+    """Return a StoreError that explains an SQLite or system error with the store in ``path``."""
     return find_cause(path, error).make_error(path, get_system_error_text(error))
 
 
@@ -116,9 +116,9 @@ def get_system_error_text(error: Exception) -> str:
 
 
 def _trial(folder: Path) -> OSError | None:
-    """Write a temporary file to ``folder``, and return the system's error, or None on success.
+    """Write a trial file to ``folder`` and return the system's error, or None if writing succeeds.
 
-    The write is necessary because SQLite does not report the system's error.
+    The trial is necessary because SQLite does not report the system's error.
     """
     from tempfile import TemporaryFile  # noqa: PLC0415  rarely wanted, and slow to load
 

@@ -130,7 +130,7 @@ def read_row_fields(row: type) -> Mapping[str, RowField]:
 
 
 class OffsetKind(StrEnum):
-    """The kinds of offset tables.
+    """The kinds of offset tables of a lathe and of a mill.
 
     A lathe has tool offsets T, secondary offsets D, zero offsets G54 to G59 and tool shapes. A mill has
     tools and presets of the workpiece zero.

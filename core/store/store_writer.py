@@ -37,7 +37,7 @@ class _Parts(NamedTuple):
 
 
 class _Cycles(NamedTuple):
-    """The pending complete cycles of a program, with their times in seconds."""
+    """The complete cycles of a program that are not written to disk yet, with their times in seconds."""
 
     cycle_count: int
     best_time_s: float
@@ -130,7 +130,7 @@ class UnwrittenEntries:
 
 
 def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
-    """Run an operation. Return why the store can never accept it, or an empty string on success.
+    """Run an operation, and return why the store can never accept it, or an empty string on success.
 
     Only StoreError and a violated constraint are permanent. Any other SQLite error, such as that of a full
     disk, is raised, so that all entries are tried again later.
@@ -208,9 +208,9 @@ class StoreWriter:
 
     @property
     def _hanging(self) -> str:
-        """Return the message that the disk does not respond.
+        """Return the message that the disk does not respond, or an empty string if it responds.
 
-        The message is an empty string while the oldest change is younger than ``SLOW_WRITE_S``.
+        The disk is assumed to respond while the oldest change is younger than ``SLOW_WRITE_S``.
         """
         try:
             waited = self._clock() - self._posted[0]

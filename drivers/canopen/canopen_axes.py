@@ -177,7 +177,7 @@ class CanopenAxes:
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
-        """Stop all axes: on the path with RAMP_HOLD, otherwise by a stop command at one SYNC."""
+        """Stop all axes along the programmed path (RAMP_HOLD), or by a stop command at one SYNC."""
         if mode is StopMode.RAMP_HOLD and self._powered():
             self._brake_on_path()
             return
@@ -237,7 +237,7 @@ class CanopenAxes:
             self.drives.mark_not_homed()
 
     def _trip(self, fault: str) -> None:
-        """Set a fault, unless a fault is already active, and stop all axes."""
+        """Record a fault, unless another fault is already active, and stop all axes."""
         self.fault = self.fault or fault
         self._off(DriveState.QUICK_STOP_ACTIVE)
 
@@ -263,7 +263,10 @@ class CanopenAxes:
             self.drives.set_goal_state(DriveState.SWITCH_ON_DISABLED)
 
     def _brake_on_path(self) -> None:
-        """Brake all axes on the path, or with the drive's own ramp if an axis is homing."""
+        """Brake all axes along the programmed path, or cancel the homing of an axis.
+
+        A homing axis brakes with the ramp of its drive.
+        """
         if self.active_homing is not None:
             self.active_homing.cancel()
             self.active_homing, self._given_up = None, self.active_homing

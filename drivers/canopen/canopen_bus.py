@@ -151,7 +151,7 @@ class CanBus(canopen.Network):
         return self._idle is not None
 
     def mark_failed(self, reason: str) -> None:
-        """Mark the bus as failed; if the bus has already failed, keep the first reason."""
+        """Mark the bus as failed for ``reason``, or keep the earlier reason if it has already failed."""
         self.failure = self.failure or Fault(reason, "bus")
 
     def _wait_in_steps(self, ready: Callable[[], bool]) -> bool:

@@ -159,7 +159,7 @@ class CanopenMachine:
     def find_unknown_items(self) -> frozenset[UnknownPart]:
         """Return the parts of the machine whose state is unknown.
 
-        A state is unknown if its device does not respond or the bus has failed.
+        The state of a part is unknown if its device does not respond or the bus has failed.
         """
         if self.bus.failure:
             return ALL_UNKNOWN_PARTS

@@ -41,7 +41,7 @@ _MAX_BUS_LOAD = 0.75  # Fraction of the time; the rest is for SDO, heartbeats, E
 class BusLoad(NamedTuple):
     """Bus load in bits per SYNC period.
 
-    The load consists of the frames at each SYNC, and the mean load of the frames that are sent less often.
+    It consists of the frames at each SYNC, and the mean load of the frames that are sent less often.
     """
 
     bits_per_sync: float

@@ -1,8 +1,9 @@
-"""Spindle drive on the bus in profile velocity mode, which may also serve as the C axis.
+"""Spindle drive on the CAN bus, in profile velocity mode; it may also serve as the C axis.
 
-The drive changes between both modes at standstill. As the spindle, the drive generates its own ramps. As
-the C axis, it is powered, fed and stopped together with the other axes. C starts at the last position that
-the control counted. With orientation, the spindle first turns to that position relative to the index.
+The drive changes between spindle mode and C axis mode at standstill. In spindle mode, it generates its own
+ramps. In C axis mode, it is powered, supplied with setpoints and stopped together with the other axes. The
+first C position is the last position that the control counted. If orientation is configured, the spindle
+first turns to that position relative to the index.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _POWER_ON_S = 1.0  # Seconds in which the drive must switch on.
 
 
 class CanopenSpindle:
-    """``core.ports.Spindle`` of a CiA 402 drive.
+    """Spindle port (``core.ports.Spindle``) that controls a CiA 402 drive.
 
     The drive has power only while the spindle turns or is commanded to turn.
     """
@@ -167,7 +168,7 @@ class CanopenSpindle:
         return 0.0 if self.is_used_as_c else float(self.drive.measured_speed)
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time of the last drive reply in seconds, and the revolutions at that time.
+        """Return the encoder reading as its time in seconds and the spindle position in revolutions.
 
         Return None if the counts per revolution are not specified.
         """
@@ -213,7 +214,7 @@ class CanopenCStep(Enum):
 
 
 class CanopenSpindleC:
-    """``core.ports.SpindleCAxis`` of the spindle drive.
+    """Port that runs the spindle drive as the C axis (``core.ports.SpindleCAxis``).
 
     A fault stops all axes. ``advance_mode_change`` must be called once per bus cycle.
     """

@@ -97,7 +97,7 @@ def _asked(bus: CanBus, config: CanNode, axis: AxisConfig | None, mode: str) -> 
 def _list_mismatches(
     setup: NodeSetup, family: DriveProfile, axis: AxisConfig | None, mode: str, bus: CanBus
 ) -> Iterator[str]:
-    """Yield the mode in which the drive would run, and then the objects that the drive lacks.
+    """Yield a text with the drive's motion mode, and a text with its missing objects, if any.
 
     Raises DriverError if the drive does not support the mode, or lacks the object that receives the
     setpoints in this mode.

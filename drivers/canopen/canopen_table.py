@@ -83,7 +83,7 @@ class CanopenTable:
 
     @property
     def slow_reply_divisor(self) -> int:
-        """Return how many SYNCs occur per reply with slow values, so that replies are about 10 ms apart."""
+        """Return after how many SYNCs a drive sends slow values, which is about every 10 ms."""
         return get_slow_reply_divisor(self.sync)
 
     @property

@@ -29,7 +29,7 @@ _TERMINAL_KINDS = ((od.DIGITAL_IN, "input bytes"), (od.DIGITAL_OUT, "output byte
 
 
 class Cia401Module:
-    """CiA 401 module with the number of terminals that it reports.
+    """I/O module on the CAN bus (CiA 401), with the number of terminals that it reports.
 
     Only the terminals in the first PDOs of the module can be used.
     """
@@ -180,7 +180,10 @@ _ANALOG_FULL_SCALE = 32767.0  # Full scale of an analog word.
 
 
 class CanopenIO:
-    """``core.ports.DigitalIO`` and ``core.ports.Station`` of the modules, named as in the machine file."""
+    """Inputs, outputs and operator station on the I/O modules, with the names of the machine file.
+
+    The class implements ``core.ports.DigitalIO`` and ``core.ports.Station``.
+    """
 
     def __init__(self, config: CanopenConfig, bus: CanBus, drives: Mapping[str, Cia402Drive]) -> None:
         self._config = config
@@ -351,7 +354,7 @@ _INPUT_DELAY_SYNCS = 2  # SYNCs: a module replies with its inputs of the previou
 
 
 class CanopenProbe(FirstTouchInput):
-    """Touch input that is evaluated from the module replies to each SYNC.
+    """Probe input of an I/O module, which the module reports after each SYNC.
 
     The position latch of the drives (object 60B8h) is not used, because its input is usually occupied.
     """

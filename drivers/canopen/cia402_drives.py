@@ -164,7 +164,7 @@ class Cia402Drive:
         )
 
     def _map_torque(self) -> None:
-        """Map the torque for the scope if the drive has this object; ignore an error."""
+        """Map the torque to a PDO for the scope, if the drive has this object; errors are ignored."""
         self._load = _NAN
         if self.setup.has_object(od.ACTUAL_TORQUE, 0):
             every = min(_RARER * self.bus.config.slow_reply_divisor, _MOST_RARE)
@@ -282,16 +282,17 @@ class Cia402Drive:
 
 
 def _to_object_address(entry: PdoEntry) -> tuple[int, int]:
-    """Return a PDO entry as a pair of (index + sub-index · 65536, bits)."""
+    """Return the object of a PDO entry as (index + sub-index · 65536, size in bits)."""
     return entry.object_index | entry.object_subindex << 16, entry.bit_count
 
 
 @dataclass(frozen=True, slots=True)
 class DriveSetupData:
-    """Configuration of a drive: modes as bits of object 6502h, objects to write, and queue object.
+    """Configuration of a drive.
 
-    A drive that lacks an object in ``required_objects`` cannot be used. ``setpoint_period_s`` is the
-    setpoint period in seconds that the drive must monitor.
+    ``mode_bits`` are the required modes as bits of object 6502h. A drive that lacks an object in
+    ``required_objects`` cannot be used. ``record_object`` is the queue for motion records.
+    ``setpoint_period_s`` is the setpoint period in seconds that the drive must monitor.
     """
 
     mode_bits: int

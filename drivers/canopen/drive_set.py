@@ -171,7 +171,7 @@ class DrivenAxis:
 
 
 class DriveSet:
-    """Set of all axis drives, which use the same motion mode."""
+    """All axis drives of the machine, which use the same motion mode."""
 
     def __init__(self, axes: tuple[AxisConfig, ...], bus: CanBus, motion_mode: MotionMode) -> None:
         self._bus = bus
@@ -234,11 +234,10 @@ class DriveSet:
         self._bus.send_sync()
 
     def poll_axes(self) -> list[DrivenAxis]:
-        """Process received frames and return the axes.
+        """Process received frames and return the axes; a caller that waits for the drives repeats this.
 
-        If all drives have replied to the last SYNC, or a reply is overdue, also send the next commands and
-        a SYNC. A caller that waits for the drives calls this method repeatedly. In cyclic modes, SYNC is
-        sent independently.
+        The next commands and a SYNC are sent if all drives have replied to the last SYNC, or if a reply is
+        overdue. In cyclic modes, the SYNC is sent independently of this method.
         """
         if self._how.is_cyclic and not self._bus.has_stepped_time:
             return self.axes  # The wait of the bus continues the SYNC.

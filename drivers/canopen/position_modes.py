@@ -57,7 +57,7 @@ class SetpointFollower(ABC):
         """
 
     def handle_braking(self, brake_time_s: float) -> None:
-        """Handle a queue whose setpoints from time ``brake_time_s`` on were replaced by braking.
+        """Adapt to a braking ramp that replaced the queued setpoints from ``brake_time_s`` on.
 
         This default implementation does nothing, because the next call of ``feed_setpoints`` transfers the
         braking setpoints.
@@ -103,7 +103,7 @@ class ProfiledFollower(SetpointFollower):
         return self._pending is not None or self._told >= 0.0
 
     def check_segments(self, segments: MotionSegments) -> None:
-        """Store the end of a straight move as the next target.
+        """Check that a move is straight, and store its end as the next target.
 
         Raises DriverError if the path is not straight.
         """
@@ -125,7 +125,7 @@ class ProfiledFollower(SetpointFollower):
         self._pending = (float(segments.start_times_s[0]), segments)
 
     def handle_braking(self, brake_time_s: float) -> None:
-        """Make the new end of the queue the pending target, with the maximum deceleration."""
+        """Set the end of the braking ramp as the pending target, with the maximum deceleration."""
         self._pending = (brake_time_s, None)
 
     def prepare_targets(self) -> None:
@@ -197,7 +197,7 @@ class SyncSchedule:
         self._late = 0.0  # Delay of the last SYNC.
 
     def record_sync(self, now: float) -> float:
-        """Record a SYNC at time ``now``, and return the additional seconds that the drives waited for it.
+        """Record a SYNC at time ``now``, and return by how many seconds it delayed the drives.
 
         The result is 0 if the drives tolerate the delay, and while the SYNCs return to the schedule.
         """
@@ -235,7 +235,7 @@ class CyclicFollower(SetpointFollower):
 
     @property
     def is_executing(self) -> bool:
-        """Return whether the path is delayed, so that it has not ended yet."""
+        """Return whether the drives have not reached the end of the queue yet."""
         return self.lag_s > 0.0 and not is_queue_finished(
             self._queue.get_end_time(-1e9), self.get_path_time(self.schedule.due_time_s)
         )
@@ -245,7 +245,7 @@ class CyclicFollower(SetpointFollower):
         return time_s - self.lag_s
 
     def abort_transfer(self) -> None:
-        """Stop transferring setpoints and clear the lag."""
+        """Stop transferring setpoints and reset the lag of the path to 0."""
         self.lag_s, self.failure, self._asked = 0.0, "", None
         for axis in self._axes:
             axis.drive.mode_bits &= ~NEW
@@ -281,7 +281,7 @@ class CyclicFollower(SetpointFollower):
             self._interpolate(now)
 
     def _interpolate(self, now: float) -> None:
-        """Set bit 4 when the drives have power in this mode, and set a fault if they do not start."""
+        """Start interpolation by bit 4 of the control word; set a fault if a drive does not start."""
         if self._asked is None:
             self._asked = now
             for axis in self._axes:

@@ -59,9 +59,10 @@ def fit_longest_piece(
 def find_max_deviation(
     motion_at: GetMotion, start_time_s: float, duration_s: float, count_sizes: Sequence[float]
 ) -> float:
-    """Return the largest deviation from the path, in counts of the axis that deviates most.
+    """Return the largest deviation of a PVT record's cubic curve from the path, in counts.
 
-    The cubic curve starts at time ``start_time_s`` and takes ``duration_s`` seconds.
+    The deviation is that of the axis that deviates most. The curve starts at time ``start_time_s`` and
+    takes ``duration_s`` seconds.
     """
     p0, v0 = motion_at(start_time_s)
     p1, v1 = motion_at(start_time_s + duration_s)
@@ -110,7 +111,7 @@ class _Phase(Enum):
 
 
 class PvtFollower(SetpointFollower):
-    """Follower that keeps the queues of the drives filled for a fixed time ahead.
+    """Follower that sends PVT records to the drives' queues and fills them for a fixed time ahead.
 
     All axes have records with the same times. The duration of each record is a whole number of
     milliseconds.
@@ -141,7 +142,7 @@ class PvtFollower(SetpointFollower):
         return self._phase is not _Phase.REST
 
     def prepare_targets(self) -> None:
-        """Clear the record queues of the drives."""
+        """Clear the drives' record queues before power-on; PVT mode has no other target."""
         for axis in self._axes:
             _get_record_queue(axis).clear_records()
         self.abort_transfer()
@@ -154,7 +155,7 @@ class PvtFollower(SetpointFollower):
             axis.drive.mode_bits &= ~NEW
 
     def feed_setpoints(self, now: float) -> None:
-        """Start the record queues, fill them, or let them run out, depending on the path."""
+        """Start or fill the record queues; after the end of the path, let them run out."""
         if self._phase is _Phase.REST and not is_queue_finished(self._queue.get_end_time(now), now):
             self._start_queues(now)
         elif self._phase is _Phase.PLAYING:

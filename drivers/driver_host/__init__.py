@@ -1,1 +1,1 @@
-"""The driver host: a process that owns the bus and the queue and survives a crash of the control."""
+"""Driver host: a process that owns the drive bus and setpoint queue and survives a control crash."""

@@ -65,7 +65,7 @@ class HostLink(Protocol):
 
 
 def clear_host_faults(link: HostLink) -> HostLink:
-    """Clear the faults of the drives after a restart of the driver host, and return the link.
+    """Clear the drive faults after a restart of the driver host, and return the connection to it.
 
     Raises DriverError if the faults cannot be cleared.
     """
@@ -277,11 +277,11 @@ class InProcessLink:
         return answer
 
     def disconnect(self) -> None:
-        """Mark the driver host as orphaned."""
+        """Mark the driver host as orphaned, which means that the control has ended."""
         self._host.is_orphaned = True
 
     def close(self) -> None:
-        """Mark the driver host as orphaned."""
+        """Mark the driver host as orphaned, as ``disconnect`` does."""
         self.disconnect()
 
 

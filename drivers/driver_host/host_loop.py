@@ -48,7 +48,7 @@ def measure_wakeup_delay(period_s: float) -> float:
 
 
 def lock_host_memory() -> list[str]:
-    """Lock the memory of the process, and return messages for the operator about limits.
+    """Lock the memory of this process, and return warnings if it is not or only partly locked.
 
     Call this function after the drivers have been created.
     """

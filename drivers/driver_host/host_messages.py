@@ -1,4 +1,4 @@
-"""Messages on the socket of the driver host: two lengths, a JSON head, and numbers in binary form."""
+"""Socket messages of the driver host: two length fields, a JSON header and binary numbers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PROTOCOL_VERSION = 5  # Version of the protocol, which both sides exchange first
 
 
 class Message(NamedTuple):
-    """A request or a reply, with its numbers in one flat row."""
+    """Request or reply: a header of named values, and a flat array of numbers."""
 
     header: Mapping[str, object]
     numbers: FloatArray
@@ -72,12 +72,12 @@ def _head(text: bytes) -> Mapping[str, object]:
 
 
 def flatten_segments(segments: MotionSegments | None) -> FloatArray:
-    """Return the segments as one flat row in the order t, dt, p, v, a."""
+    """Return motion segments as a flat array: times, durations, positions, velocities, accelerations."""
     return NO_NUMBERS if segments is None else np.concatenate([part.ravel() for part in segments])
 
 
 def parse_segments(numbers: FloatArray, axis_count: int) -> MotionSegments:
-    """Return the segments that one flat row contains.
+    """Return the motion segments in a flat array that ``flatten_segments`` has created.
 
     Raises DriverError for an invalid length or value.
     """
@@ -97,14 +97,14 @@ def parse_segments(numbers: FloatArray, axis_count: int) -> MotionSegments:
 
 
 def encode_cam(cam: Cam) -> Message:
-    """Return a request that makes the axes follow the spindle on a cam."""
+    """Return the request to move the axes on a cam, which is a path over spindle revolutions."""
     path_numbers = flatten_segments(cam.segments)
     head = {"do": "mesh", "zero": cam.start_revolutions, "sign": cam.sign, "way": len(path_numbers)}
     return Message(head, np.concatenate([path_numbers, flatten_segments(cam.following_segments)]))
 
 
 def number(head: Mapping[str, object], key: str) -> float:
-    """Return a finite number from the head of a message.
+    """Return the number with the name ``key`` in the header of a message.
 
     Raises DriverError if the number is missing or invalid.
     """
@@ -120,7 +120,7 @@ def number(head: Mapping[str, object], key: str) -> float:
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """Return a string from the head of a message, or an empty string if it is missing."""
+    """Return the string named ``key`` in a message header, or an empty string if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
@@ -158,13 +158,13 @@ def parse_list(value: object) -> list[object]:
 
 
 def read_fault(head: Mapping[str, object], key: str, default_code: FaultCode) -> Fault:
-    """Return a fault with its code from the head of a message, or an empty fault."""
+    """Return the fault in a message header with its code; its text is empty if there is no fault."""
     code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), default_code)
     return Fault(text(head, key), code)
 
 
 def make_fault_entries(key: str, fault: str, default_code: FaultCode) -> Mapping[str, str]:
-    """Return the entries of a message head for a fault and its code."""
+    """Return the header entries that describe a fault and its code."""
     return {key: fault, f"{key}_code": get_fault_code(fault, default_code)}
 
 

@@ -43,7 +43,7 @@ class _HostPort:
 
 
 class HostAxes(_HostPort):
-    """The ``core.ports.AxisSink`` of the driver host."""
+    """Axis port (``core.ports.AxisSink``) that sends its calls to the driver host."""
 
     def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
         super().__init__(connection)
@@ -114,10 +114,10 @@ class HostAxes(_HostPort):
 
 
 class HostGear(_HostPort):
-    """The ``core.ports.SpindleGear`` of the driver host."""
+    """Port for axes that follow the spindle (``core.ports.SpindleGear``), via the driver host."""
 
     def mesh(self, cam: Cam) -> None:
-        """Make the axes follow the spindle.
+        """Make the axes follow the spindle on a cam, a path over spindle revolutions.
 
         Raises DriverError if the driver rejects the cam.
         """
@@ -130,7 +130,7 @@ class HostGear(_HostPort):
 
 
 class HostSpindle(_HostPort):
-    """The ``core.ports.Spindle`` of the driver host."""
+    """Spindle port (``core.ports.Spindle``) that sends its calls to the driver host."""
 
     def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``."""
@@ -159,12 +159,15 @@ class HostSpindle(_HostPort):
         return t, turns
 
     def read_fault(self) -> str:
-        """Return the fault of the spindle, or an empty string."""
+        """Return the fault of the spindle, or an empty string if there is no fault."""
         return self._line.fault or read_fault(self._line.poll_state(), "spindle", "spindle")
 
 
 class HostWakeup(_HostPort):
-    """The ``core.ports.WakeupSignal`` of the driver host, which polls the drivers and sends wake-ups."""
+    """Port through which the driver host wakes a sleeping control (``core.ports.WakeupSignal``).
+
+    While the control sleeps, the driver host polls the drivers.
+    """
 
     def __init__(self, connection: HostConnection, wakeup_bell: ProcessWakeup) -> None:
         super().__init__(connection)
@@ -172,7 +175,7 @@ class HostWakeup(_HostPort):
         self.request_poll = wakeup_bell.wake
 
     def is_settled(self) -> bool:
-        """Return whether the driver host sends a wake-up for each change."""
+        """Return whether the control may sleep, because the driver host reports each change."""
         return not self._line.is_lost
 
     def wait_for_wakeup(self, seconds: float) -> bool:
@@ -188,7 +191,7 @@ class HostWakeup(_HostPort):
 
 
 class HostSamples(_HostPort):
-    """The ``core.ports.SampleSource`` of the driver host, whose poll replies contain the samples."""
+    """Scope samples (``core.ports.SampleSource``) that the driver host adds to its poll replies."""
 
     def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
         super().__init__(connection)
@@ -207,7 +210,7 @@ class HostSamples(_HostPort):
 
 
 class HostSpindleCAxis(_HostPort):
-    """The ``core.ports.SpindleCAxis`` of the driver host."""
+    """Port for the spindle drive as C axis (``core.ports.SpindleCAxis``), via the driver host."""
 
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Engage the spindle drive as the C axis, or release it."""
@@ -219,7 +222,7 @@ class HostSpindleCAxis(_HostPort):
 
 
 class HostOrientation(_HostPort):
-    """The ``core.ports.OrientingSpindle`` of the driver host."""
+    """Port that orients the spindle (``core.ports.OrientingSpindle``), via the driver host."""
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Orient the spindle to an angle in degrees."""
@@ -238,7 +241,7 @@ class HostOrientation(_HostPort):
 
 
 class HostIO(_HostPort):
-    """The ``core.ports.DigitalIO`` of the driver host."""
+    """Input and output port (``core.ports.DigitalIO``) that sends its calls to the driver host."""
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name."""
@@ -258,7 +261,7 @@ class HostIO(_HostPort):
 
 
 class HostStation(_HostPort):
-    """The ``core.ports.Station`` of the driver host."""
+    """Operator station (``core.ports.Station``) as the driver host last reported it."""
 
     def read_state(self) -> StationState:
         """Return the current state of the station.
@@ -272,7 +275,7 @@ class HostStation(_HostPort):
 
 
 class HostTouch(_HostPort):
-    """The ``core.ports.TouchInput`` of the driver host."""
+    """Probe port (``core.ports.TouchInput``) that reads the touches latched by the driver host."""
 
     def arm_latch(self) -> None:
         """Clear the latched touch, so that the next touch is latched."""
@@ -289,7 +292,7 @@ class HostTouch(_HostPort):
 
 
 class HostTripMonitor(_HostPort):
-    """The ``core.faults.TrippingDriverHost`` of the driver host."""
+    """Port that reads and acknowledges trips of the driver host (``core.faults.TrippingDriverHost``)."""
 
     def get_active_trip(self) -> DriverHostTrip | None:
         """Return the trip that has not been acknowledged, with the functions that were switched off.

@@ -70,9 +70,10 @@ def execute_command(ports: MachinePorts, head: Mapping[str, object]) -> None:
 
 
 def call_station_control(controls: object | None, head: Mapping[str, object]) -> object:
-    """Call a method of the simulated station by its name, and return its result.
+    """Call a method of the simulated operator station by its name, and return its result.
 
-    Raises DriverError if this is not possible.
+    Raises DriverError if the machine has no simulated station, or if the method or its arguments are
+    invalid.
     """
     name, values = text(head, "name"), head.get("values")
     use = None if name.startswith("_") or controls is None else getattr(controls, name, None)
@@ -125,13 +126,13 @@ _SPINDLE_STOP_S = 8.0  # Maximum wait in s for a spindle to brake.
 
 @dataclass(frozen=True, slots=True)
 class DriverBundle:
-    """The set of drivers that one loop owns.
+    """Drivers of one machine and the functions that their loop calls.
 
-    ``run_cycle`` is called every few milliseconds and raises no error. ``station_controls`` are the
-    controls of a simulated machine or of the station on the screen. ``get_idle_time`` returns for how many
-    seconds no cycle is required; 0 means unknown. Its argument is True while the control sleeps.
-    ``has_sent_requests`` returns whether the last cycle has sent requests whose replies the next cycle
-    reads.
+    - ``run_cycle`` is called every few milliseconds and raises no error.
+    - ``station_controls`` operate a simulated machine or the station on the screen.
+    - ``get_idle_time`` returns for how many seconds no cycle is required; 0 means unknown. Its
+      argument is True while the control sleeps.
+    - ``has_sent_requests`` returns whether the last cycle sent requests whose replies are still to be read.
     """
 
     ports: MachinePorts
@@ -238,7 +239,7 @@ class DriverHost:
             self._ring()
 
     def _has_news(self) -> bool:
-        """Return whether a poll would return a different state than the last poll, apart from times."""
+        """Return whether the state, ignoring its time values, has changed since the last poll."""
         try:
             return self._told is None or _without_times(self._read_state()) != self._told()
         except DriverError:
@@ -288,7 +289,7 @@ class DriverHost:
     def _is_stopped_on_cam(self) -> bool:
         """Return whether axes that follow the spindle are waiting because the spindle is stopped.
 
-        The queue never ends in this state.
+        The setpoint queue never ends in this state.
         """
         gear = self._ports.gear
         follows = gear is not None and gear.geared() is not None

@@ -1,4 +1,4 @@
-"""The guard of the functions that a trip has switched off, until the trip is acknowledged."""
+"""Guard that blocks motion, spindle start and outputs after a trip until it is acknowledged."""
 
 from __future__ import annotations
 
@@ -59,10 +59,7 @@ class TripGuard:
             self.active_trip = self.active_trip._replace(silence_s=max(silence_s, self.active_trip.silence_s))
 
     def acknowledge_trip(self, trip_number: float) -> None:
-        """Clear the trip with this number.
-
-        A later trip remains active.
-        """
+        """Clear the trip with this number; if a later trip has occurred, it remains active."""
         if self.active_trip is not None and self.active_trip.trip_number == trip_number:
             self.active_trip = None
 

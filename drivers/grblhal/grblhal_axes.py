@@ -18,7 +18,10 @@ _STEPS = 100  # Number of the setting for steps per millimeter.
 
 
 class GrblAxes:
-    """``core.ports.AxisSink`` of the controller; each call of ``sample`` runs one cycle of the driver."""
+    """Axis port (``core.ports.AxisSink``) of a grblHAL controller.
+
+    Each call of ``sample`` runs one cycle of the driver.
+    """
 
     commit = 0.0
 
@@ -134,7 +137,7 @@ class GrblAxes:
     def clear_fault(self) -> None:
         """Reset, unlock and verify the controller, or start to reopen a lost connection.
 
-        If the connection cannot be reopened, the reason becomes the next fault.
+        If the connection cannot be reopened, the driver sets a new fault with the reason.
         """
         self._blocks.is_motion_enabled = False
         if not self._c.is_position_reliable:
@@ -150,9 +153,10 @@ class GrblAxes:
         self._known = {axis.name: not axis.is_wired for axis in self._c.config.axes}
 
     def _is_known(self, name: str) -> bool:
-        """Return whether the position of an axis is known.
+        """Return whether the machine position of an axis is known.
 
-        If homing is enabled in the controller, its report decides. Otherwise the machine file decides.
+        If homing is enabled in the controller, the controller reports this. Otherwise the machine file
+        specifies it.
         """
         is_homed = self._c.is_homed(name)
         known = self._known[name] if is_homed is None or name not in self._wired else is_homed

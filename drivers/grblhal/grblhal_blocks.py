@@ -1,4 +1,4 @@
-"""Block port of a grblHAL controller, including tickets, feed holds, overrides and jogs."""
+"""Block port of a grblHAL controller: sends blocks, feed holds, overrides and jogs."""
 
 from __future__ import annotations
 
@@ -61,11 +61,11 @@ class GrblBlocks:
 
     @property
     def capabilities(self) -> frozenset[str]:
-        """Return the requirements that the controller meets, with the names of ``machine_requirements``.
+        """Return the names of the ``machine_requirements`` that the controller meets.
 
-        Threads need an encoder at the controller; its speed appears as the third speed in the reports.
-        Constant surface speed needs a spindle with variable speed, or a spindle that the controller does
-        not drive. During a thread, the spindle override is fixed at 100 %, so a spindle that the controller
+        Threading needs an encoder at the controller; its speed is the third speed in the reports. Constant
+        surface speed needs a spindle with variable speed, or a spindle that the controller does not drive.
+        During a threading pass, the spindle override is fixed at 100 %, so a spindle that the controller
         drives cannot follow the radius.
         """
         report, own = self._c.report, self._c.config.has_own_spindle
@@ -106,9 +106,9 @@ class GrblBlocks:
     def submit_block(self, block: BlockOperation) -> int | None:
         """Send one block and return its ticket, or None while the buffer of the controller is full.
 
-        A thread is sent only after the reported overrides are 100 %, because a feed override would change
-        the lead. Until then, None is returned as well. Raises DriverError if the controller is not ready or
-        motion is not permitted.
+        A threading block is sent only after the reported overrides are 100 %, because a feed override would
+        change the lead. Until then, None is returned as well. Raises DriverError if the controller is not
+        ready or motion is not permitted.
         """
         c = self._c
         self._demand_ready()
@@ -151,7 +151,7 @@ class GrblBlocks:
     def hold_on_path(self) -> None:
         """Start a feed hold immediately (byte 82h).
 
-        This method must not be called during a thread pass, because the axes would stop in the cut.
+        This method must not be called during a threading pass, because the axes would stop in the cut.
         """
         self._holds.start_hold()
 
@@ -210,7 +210,7 @@ class GrblBlocks:
                 self._c.run_script(grblhal_scripts.finish_jog(self._c))
 
     def start_homing(self, axis: str) -> None:
-        """Start to home an axis in the controller."""
+        """Start to home an axis, which the controller does on its own."""
         self._settled, self.last_block_end = False, None
         self._c.run_script(grblhal_scripts.home_axis(self._c, axis))
 
@@ -280,7 +280,7 @@ class GrblBlocks:
         self._holds.process_report(report)
 
     def _update_tickets(self, report: StatusReport) -> None:
-        """Mark all tickets as complete."""
+        """Mark all tickets as complete after a report of state Idle or Alarm with an empty queue."""
         if self._target is not None and report.state == "Idle":
             self.last_block_end = self._target
         self._target = None

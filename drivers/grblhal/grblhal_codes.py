@@ -165,10 +165,10 @@ def format_block(
 ) -> str:
     """Return the G-code line of one block.
 
-    ``rapid_speed`` is the speed of G0 on this path in mm/s, and ``feed_override`` is a fraction. A rapid
-    that is slower than G0 is sent as a feed, because the rapid override of the controller has only three
-    steps. A feed override above 1 does not make a rapid faster. ``home_position`` is the home position in the
-    coordinates of the controller.
+    ``rapid_speed`` is the speed of G0 on this path in mm/s. ``feed_override`` is a fraction.
+    ``home_position`` is in the coordinates of the controller. A rapid that is slower than G0 is sent as a
+    feed move, because the controller's rapid override has only three steps. A feed override above 1 does
+    not make a rapid faster.
     """
     head = f"N{get_ticket_line_number(ticket)}"
     home = home_position or {}

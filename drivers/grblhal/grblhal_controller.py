@@ -112,16 +112,16 @@ class GrblController(ReportedState):
         self.is_reset_expected = True
 
     def set_override_reports(self, enabled: bool) -> None:
-        """Select whether to request plain reports, which contain the overrides.
+        """Select whether reports without offsets are requested as well, to receive the overrides.
 
-        A full report always contains the offsets, and the controller then omits the overrides.
+        The controller omits the overrides from a full report, which always contains the offsets.
         """
         self._sees_overrides = enabled
 
     def request_report(self, *, full: bool = False) -> None:
         """Request a status report.
 
-        A full report does not delay a plain report that is needed for the overrides.
+        While overrides are needed, a full report does not postpone the next plain report.
         """
         self.send_realtime_bytes(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
@@ -463,8 +463,8 @@ class GrblController(ReportedState):
     def _check_timeouts(self) -> None:
         """Set a fault if the controller does not respond in time.
 
-        The timeout is longer while a thread waits for the spindle index. A reply to a line also counts as a
-        response, because the controller may execute lines before it answers a report request.
+        The timeout is longer while a threading pass waits for the spindle index. A reply to a line also
+        counts as a response, because the controller may execute lines before it answers a report request.
         """
         if self.is_busy:
             return

@@ -231,7 +231,7 @@ class GrblMachine:
 
 
 def _group_texts(items: Mapping[str, str], one: str, several: str) -> list[str]:
-    """Return one sentence per reason, with all names to which this reason applies.
+    """Return one sentence for each different reason, with the names to which it applies.
 
     A name without a reason is omitted.
     """

@@ -175,7 +175,7 @@ class FeedHolds:
         self._send_resume()
 
     def clear_hold_request(self) -> None:
-        """Clear the request for a feed hold, because a final stop does not need a feed hold."""
+        """Cancel a requested feed hold, because the motion is being stopped completely."""
         self._asked = self._ours = False
 
     def process_report(self, report: StatusReport) -> None:
@@ -223,8 +223,9 @@ _MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 class GrblJogs:
     """Sender of jog lines (``$J``), which waits for the acknowledgment of each line.
 
-    The target at any time is the position that an axis at full speed since the start of the jog would reach
-    one lease later. The remaining travel is therefore at most lease · velocity plus the braking distance.
+    The lease is the time for which a jog may continue without renewal. At any time, the target is the
+    position that an axis at full speed since the start of the jog would reach one lease later. The
+    remaining travel is therefore at most lease · velocity plus the braking distance.
     """
 
     def __init__(self, controller: GrblController) -> None:

@@ -14,7 +14,7 @@ _STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Che
 
 
 class StatusReport(NamedTuple):
-    """Status report; a field that the report does not contain is None.
+    """Status report of the controller; fields that it omits are None.
 
     Positions are in mm. X is a radius or a diameter, as in the controller.
     """
@@ -144,10 +144,10 @@ class ControllerIdentity(NamedTuple):
     )
 
     def has_pin(self, letter: str) -> bool:
-        """Return whether the board has the input with this letter, as far as the controller reports it.
+        """Return whether the board has the input with this letter.
 
-        Control inputs are listed in [SIGNALS:…]. Firmware before 2024 omits this list, and then each of
-        them is assumed to exist. A limit switch exists if its axis exists.
+        Firmware since 2024 lists the control inputs in [SIGNALS:…]. For older firmware, every control input
+        is assumed to exist. A limit switch exists if its axis exists.
         """
         if letter in _AXES:
             return letter in self.axis_letters

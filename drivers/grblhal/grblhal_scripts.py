@@ -169,9 +169,9 @@ _INDEX = 7.0  # Longest duration of that wait in s.
 def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
     """Brake the axes, and then reset the controller to clear its queue.
 
-    The position is lost only if an axis does not come to rest. ``in_thread_pass`` means that a thread pass
-    is running, which may be waiting at rest for the index. In this case, byte 18h would lose the position,
-    so byte 19h is used, which then acts as a reset. An active alarm is not changed.
+    The position is lost only if an axis does not come to rest. ``in_thread_pass`` means that a threading
+    pass is active, which may be waiting at rest for the index. In this case, byte 18h would lose the
+    position, so byte 19h is used, which then acts as a reset. An active alarm is not changed.
     """
     if controller.state != "Home":  # Only a reset ends the state Home.
         yield from _brake(controller)
@@ -209,7 +209,7 @@ def reset_controller(controller: GrblController) -> Script:
 
 
 def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
-    """Brake until the axes are at rest, the controller is silent, or the time has passed."""
+    """Brake, and wait until the axes are at rest, the stopping time is over or no report arrives."""
     after, began = c.report_count + 1, c.clock.now()  # One earlier report may still arrive.
     by = began + _stopping_time(c)
     c.send_realtime_bytes(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
@@ -294,9 +294,8 @@ def reconnect_controller(controller: GrblController) -> Script:
 def check_restart(controller: GrblController) -> Script:
     """Detect whether the controller restarted while it was silent.
 
-    After a restart, the modes differ from those of TurnDesk, because ``gc_init`` of grblHAL selects G17.
-    The position also counts from 0 then, so any other position proves that the controller has not
-    restarted.
+    After a restart, the active modes differ from those of TurnDesk, because ``gc_init`` of grblHAL selects
+    G17. The position then counts from 0, so a position other than 0 proves that there was no restart.
     """
     by = controller.clock.now() + _MODES_TIMEOUT_S
     controller.request_modes()

@@ -61,16 +61,16 @@ class GrblEncoder:
 
 
 class _SpeedSign:
-    """Sign of a speed that is measured without direction.
+    """Sign for a speed that is measured without direction.
 
-    The sign changes only after the speed has fallen.
+    The sign changes only at standstill, or when the speed rises again after it has fallen.
     """
 
     def __init__(self) -> None:
         self._sign, self._least = 1.0, math.inf
 
     def apply_sign(self, rpm: float, commanded_rpm: float) -> float:
-        """Return ``rpm`` with a sign that follows the sign of ``commanded_rpm``."""
+        """Return ``rpm`` with the current sign, which follows the sign of ``commanded_rpm`` with a delay."""
         rpm = abs(rpm)
         if math.copysign(1.0, commanded_rpm) == self._sign:
             self._least = math.inf
@@ -101,9 +101,9 @@ class GrblSpindle:
     def set_speed(self, rpm: float) -> None:
         """Turn the spindle at the signed speed ``rpm``, or stop the spindle if ``rpm`` is 0.
 
-        The speed is limited to the maximum of the machine. If ``rpm`` is not 0, raises DriverError if the
-        controller does not accept lines. Also raises DriverError if the speed exceeds the controller's
-        limit, because the controller would reduce the speed without a message. A stop raises no error.
+        The speed is limited to the maximum of the machine. A stop raises no error. Any other speed raises
+        DriverError if the controller does not accept lines, or if its own speed limit is lower: the
+        controller would reduce the speed without a message.
         """
         if rpm:
             require_spindle_ready(self._blocks.describe_start_refusal())

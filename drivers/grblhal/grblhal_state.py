@@ -1,10 +1,13 @@
-"""Reported state and settings of a grblHAL controller, and its longest wait before an acknowledgment.
+"""Reported state and settings of a grblHAL controller, and its longest acknowledgment delay.
 
-In ``spindle_control.c`` of grblHAL, M3, M4 and M5 wait for the measured speed if the at-speed tolerance
-($340) is set. The limit of this wait is the delay in $394 (on) or $539 (off), or one minute if the delay is
-0; then ALARM:14 follows. Without a tolerance, M3, M4 and M5 wait for the delay. In ``coolant_control.c``,
-M7 and M8 wait for the delay in $673. During a wait, the state is Idle, status reports are sent, and no
-further line is read.
+Some lines make the controller wait before it acknowledges them:
+
+- M3, M4 and M5 wait for the measured speed if the at-speed tolerance ($340) is set. The limit is the
+  delay in $394 (on) or $539 (off), or one minute if the delay is 0; then ALARM:14 follows.
+- Without a tolerance, M3, M4 and M5 wait for this delay (see ``spindle_control.c`` of grblHAL).
+- M7 and M8 wait for the delay in $673 (see ``coolant_control.c``).
+
+During a wait, the state is Idle, status reports are sent, and no further line is read.
 """
 
 from __future__ import annotations
@@ -133,7 +136,7 @@ class ReportedState:
         return self.identity.axis_letters if self.identity is not None else "XYZ"
 
     def has_pin(self, letter: str) -> bool:
-        """Return whether the board has the input with this letter, as far as the controller reports it."""
+        """Return whether the board has the input with this letter (``ControllerIdentity.has_pin``)."""
         return self.identity is None or self.identity.has_pin(letter)
 
     @property

@@ -41,9 +41,9 @@ _NAN = float("nan")
 
 
 class HalAxes:
-    """The ``core.ports.AxisSink`` and ``SpindleGear`` of HAL.
+    """Axes on HAL, with the ports ``core.ports.AxisSink`` and ``SpindleGear``.
 
-    Only the thread that owns the bridge may use it.
+    Only the thread that owns the bridge may use them.
     """
 
     def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
@@ -141,7 +141,7 @@ class HalAxes:
         )
 
     def _estimate_speed(self, t: float, turns: float) -> None:
-        """Calculate the spindle speed in rev/s from the last samples, if HAL does not provide a velocity."""
+        """Calculate the spindle speed in rev/s from position samples if HAL does not provide a speed."""
         turned = self._turned
         turned.append((t, turns))
         while turned[0][0] < t - _SPEED_WINDOW_S:
@@ -178,7 +178,7 @@ class HalAxes:
         self.queue.discard_pieces_before(self._now() - _HISTORY_S)
 
     def _process_bridge_state(self) -> None:
-        """Update the queue after the bridge has ended a cam or has braked."""
+        """Update the setpoint queue after the bridge has ended a cam or has braked the axes."""
         report = self._link.last_report
         if self.queue.is_engaged and report.get("geared") is False and "left" in report:
             left = report["left"]
@@ -362,7 +362,7 @@ class HalAxes:
     def transfer_c(
         self, axis_index: int | None, hal_position: float = 0.0, control_position: float = 0.0
     ) -> None:
-        """Release the axis ``axis_index`` to the spindle, or engage C if ``axis_index`` is None.
+        """Release the axis ``axis_index`` to the spindle, or engage the C axis if ``axis_index`` is None.
 
         The count does not change when C is released. When C is engaged, ``hal_position`` is its position in
         HAL and ``control_position`` is its position in the control.
@@ -382,11 +382,11 @@ class HalAxes:
     # --- for homing ---------------------------------------------------------------------------------------
 
     def read_bit(self, name: str) -> bool:
-        """Return a bit of the bridge by the name of its pin, such as ``X.index``."""
+        """Return the state of a bit pin of the bridge by the name of the pin, such as ``X.index``."""
         return self._link.read_bit(name)
 
     def read_number(self, name: str) -> float:
-        """Return a number of the bridge by the name of its pin, such as ``X.index-at``."""
+        """Return the value of a number pin of the bridge by the name of the pin, such as ``X.index-at``."""
         return self._link.read_number(name)
 
     def request_index(self, pin: str, enabled: bool) -> None:
@@ -497,4 +497,4 @@ class HalAxes:
 
 
 def _discard_sample(*_figures: float) -> None:
-    """Ignore a sample, as the default handler does."""
+    """Do nothing with a sample; this is the default sample handler."""

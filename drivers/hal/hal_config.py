@@ -1,4 +1,4 @@
-"""The configuration of a machine on HAL, which the app fills from the machine file."""
+"""Configuration of a machine on HAL, which the application creates from the machine file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from drivers.setpoint_queue import AxisProperties
 
 @dataclass(frozen=True, slots=True)
 class HalAxis(AxisProperties):
-    """One axis of the machine; without ``pins``, the axis only counts."""
+    """One axis of the machine; an axis without ``pins`` has no drive and is only counted."""
 
     pins: HalAxisPins | None = None
     home_method: int = 0
@@ -49,10 +49,10 @@ class HalSpindleConfig:
 
 @dataclass(frozen=True, slots=True)
 class HalOutput:
-    """An output with its pin and its safe state; None leaves the output unchanged.
+    """Output with its pin and its safe state, where None leaves the output unchanged.
 
-    ``is_lamp`` marks a lamp of the signal tower. Such a lamp indicates an open E-stop chain, so an open
-    chain does not switch it to its safe state. Only a silent bridge switches it to that state.
+    ``is_lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so it is not switched
+    to its safe state when the chain opens, but only when the bridge is silent.
     """
 
     pin_name: str
@@ -70,9 +70,9 @@ class HalInput:
 
 @dataclass(frozen=True, slots=True)
 class HalPot:
-    """A pot with its pin (0…1), or a handwheel that counts.
+    """Pot with its pin (0…1), or handwheel with its count pin.
 
-    ``switch_input`` is the name of the input of its switch.
+    ``switch_input`` is the name of the input that enables the pot.
     """
 
     pin_name: str

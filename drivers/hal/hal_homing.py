@@ -25,7 +25,7 @@ _INDEX_TRAVEL = 30.0  # Mm or degrees within which an index must occur.
 
 
 class HomingAxes(Protocol):
-    """The functions of the axes that homing needs.
+    """Axis functions that homing uses.
 
     Positions are as HAL counts them.
     """
@@ -193,9 +193,9 @@ class HalHoming:
         self._slides.request_index(f"{self.name}.index", True)
 
     def _search_index(self, now: float, rests: bool) -> None:
-        """Wait until the bit of the index request turns off at the index.
+        """Wait until the index request turns off, which happens when the index passes.
 
-        The compensated jump is then the position of the index.
+        The jump of the count that HAL compensates is then the position of the index.
         """
         if now > self._since + 0.1 and not self._slides.read_bit(f"{self.name}.index"):
             self._mark = self._slides.read_number(f"{self.name}.index-at")
@@ -246,7 +246,7 @@ class HalHoming:
 
 
 class HalTouch(FirstTouchInput):
-    """A touch input that evaluates HAL's samples."""
+    """Probe input (``core.ports.TouchInput``) that evaluates HAL's samples."""
 
     def __init__(self, period: float, *, active_low: bool) -> None:
         super().__init__()

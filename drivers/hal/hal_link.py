@@ -1,4 +1,4 @@
-"""The connection to the bridge, with its last report.
+"""Connection to the HAL bridge, with the last report of the bridge.
 
 A bridge that is silent or has ended is a fault.
 """
@@ -136,14 +136,14 @@ class HalLink:
 
     @property
     def input_age_s(self) -> float:
-        """Return the age of the inputs in seconds, or inf while the board is not reachable."""
+        """Return the age of the board's inputs in seconds, or inf while the board is not reachable."""
         return float("inf") if self.are_inputs_stale else self.report_age_s
 
     @property
     def report_age_s(self) -> float:
-        """Return the time without a report in seconds, or inf after a loss.
+        """Return the seconds since the last report of the bridge, or inf if the connection is lost.
 
-        Only the time during which this side was listening is counted.
+        Only the time during which this process was receiving is counted.
         """
         return (
             float("inf")
@@ -172,7 +172,7 @@ class HalLink:
         return self._sent
 
     def send_pieces(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
-        """Send a command with setpoints.
+        """Send a command with the motion pieces of a path to the bridge.
 
         Raises DriverError if the bridge does not accept the command.
         """

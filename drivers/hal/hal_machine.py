@@ -1,4 +1,4 @@
-"""A machine on HAL, driven by the only loop that owns its bridge.
+"""Machine on HAL; its cycle is the only loop that uses the HAL bridge.
 
 Inputs, outputs, pots and the operator station are HAL pins with the names of the machine file.
 """
@@ -26,7 +26,7 @@ from drivers.port_checks import LOG_ROWS, SampleLog, find_output, require_output
 
 
 class HalTerminals:
-    """The ``core.ports.DigitalIO`` and ``Station`` on HAL pins."""
+    """Inputs, outputs and operator station on HAL pins (``core.ports.DigitalIO`` and ``Station``)."""
 
     def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
         self._config = config
@@ -56,10 +56,12 @@ class HalTerminals:
     def write(self, name: str, is_on: bool) -> None:
         """Switch one output.
 
-        Raises DriverError if the machine file does not define the output, or if the output is to be
-        switched on while the bridge is silent. While the E-stop chain is open, an output with a safe state
-        can only be switched to this state, unless it is a lamp; otherwise raises DriverError. Also raises
-        DriverError if the bridge has ended.
+        Raises DriverError in these cases:
+
+        - The machine file does not define the output.
+        - The output is to be switched on while the bridge is silent, or the bridge has ended.
+        - The E-stop chain is open, and the new state is not the safe state. A lamp may still be switched, as
+          may an output without a safe state.
         """
         output = find_output(name, self._config.outputs)
         require_output_allowed(name, is_on, self._link.failure_reason)
@@ -106,7 +108,7 @@ class HalTerminals:
 
 
 class HalSamples:
-    """The ``core.ports.SampleSource`` of HAL, with one sample for each period of the servo thread."""
+    """Scope samples of HAL (``core.ports.SampleSource``), one for each period of the servo thread."""
 
     def __init__(self, axes: HalAxes, period: float) -> None:
         self.sample_rate_hz = 1.0 / period
@@ -201,7 +203,7 @@ class HalMachine:
 def _create_spindle_c(
     config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink
 ) -> HalSpindleCAxis | None:
-    """Create the C axis of the spindle drive, or return None if C is absent or has its own drive."""
+    """Create the C axis on the spindle drive, or return None if C is absent or has its own drive."""
     number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
     if number is None:
         return None

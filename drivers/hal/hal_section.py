@@ -51,7 +51,7 @@ class BridgePin:
 
 @dataclass(slots=True)
 class HalSection:
-    """The contents of the section: components, order of calls, parameter values and connections."""
+    """TurnDesk's section of a HAL file: components, order of calls, parameter values and connections."""
 
     module_instances: dict[str, list[str]] = field(default_factory=dict)  # Instances by component.
     loadrt_lines: list[str] = field(
@@ -88,7 +88,7 @@ class HalSection:
         return f"{BRIDGE_COMPONENT}.{name}"
 
     def add_sample_column(self, kind: str, signal: str) -> None:
-        """Add a column to the samples."""
+        """Add a column to the sample rows that HAL sends to the bridge."""
         self.connect_pins(signal, f"sampler.0.pin.{len(self.sample_columns)}")
         self.sample_columns += {FLOAT: "f", BIT: "b", COUNT: "s"}[kind]
 
@@ -206,7 +206,7 @@ def _chain(border: HalSection, config: HalConfig) -> None:
 
 
 def _watchdog_delay(config: HalConfig) -> float:
-    """Return the time in seconds that the slowest axis needs to brake, with a reserve."""
+    """Return the longest braking time of an axis plus a reserve, in seconds, for the watchdog."""
     return _BRAKING_RESERVE_S + max(axis.vmax / axis.amax for axis in config.driven_axes)
 
 
@@ -223,7 +223,7 @@ def _add_estop(border: HalSection, config: HalConfig) -> None:
 
 
 def _reached_signal(border: HalSection, config: HalConfig) -> str:
-    """Return the signal that is on while the E-stop is released and its input is up to date.
+    """Return the signal that is on while the E-stop is released and the inputs are up to date.
 
     An E-stop input that is frozen counts as pressed.
     """
@@ -237,7 +237,7 @@ def _reached_signal(border: HalSection, config: HalConfig) -> str:
 
 
 def _add_or(border: HalSection, name: str, signals: list[str]) -> str:
-    """Return a signal that is on when any of the given signals is on."""
+    """Add gates that combine signals by "or", and return the resulting signal."""
     so_far = signals[0]
     for index, signal in enumerate(signals[1:]):
         both = f"{name}-{index}"
@@ -342,9 +342,9 @@ def _spindle(border: HalSection, config: HalConfig) -> None:
 
 
 def _add_spindle_turns(border: HalSection, config: HalConfig) -> None:
-    """Connect the commands that run, orient or position the spindle.
+    """Connect the spindle commands for speed, orientation and position mode.
 
-    An open chain disables all of these commands.
+    An open E-stop chain disables all of these commands.
     """
     pins, path = config.spindle.pins, "hal.spindle"
     border.add_bridge_pin("spindle.speed", FLOAT, "out", "td-wanted-rpm")

@@ -1,4 +1,4 @@
-"""A session of HAL: halrun with the machine's file and TurnDesk's section, and a bridge socket.
+"""HAL session: halrun with the machine's HAL file and TurnDesk's section, and a bridge socket.
 
 The owner of a session locks its folder, so a folder without a lock belongs to a control that was killed.
 The bridge of such a session detects the loss and shuts down the machine. A new session can begin only after
@@ -64,7 +64,7 @@ def create_session_folder() -> tuple[Path, int]:
 
 
 def remove_old_folders(should_continue: Callable[[], bool]) -> None:
-    """Remove the folders of sessions without a control, as soon as their processes have ended.
+    """Remove the folders of sessions whose control has ended, as soon as their processes have ended.
 
     ``should_continue`` is called between two checks and must wait briefly. When it returns False, folders
     with running processes remain.
@@ -253,7 +253,7 @@ class HalSession:
         ours.setblocking(False)
 
     def _write(self, config: HalConfig, fd: int, zero: float, *, check_only: bool) -> None:
-        """Write the files of the session."""
+        """Write the session's files, including the HAL file and the bridge configuration."""
         border = build_section(config)
         try:
             machine = config.hal_file.read_text(encoding="utf-8")
@@ -349,7 +349,7 @@ class HalSession:
         raise DriverError(words, "hal-setup")
 
     def _read_output(self) -> str:
-        """Return the last lines of the output of halrun that explain a failure."""
+        """Return the last lines of halrun's output, which explain why HAL failed."""
         try:
             lines = (self._folder / "halrun.log").read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:

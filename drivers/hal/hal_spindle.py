@@ -1,12 +1,12 @@
-"""The spindle on HAL: speed, index, orientation, and C on the spindle drive.
+"""Spindle on HAL: speed, index, orientation, and C axis on the spindle drive.
 
-An angle is sent to the pins of LinuxCNC's component ``orient``. The HAL file alone defines how the spindle
-turns to this angle and when ``is_oriented`` turns on.
+For orientation, the angle is sent to the pins of LinuxCNC's component ``orient``. The HAL file defines how
+the spindle turns to this angle and when ``is_oriented`` turns on.
 
-The drive changes to position mode at standstill. ``hal.spindle.position_mode`` requests C, and
-``in_position_mode`` reports C if the machine file names this pin. While C is released, its count does not
-change. While C is engaged, it is an additional axis, whose feedback is the spindle encoder with 360 per
-revolution.
+For C, the drive changes to position mode at standstill. ``hal.spindle.position_mode`` requests this mode.
+``in_position_mode`` confirms it, if the machine file names this pin. While C is released, its count does
+not change. While C is engaged, it is an additional axis with the spindle encoder as feedback (360 degrees
+per revolution).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _STANDSTILL_RPM = 2.0  # rpm
 
 
 class HalOrientation:
-    """The ``core.ports.OrientingSpindle`` on HAL.
+    """Port that orients the spindle on HAL (``core.ports.OrientingSpindle``).
 
     ``update`` is called once per cycle.
     """
@@ -43,8 +43,8 @@ class HalOrientation:
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Orient the spindle to an angle in degrees.
 
-        Raises DriverError with a fault or an open chain, and while the spindle turns, except while an
-        orientation is already active.
+        Raises DriverError if a fault is active or the E-stop chain is open. Also raises DriverError while
+        the spindle turns, unless it is already being oriented.
         """
         self._spindle.require_ready()
         if self._order is None and _is_turning(self._spindle):
@@ -82,7 +82,7 @@ class HalOrientation:
 
 
 class HalSpindle:
-    """The ``core.ports.Spindle`` on HAL, which does not restart automatically after an E-stop."""
+    """Spindle port on HAL (``core.ports.Spindle``), which does not restart after an E-stop."""
 
     def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
         self._config = config.spindle
@@ -94,7 +94,7 @@ class HalSpindle:
         self._unknown: tuple[float, float] | None = None  # Angle reported before the index is known.
 
     def update(self) -> None:
-        """Clear the command while the chain is open, and update the index."""
+        """Cancel the commanded speed if the E-stop chain is open, and update the index."""
         if self._link.last_report.get("ok") is not True:
             self.commanded_rpm = 0.0
         self.spindle_index.update()
@@ -112,7 +112,7 @@ class HalSpindle:
             self._link.send_command("spindle", rpm=self.commanded_rpm, on=bool(self.commanded_rpm))
 
     def require_ready(self) -> None:
-        """Raise DriverError if the spindle has a fault or the chain is open."""
+        """Raise DriverError if the spindle has a fault or the E-stop chain is open."""
         require_spindle_ready(self.read_fault() or self._axes.fault)
         if self._link.last_report.get("ok") is not True:
             raise DriverError(
@@ -145,7 +145,7 @@ class HalSpindle:
         """Return the time and the revolutions of the spindle encoder, or None without an encoder.
 
         With an index, the number of revolutions is whole at the index. Before the index is known, an old
-        reading is returned, so that a thread waits for a new reading.
+        reading is returned, so that a threading pass waits for a new reading.
         """
         if not self._config.has_encoder or self._axes.spindle_sample is None:
             return None
@@ -157,7 +157,7 @@ class HalSpindle:
         return t, turns - self._axes.index_rev
 
     def read_fault(self) -> str:
-        """Return the fault of the spindle, or an empty string."""
+        """Return the fault of the spindle, or an empty string if there is no fault."""
         if why := self._link.failure_reason:
             return why
         if self.spindle_index.failure:
@@ -181,9 +181,9 @@ _SETTLING_TIME_S = 0.02  # Seconds until the compensated jump is also reported.
 
 
 class SpindleIndex:
-    """The index of the spindle.
+    """Index of the spindle encoder.
 
-    ``is_known`` becomes True when the index has passed, or immediately without an index.
+    ``is_known`` becomes True when the index has passed, or immediately if the encoder has no index.
     """
 
     def __init__(self, axes: HalAxes, link: HalLink, *, wired: bool) -> None:
@@ -245,7 +245,7 @@ _STOP_TIME_S = 0.05  # Seconds after a motion until it counts as complete.
 
 
 class HalSpindleCStep(Enum):
-    """The steps of the change between spindle and C."""
+    """Step of the change between spindle mode and C axis mode."""
 
     SPINDLE_MODE = "the drive is running as the spindle drive"
     FIND_INDEX = "searching for the encoder index"
@@ -256,7 +256,7 @@ class HalSpindleCStep(Enum):
 
 
 class HalSpindleCAxis:
-    """The ``core.ports.SpindleCAxis`` of the spindle drive.
+    """Port that runs the spindle drive as the C axis (``core.ports.SpindleCAxis``).
 
     ``update`` is called once per cycle.
     """
@@ -336,7 +336,7 @@ class HalSpindleCAxis:
         self._enter(HalSpindleCStep.CHANGE_MODE)
 
     def _engage_c(self) -> None:
-        """Engage C when HAL plays its setpoint at the spindle position and the drive follows it."""
+        """Engage C as soon as HAL plays the spindle position as its setpoint and the drive follows."""
         c_position = self._link.last_report.get("c_at") if self._link.is_executed(self._order) else None
         if isinstance(c_position, float | int) and (not self._told or self._link.read_bit(self._told)):
             self._hold_at(float(c_position))
@@ -363,7 +363,7 @@ class HalSpindleCAxis:
             self._enter(HalSpindleCStep.ENGAGED)
 
     def _angle_to_position(self, count: float) -> float:
-        """Return the shortest angle in degrees to the position at which the index matches ``count``."""
+        """Return the shortest angle, in degrees, through which the spindle must turn to the C count."""
         reading = self._spindle.read_angle()
         phase = _DEGREES_PER_REV * reading[1] if reading is not None else count
         return math.remainder(count - phase, _DEGREES_PER_REV)

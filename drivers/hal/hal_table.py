@@ -116,9 +116,9 @@ class HalSpindlePins:
 
 @make_key_table
 class HalTable:
-    """The settings of a machine on LinuxCNC's HAL, with times in seconds.
+    """Settings of a machine on LinuxCNC's HAL, with times in seconds.
 
-    ``ahead`` is the duration of the setpoints that HAL buffers.
+    ``ahead`` is how many seconds of setpoints are buffered in HAL.
     """
 
     file: str = declare_key(meaning="HAL file, in the folder of the machine file.")
@@ -214,7 +214,7 @@ _DRIVEN_PATTERN = re.compile(
 
 
 def _check_names(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about invalid pin names and pins with two sources."""
+    """Yield findings about invalid pin names, and about pins that two sources would drive."""
     driven: dict[str, str] = {}
     for path, pin in _iterate_pins(file):
         ours = path.startswith("hal.") or file.values.has_text("machine.backend", "hal")

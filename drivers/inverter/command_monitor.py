@@ -19,12 +19,12 @@ def add_estop_request(reason: str) -> str:
 
 
 class CommandMonitor:
-    """A monitor that checks whether an inverter follows its commands.
+    """Monitor that checks whether an inverter follows its commands.
 
-    ``record_command`` records a command, and ``check_poll`` checks a poll. On a slow line, a poll is as old
-    as the duration of its exchange. The permitted second therefore starts after the exchange, and a
-    decreasing speed is compared with the first poll after the command. ``setpoint_step_hz`` is the
-    resolution of the reported setpoint in Hz.
+    ``record_command`` records a command, and ``check_poll`` checks a poll. On a slow line, the values of a
+    poll are as old as the duration of its exchange. The one second that the inverter has to react therefore
+    starts after the exchange, and a decreasing speed is compared with the first poll after the command.
+    ``setpoint_step_hz`` is the resolution of the reported setpoint in Hz.
     """
 
     def __init__(self, setpoint_step_hz: float = 0.01) -> None:
@@ -51,10 +51,9 @@ class CommandMonitor:
             self._since = time_s
 
     def check_poll(self, time_s: float, state: InverterState, exchange_s: float = 0.0) -> str:
-        """Return the reason why the inverter has not followed its command for too long.
+        """Return a fault text if the inverter has not followed its command in time, else an empty string.
 
-        The permitted time is one second plus ``exchange_s``, the duration of one exchange in seconds. The
-        result is an empty string while the inverter may still follow the command.
+        The permitted time is one second plus ``exchange_s``, the duration of one exchange in seconds.
         """
         if self._unseen:  # The motor may still have accelerated when the command was sent.
             self._lowest, self._unseen = max(self._lowest, state.output_hz), False
@@ -131,7 +130,7 @@ class CommandMonitor:
         return ""
 
     def _is_decelerating(self, state: InverterState) -> bool:
-        """Return whether the output is below its lowest value since the command by more than a ripple."""
+        """Return whether the output has fallen below its lowest value so far by more than its ripple."""
         return state.output_hz < self._lowest * (1.0 - _SPEED_DROP_FRACTION)
 
 

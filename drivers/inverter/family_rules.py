@@ -26,7 +26,7 @@ RegisterAddress = tuple[str, int]  # "register" or "coil", and its number
 
 
 def check_family(table: FamilyTable) -> Iterator[FileFinding]:
-    """Yield the findings about a family table in which all values have the right type."""
+    """Yield findings about invalid or contradictory values in a table whose types are correct."""
     said = table.line.parity.split()
     if not said or not set(said) <= _PARITIES:
         yield _finding("line.parity", 'expected one or more of "N", "E" and "O"')

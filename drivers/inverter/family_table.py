@@ -87,7 +87,7 @@ class CurrentKeys:
 
 @make_key_table
 class StateKeys:
-    """A state of the inverter: a coil that is on, or a register that has one of several values."""
+    """Condition for an inverter state: a coil that is on, or a register with one of several values."""
 
     register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the register.")
     coil: int = declare_key(
@@ -179,7 +179,7 @@ class ParameterKeys:
 
 @make_key_table
 class TopKeys:
-    """The parameter that limits the output frequency."""
+    """Parameter of the inverter that limits its output frequency."""
 
     name: str = declare_key(meaning="Number of the parameter at the keypad.")
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")

@@ -1,9 +1,14 @@
 """Huanyang HY inverters, which use their own frames with the CRC of Modbus.
 
-The protocol follows LinuxCNC's hy_vfd and the list of Bouni. A frame consists of unit, function, length,
-data and CRC. Functions 1 and 2 read and write a parameter PDnnn, function 3 controls the inverter and
-returns its state, function 4 reads a value, and function 5 sets the frequency. A response names the
-requested parameter or value, so an old response is detected.
+The protocol follows LinuxCNC's hy_vfd and the register list published by Bouni. A frame consists of unit,
+function, length, data and CRC. The functions are:
+
+- 1 and 2: read and write a parameter PDnnn
+- 3: control the inverter and return its state
+- 4: read a value
+- 5: set the frequency
+
+A response names the requested parameter or value, so a response to an earlier request is detected.
 """
 
 from __future__ import annotations

@@ -30,10 +30,9 @@ _RESTART_TIME_S = 3.0  # Seconds in which an inverter may be silent after a rese
 
 @dataclass(frozen=True, slots=True)
 class PolledState:
-    """The state from the last poll, with its time.
+    """State of the inverter from the last poll, with the time of the poll.
 
-    ``commands_sent_before_s`` is a time in seconds. All commands before this time had been sent when the
-    poll began.
+    When the poll began, all commands that were issued before ``commands_sent_before_s`` had been sent.
     """
 
     time_s: float
@@ -166,10 +165,7 @@ class InverterControl:
         self.failure = ""
 
     def discard_state(self) -> None:
-        """Discard the known state of the inverter.
-
-        A new state may not be available for a few seconds.
-        """
+        """Discard the known state of the inverter and permit silence until it has restarted."""
         self.clear_fault()
         self._told, self.last_poll, self.silence_allowed_until = (
             None,
@@ -309,7 +305,7 @@ _CLOSE_TIMEOUT_S = 3.0  # Seconds for the longest exchange with its retries.
 
 
 class InverterThread:
-    """A thread that repeats the exchanges without a pause.
+    """Thread that repeats the exchanges with the inverter without a pause.
 
     The line limits the rate of requests.
     """

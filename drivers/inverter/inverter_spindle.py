@@ -35,12 +35,15 @@ class SpindleEncoder(Protocol):
 
 
 class InverterSpindle:
-    """The ``core.ports.Spindle`` of an inverter.
+    """Spindle port (``core.ports.Spindle``) of an inverter.
 
-    Without an encoder, its speed is the inverter's output. ``is_thread_alive`` returns whether the inverter
-    is still monitored, and ``restart_thread`` restarts the monitoring. ``is_estop_pressed`` returns whether
-    the E-stop is pressed. ``get_encoder_fault`` returns the reason why the encoder is invalid, which is a
-    fault while the spindle turns or must turn.
+    Without an encoder, its speed is the inverter's output. The functions that it receives are:
+
+    - ``is_thread_alive`` returns whether the inverter is still monitored.
+    - ``restart_thread`` restarts the monitoring.
+    - ``is_estop_pressed`` returns whether the E-stop is pressed.
+    - ``get_encoder_fault`` returns why the encoder is invalid, which is a fault while the spindle turns
+      or must turn.
     """
 
     def __init__(
@@ -141,9 +144,10 @@ class InverterSpindle:
         return self._encoder.read_angle()
 
     def read_fault(self) -> str:
-        """Return the fault with the instruction for the operator, or an empty string.
+        """Return the fault and the instruction for the operator, or an empty string if there is no fault.
 
-        This method is called continuously, so an E-stop also cancels the commanded speed.
+        This method is called continuously, so it also cancels the commanded speed when the E-stop is
+        pressed.
         """
         attendant = self._attendant
         if self._estop():

@@ -69,7 +69,7 @@ def encode_loopback(value: int) -> bytes:
 
 
 def find_response(buffer: bytes, unit: int, function: int) -> bytes | None:
-    """Return the first complete response to ``function`` in the buffer, or None if there is none.
+    """Return the first complete response to ``function`` in the received bytes, or None.
 
     Noise before and after the response is ignored.
     """
@@ -124,10 +124,10 @@ def return_false() -> bool:
 
 
 class ModbusMaster:
-    """A Modbus RTU master.
+    """Modbus RTU master.
 
-    ``is_stop_pending`` returns whether a stop is pending; a pending stop ends the retries of a read. A
-    write with ``is_canceled_by_stop`` is then not sent or repeated, and raises RequestWithheldError.
+    ``is_stop_pending`` returns whether a stop is pending. A pending stop ends the retries of a read. It
+    also cancels a write with ``is_canceled_by_stop``, which then raises RequestWithheldError.
     """
 
     def __init__(

@@ -133,7 +133,7 @@ class RegisterInverter:
         )
 
     def _describe_trip(self, words: Mapping[int, int]) -> str:
-        """Return the text of the fault code.
+        """Return the fault text of the inverter for its fault code.
 
         In a family without a fault state, code 0 means no fault, and the result is an empty string.
         """

@@ -1,1 +1,1 @@
-"""The backend that connects the ports to the simulated machine."""
+"""Backend that runs TurnDesk on the simulated machine instead of real hardware."""

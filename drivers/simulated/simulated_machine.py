@@ -38,7 +38,7 @@ class _PlantPort:
 
 
 class SimAxes(_PlantPort):
-    """The ``core.ports.AxisSink`` of the simulated machine."""
+    """Axis port (``core.ports.AxisSink``) of the simulated machine."""
 
     def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant)
@@ -114,7 +114,7 @@ class SimAxes(_PlantPort):
 
 
 class SimGear(_PlantPort):
-    """The ``core.ports.SpindleGear`` of the simulated machine."""
+    """Port for axes that follow the spindle (``core.ports.SpindleGear``) on the simulated machine."""
 
     def mesh(self, cam: Cam) -> None:
         """Make the axes follow the spindle.
@@ -133,7 +133,7 @@ class SimGear(_PlantPort):
 
 
 class SimSamples(_PlantPort):
-    """The ``core.ports.SampleSource`` of the simulated machine.
+    """Scope samples (``core.ports.SampleSource``) of the simulated machine.
 
     Sampling starts with the first request.
     """
@@ -152,7 +152,7 @@ class SimSamples(_PlantPort):
 
 
 class SimSpindlePort(_PlantPort):
-    """The ``core.ports.Spindle`` of the simulated machine."""
+    """Spindle port (``core.ports.Spindle``) of the simulated machine."""
 
     def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
@@ -200,7 +200,7 @@ def _require_spindle(plant: SimulatedPlant) -> None:
 
 
 class SimOrientation(_PlantPort):
-    """The ``core.ports.OrientingSpindle`` of the simulated machine."""
+    """Port that orients the spindle (``core.ports.OrientingSpindle``) of the simulated machine."""
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Orient the spindle to an angle in degrees.
@@ -227,7 +227,7 @@ class SimOrientation(_PlantPort):
 
 
 class SimIO(_PlantPort):
-    """The ``core.ports.DigitalIO`` of the simulated machine."""
+    """Input and output port (``core.ports.DigitalIO``) of the simulated machine."""
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name, with True for an active input."""
@@ -251,7 +251,10 @@ class SimIO(_PlantPort):
 
 
 class SimTouch(_PlantPort):
-    """The ``core.ports.TouchInput`` of the simulated machine, with the time resolution of the model."""
+    """Probe port (``core.ports.TouchInput``) of the simulated machine.
+
+    The time resolution of a touch is that of the model.
+    """
 
     def arm_latch(self) -> None:
         """Clear the latched touch, so that the next touch is latched."""
@@ -270,7 +273,7 @@ class SimTouch(_PlantPort):
 
 
 class SimStation(_PlantPort):
-    """The ``core.ports.Station`` of the simulated machine."""
+    """Operator station (``core.ports.Station``) of the simulated machine."""
 
     def read_state(self) -> StationState:
         """Return the current state of the operator station."""
@@ -282,7 +285,7 @@ class SimStation(_PlantPort):
 
 
 class Simulation(NamedTuple):
-    """The ports for the executor, and the controls with which a test or operator acts on the machine."""
+    """Ports of the simulated machine for the executor, and controls for tests and the operator."""
 
     ports: MachinePorts
     machine: PlantControls

@@ -110,7 +110,7 @@ def _read(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _list_paths(file: MachineFileReading, name: str = "sim.faults") -> list[str]:
-    """Return the paths of the entries of a list, numbered from 1."""
+    """Return the machine-file paths of the entries of a list, numbered from 1."""
     entries = file.raw(name)
     return [f"{name}.{n}" for n in range(1, len(entries) + 1)] if isinstance(entries, list) else []
 

@@ -194,7 +194,7 @@ class AxisDrive:
         )
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Apply a value that the host has written to an object."""
+        """Store a value that the host has written to an object, and carry out its effect."""
         self.values[index, subindex] = value
         if index == od.CONTROL:
             self._control(value)
@@ -420,7 +420,7 @@ class AxisDrive:
             self.power_states.end_braking()
 
     def _hold_position(self) -> None:
-        """Set the setpoint to the current position, and clear the queue after power-up."""
+        """Make the current position the setpoint, and clear the record queue, as after power-up."""
         self.setpoint_position, self.setpoint_velocity = self.servo_axis.reading, 0.0
         self.record_queue.clear()
 

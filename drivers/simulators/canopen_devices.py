@@ -137,7 +137,7 @@ ENCODER_REVOLUTION_COUNT = 4096  # Number of revolutions after which the positio
 class SimulatedEncoder:
     """Simulated CiA 406 encoder on the spindle.
 
-    ``stuck`` is the position of the encoder while its coupling is detached, and None while it is attached.
+    While its coupling is detached, ``stuck`` is the constant position of the encoder; otherwise it is None.
     """
 
     def __init__(self, plant: SimulatedPlant, counts_per_rev: int) -> None:

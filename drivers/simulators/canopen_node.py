@@ -44,7 +44,7 @@ class NodeDevice(Protocol):
 
 
 class DeviceNetwork(canopen.Network):
-    """CANopen network without a receiving thread and without periodic tasks.
+    """CANopen network without a receiver thread and without periodic tasks.
 
     ``CanopenDevices.process_frames`` receives frames, and ``DeviceNode.run_cycle`` sends heartbeats.
     """
@@ -78,7 +78,7 @@ _SIGNED = frozenset(datatypes.SIGNED_TYPES)
 
 
 class _ReceivePdo(NamedTuple):
-    """RPDO and the objects that are mapped to it."""
+    """PDO that the node receives (RPDO), with the objects that are mapped to it."""
 
     pdo_number: int
     waits_for_sync: bool  # The RPDO takes effect at the next SYNC.
@@ -86,7 +86,7 @@ class _ReceivePdo(NamedTuple):
 
 
 class _TransmitPdo(NamedTuple):
-    """TPDO that is sent once per ``sync_divisor`` SYNCs, and its mapped objects."""
+    """PDO that the node sends every ``sync_divisor`` SYNCs (TPDO), with its mapped objects."""
 
     cob_id: int
     sync_divisor: int

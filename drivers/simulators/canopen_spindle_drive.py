@@ -23,7 +23,7 @@ _DEGREES_PER_REV = 360.0
 
 
 class SpindleServo(SimulatedServo):
-    """Spindle as an axis in degrees, which follows its setpoints exactly and homes on its index."""
+    """Spindle as a rotary axis in degrees; it follows its setpoints exactly and homes on its index."""
 
     def __init__(self, axis: SimAxis, motor: SpindleMotor) -> None:
         super().__init__(axis)
@@ -41,7 +41,7 @@ class SpindleServo(SimulatedServo):
         self.p, self.v = self.place, 0.0
 
     def set_switch_position(self, homing_method: int) -> None:
-        """Set the home position: the next index for an index method, otherwise the current position."""
+        """Set the home position: the next index, or the current position if the method uses no index."""
         ahead = (math.floor(self._motor.revolutions + 1e-9) + 1) * _DEGREES_PER_REV - self._zero
         self.switch = ahead if homing_method in _INDEX else self.p
 
@@ -139,10 +139,7 @@ class SimulatedSpindleDrive:
             self.power_states.apply_control_word(value)
 
     def _change_mode(self, mode: int) -> None:
-        """Change the mode of operation if the drive is at rest.
-
-        The spindle must be at standstill, and the drive must not be executing position setpoints.
-        """
+        """Change the mode of operation if the spindle is at standstill and executes no setpoints."""
         if mode == self.operation_mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
             return
         self.operation_mode = mode
@@ -164,18 +161,12 @@ class SimulatedSpindleDrive:
 
     @property
     def is_idle(self) -> bool:
-        """Return whether the drive stays unchanged until the next event.
-
-        The event is the arrival of a frame or a change of the motor speed.
-        """
+        """Return whether the drive will not change until a frame arrives or the motor speed changes."""
         obeyed = self.power_states.is_powered == (self._ordered is not None)
         return obeyed and not self.is_axis_mode and not self.power_states.is_braking
 
     def advance(self, now: float) -> None:
-        """Command the motor speed that the mode and the power state require.
-
-        At standstill of the motor, braking ends.
-        """
+        """Command the motor speed that the mode and power state require; end braking at standstill."""
         dt, self.last_step_s = now - self.last_step_s, now
         if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:
             self.power_states.enter_fault()

@@ -47,7 +47,7 @@ def execute_realtime_byte(firmware: GrblFirmware, byte: int) -> None:
 def _stop_motion(m: GrblFirmware) -> None:
     """Stop without deceleration, and clear most alarms.
 
-    While a thread waits for its index, the controller restarts instead.
+    While a threading block waits for the spindle index, the controller restarts instead.
     """
     if m.is_reset_required:
         return
@@ -142,7 +142,7 @@ def _home(m: GrblFirmware, until: float, axes: int) -> None:
 
 
 def _waits_for_index(m: GrblFirmware, block: PlannedBlock) -> bool:
-    """Return whether a thread is waiting to start at the second spindle index after its request.
+    """Return whether a threading block waits for the second spindle index after its request.
 
     The controller processes no bytes during this wait. If the index is missing for 5 s, alarm 14 is raised.
     """
@@ -170,9 +170,8 @@ _BUSY_STATES = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 class ReportGenerator:
     """Generator of status reports, which decides when a report includes offsets and overrides.
 
-    Both are included at intervals and after a change. If both are due at once, the next report includes the
-    offsets. A full report includes both. Firmware of 2023 delayed the overrides and never included them in
-    a full report.
+    Both are included at intervals and after a change. If both are due, the offsets come first. A full
+    report includes both. Firmware of 2023 delayed the overrides and never included them in a full report.
     """
 
     reports_until_offsets: int = 0
@@ -433,7 +432,7 @@ class GrblFirmware:
 
     @property
     def is_waiting_for_index(self) -> bool:
-        """Return whether a thread is waiting for the spindle index."""
+        """Return whether a threading block is waiting for the spindle index."""
         return self.index_wait_start_s is not None
 
     @property

@@ -24,7 +24,7 @@ _STRAIGHT = 0.999999  # Cosine beyond which a corner counts as straight or as a 
 
 @dataclass(slots=True)
 class PlannedBlock:
-    """Block in the planner, whose path is a function of the distance in mm from the start of the block.
+    """Block in the planner, with its path as a function of the distance traveled in mm.
 
     If ``is_per_rev`` is true, ``max_speed`` is in mm per revolution. A block with ``is_thread`` waits for
     the spindle index.
@@ -149,7 +149,7 @@ class GrblMotion:
         self._go(self.speed * seconds)
 
     def _limits(self, block: PlannedBlock, at: float) -> tuple[float, float]:
-        """Return the speed and acceleration limits of a block at a distance of ``at`` mm from its start.
+        """Return the axis limits of speed and acceleration for a block, ``at`` mm from its start.
 
         The limits of a straight line are constant.
         """
@@ -164,7 +164,7 @@ class GrblMotion:
     def _target_speed(self, block: PlannedBlock, max_speed: float, turns_per_s: float) -> float:
         """Return the speed of a block in mm/s, limited to ``max_speed``.
 
-        Overrides do not affect jogs and threads.
+        Overrides do not affect jogs and threading blocks.
         """
         speed = min(block.max_speed * turns_per_s if block.is_per_rev else block.max_speed, max_speed)
         if block.is_rapid:
@@ -172,7 +172,7 @@ class GrblMotion:
         return speed if block.is_jog or block.is_thread else min(speed * self.feed_override, max_speed)
 
     def _limit_in_direction(self, first: int, heading: Position) -> float:
-        """Return the limit along a direction that results from the settings of X and Z.
+        """Return the axis limit along a direction, calculated from the settings of X and Z.
 
         The calculation is the same as in ``planner.c`` of grblHAL. ``first`` is the number of the setting
         for X.

@@ -26,7 +26,7 @@ from drivers.simulators.spindle_motor import SimulatedSpindle
 
 
 class ProgramController(Protocol):
-    """Members of the controller that the line interpreter uses."""
+    """Interface of the controller for the line interpreter."""
 
     behavior: SimulatorBehavior
     registers: SettingRegisters
@@ -436,7 +436,7 @@ class LineInterpreter:
 def _waits_for_rest(line: str) -> bool:
     """Return whether a line must wait until the planner is empty.
 
-    This applies to M functions except M64 and M65, and to dwells and threads.
+    This applies to M functions except M64 and M65, and to dwells and threading blocks.
     """
     words = {(letter, float(value)) for letter, value in _WORD.findall(line) if letter in "GM"}
     return any(

@@ -19,8 +19,8 @@ from drivers.simulators.spindle_motor import SimulatedSpindle
 class SimulatorBehavior:
     """Behavior of the simulator that tests can change.
 
-    The default values are those of the simulator that is part of the firmware, but with an encoder,
-    auxiliary ports and the settings of a machine file.
+    By default, the simulator behaves like the one that is part of the firmware. In addition, it has an
+    encoder, auxiliary ports and the settings of a machine file.
     """
 
     encoder: bool = True
@@ -117,7 +117,7 @@ _STANDSTILL_RPM = 1.0  # rpm
 
 
 class WaitContext(Protocol):
-    """Members of the controller that a wait reads."""
+    """Values of the controller that a spindle or coolant wait reads."""
 
     registers: SettingRegisters
     spindle: SimulatedSpindle
@@ -132,7 +132,7 @@ class WaitContext(Protocol):
 
 @dataclass(slots=True)
 class FunctionWait:
-    """Wait within a function; it ends after ``remaining_s`` seconds or when the spindle is at speed.
+    """Wait of an M function; it ends after ``remaining_s`` seconds or when the spindle is at speed.
 
     The wait ends at speed only if ``tolerance_percent`` is greater than 0.
     """

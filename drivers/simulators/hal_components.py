@@ -1,4 +1,4 @@
-"""Simulated LinuxCNC components that TurnDesk's section of the HAL file uses.
+"""Simulated versions of the LinuxCNC components in TurnDesk's section of the HAL file.
 
 The components operate on cells, which replace the HAL signals, and follow the LinuxCNC sources of 2026.
 ``limit3`` approaches its limits in a simpler manner.
@@ -65,7 +65,7 @@ _FORMULAS = {
 
 
 class ThreadProgram:
-    """Function calls of a HAL thread in order, compiled into one function that operates on ``cells``."""
+    """Functions of a HAL thread, compiled in order into one function that operates on ``cells``."""
 
     def __init__(self, cells: SignalCells) -> None:
         self._cells = cells
@@ -80,7 +80,7 @@ class ThreadProgram:
     def add_component(
         self, component_type: str, name: str, pin_lookup: FindCellName, get_pin_value: Callable[[str], float]
     ) -> None:
-        """Append the function of one component.
+        """Append the function of one component to the thread.
 
         ``get_pin_value`` returns the configured value of a pin or parameter.
         """
@@ -218,9 +218,9 @@ def create_sampler(cells: SignalCells, fifo: RowFifo, pins: list[str]) -> Period
 def watchdog(
     cells: SignalCells, input_pin: str, enable_pin: str, ok_pin: str, timeout_s: float
 ) -> PeriodFunction:
-    """Return a function that clears ``ok_pin`` if the input does not change for ``timeout_s`` seconds.
+    """Return a function that turns ``ok_pin`` off if its input is unchanged for ``timeout_s`` s.
 
-    The output remains off until ``enable_pin`` is switched off and on again.
+    ``ok_pin`` remains off until ``enable_pin`` is switched off and on again.
     """
     was = [0.0, False, False]  # Seconds since the last change, the input, and enable.
 

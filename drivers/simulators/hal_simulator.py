@@ -40,7 +40,7 @@ _INDEX_REV = 0.3  # Position of the spindle's index in revolutions.
 
 
 class ServoThread:
-    """TurnDesk's section of the servo thread, whose functions run in the order of the HAL file.
+    """Servo thread with the functions of TurnDesk's section, in the order of the HAL file.
 
     The keys of ``cells`` are the names of signals or pins.
     """
@@ -114,7 +114,7 @@ class BridgePins:
 
 
 class _AxisCells(NamedTuple):
-    """Axis with the names of the cells of its pins; an empty name means that the pin does not exist."""
+    """Names of the cells for the pins of one axis; an empty name means that the pin does not exist."""
 
     name: str
     servo: SimulatedServo
@@ -292,10 +292,7 @@ class HalSimulator:
             self._set(self.config.hal_table.link_fault, True)
 
     def _coast(self, t: float, period: float) -> None:
-        """Simulate the reaction of the board's watchdog.
-
-        The axes coast, the spindle stops, and the outputs change to their safe states.
-        """
+        """Simulate the board's watchdog: axes coast, the spindle stops, outputs change to safe states."""
         for axis in self._axes:
             axis.servo.roll(period)
         if self._rpm:

@@ -136,10 +136,7 @@ class SimulatedPlant:
             return not moves and self.terminals.is_settled(now) and self.station_panel.is_settled(now)
 
     def _apply_faults(self, now: float) -> None:
-        """Apply the faults that are due at time ``now``.
-
-        The callback that applies the faults is disabled while it runs, to prevent recursion.
-        """
+        """Apply the faults that are due at time ``now``; nested calls are prevented."""
         due, self.apply_due_faults = self.apply_due_faults, None
         if due is not None:
             due(now)
@@ -306,7 +303,7 @@ class SimulatedPlant:
         self._k = until
 
     def _is_undisturbed(self) -> bool:
-        """Return whether the axes only follow time-based setpoints, so that single steps are not required."""
+        """Return whether the axes only follow time-based setpoints, so that they can be predicted."""
         ordered = self.enabled and self._off_at == _NO_TIME and self._homing is None and not self.fault
         return (
             ordered
@@ -385,9 +382,9 @@ class SimulatedPlant:
         return any(servo.cuts for servo in self.servos)
 
     def _setpoint(self, t: float) -> AxisMotion:
-        """Return the positions sent to the drives, the velocities and the queued positions at time ``t``.
+        """Return the setpoints for the drives, the velocities and the queued positions at time ``t``.
 
-        While the axes follow the spindle, the positions for the drives compensate for the following error.
+        While the axes follow the spindle, the setpoints for the drives compensate for the following error.
         """
         if not self.setpoint_queue.is_engaged:
             p, v = self.setpoint_queue.get_commanded_state(t)

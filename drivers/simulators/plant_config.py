@@ -64,12 +64,10 @@ class SimCollet:
 
 @dataclass(frozen=True, slots=True)
 class SimToolSetter:
-    """Configuration of a simulated tool setter.
+    """Configuration of a simulated tool setter, in mm.
 
-    The stylus center relative to part zero and the stylus width are in mm.
-
-    ``tip_positions`` contains, for each tool on the plate, the X and Z positions of the axes when the tool
-    tip is at part zero.
+    The stylus center is relative to part zero. ``tip_positions`` contains an (X, Z) pair for each tool on
+    the tool plate: the axis positions at which its tip is at part zero.
     """
 
     x_mm: float

@@ -49,7 +49,7 @@ class PlantControls(StationControls):
     # --- faults -------------------------------------------------------------------------------------------
 
     def jam(self, axis: str, jammed: bool = True) -> None:
-        """Block an axis mechanically, or free the axis."""
+        """Jam an axis mechanically, or end this fault."""
         with self._locked_time():
             self._servo(axis).jammed = jammed
 
@@ -68,7 +68,7 @@ class PlantControls(StationControls):
             self._servo(axis).runaway = speed
 
     def loose_gib(self, axis: str, play_mm: float) -> None:
-        """Give an axis a backlash of ``play_mm`` at each reversal; 0 ends the fault."""
+        """Simulate a loose gib: the slide loses ``play_mm`` at each reversal; 0 ends the fault."""
         with self._locked_time():
             servo = self._servo(axis)
             servo.worn.set_gib_play(play_mm, servo.p)
@@ -113,7 +113,7 @@ class PlantControls(StationControls):
             self._plant.trip_drives(f"{axis}: {text}")
 
     def spindle_bog(self, fraction: float) -> None:
-        """Limit the spindle to ``fraction`` of its commanded speed; a fraction of 1 ends the fault."""
+        """Limit the spindle to a fraction of its commanded speed, as under overload; 1 ends the fault."""
         with self._locked_time():
             self._plant.spindle.faults.speed_fraction = fraction
 

@@ -1,4 +1,4 @@
-"""Predicted motion of the simulated axes along one setpoint piece on which no limit acts.
+"""Motion of the simulated axes along one setpoint piece, predicted while no drive limit acts.
 
 One formula per moving axis then replaces the single steps, and the samples for the scope are calculated for
 many grid points at once.

@@ -1,9 +1,9 @@
-"""Simulated servo axis with a position loop, feed-forward, drive limits, encoder, wear and faults.
+"""Simulated servo axis with position loop, feed-forward, drive limits, encoder, wear and faults.
 
-``SimulatedServo.follow_setpoint`` advances a linear second-order difference equation by one step. While no
-limit of the drive acts, the solution is known: a steady part that follows the setpoint, and two decaying
-modes. One evaluation of ``ServoLoop`` therefore replaces any number of steps. Both results agree within
-rounding (1e-9 mm).
+``SimulatedServo.follow_setpoint`` calculates one step of a linear second-order model. While no drive limit
+acts, the model has a closed-form solution: the axis follows the setpoint with a steady lag, and two
+deviations decay. One evaluation of ``ServoLoop`` then replaces any number of steps. Both results agree
+within rounding (1e-9 mm).
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class SimulatedServo:
 
     @property
     def sound(self) -> bool:
-        """Return whether the axis, its drive and its encoder are free of faults."""
+        """Return whether the axis, its drive and its encoder have no fault."""
         worn = self.worn
         return not (
             self.jammed or self.runaway or worn.gib or worn.ripple or worn.missed or self.stuck is not None
@@ -85,7 +85,7 @@ class SimulatedServo:
         self.worn.slide_position += distance
 
     def lead(self, position: float, velocity: float, acceleration: float) -> float:
-        """Return the setpoint that moves the axis to ``position`` despite its following error.
+        """Return the setpoint that makes the axis reach ``position`` despite its following error.
 
         The calculation inverts ``follow_setpoint``. With ff as the feed-forward fraction and wn as the
         natural frequency, 2(1 - ff)v/wn compensates for the velocity v, and a/wn² compensates for the
@@ -180,7 +180,7 @@ class SimulatedServo:
         return self.worn.get_encoder_position(self.p) if self.worn.has_encoder_error else self.p
 
     def roll(self, seconds: float) -> None:
-        """Advance the axis without power by one step of ``seconds`` seconds, slowed down by friction."""
+        """Let the axis coast without power for one step of ``seconds`` seconds, slowed down by friction."""
         drop = 0.5 * self.axis.amax * seconds
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * seconds
@@ -189,10 +189,7 @@ class SimulatedServo:
         self.over = self.load = 0.0
 
     def settle_at(self, position: float) -> bool:
-        """Return whether the axis is at rest at the setpoint ``position``.
-
-        An axis that is very close to the setpoint is treated as at rest there and moved exactly to it.
-        """
+        """Settle the axis at ``position`` if it is almost there, and return whether it is at rest."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
         if abs(self._encoder_reading() - position) < _SETTLED_MM and abs(self.v) < _SETTLED_MM * self._wn:
@@ -342,11 +339,11 @@ RESPONSE_AT_REST = ServoResponse(0.0, 0.0, 0.0, 0.0)
 
 
 class ServoLoop:
-    """Difference equation of a position loop with damping 1.
+    """Position loop with damping 1, as a difference equation.
 
-    ``stiffness`` is the natural frequency times the step. ``feed_forward`` is the fraction of the velocity
-    that is sent to the drive. Raises ValueError if the stiffness is not positive, or if the loop would
-    oscillate (stiffness of 0.5 or more).
+    ``stiffness`` is the natural frequency times the duration of a step. ``feed_forward`` is the fraction of
+    the velocity that is sent to the drive. Raises ValueError if the stiffness is not positive, or if the
+    loop would oscillate (stiffness of 0.5 or more).
     """
 
     def __init__(self, stiffness: float, feed_forward: float) -> None:
@@ -375,7 +372,7 @@ class ServoLoop:
     def calculate_states_at(
         self, setpoints: SetpointPolynomial, response: ServoResponse, grid_point: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position at grid point ``grid_point``, the last move, and the change of that move.
+        """Return the position, the last move and its change at grid point ``grid_point``.
 
         A move is the distance from one grid point to the next. Lengths are in mm or degrees, and times are
         in grid intervals.

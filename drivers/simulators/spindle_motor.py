@@ -50,7 +50,7 @@ class OrientCommand(NamedTuple):
 
 
 class SimulatedSpindle(Protocol):
-    """Spindle interface for the controller of the spindle; rpm and revolutions are signed."""
+    """Interface of a simulated spindle; speeds and revolutions are signed."""
 
     @property
     def speed(self) -> float:
@@ -266,10 +266,10 @@ class SpindleMotor:
                 return
 
     def _oscillation_seconds(self, t: float, dt: float) -> float:
-        """Return the rotation that the speed oscillation adds during ``dt`` seconds from time ``t`` on.
+        """Return the additional rotation by the speed oscillation, as seconds at the constant speed.
 
-        The rotation is expressed as the number of seconds that it takes at constant speed. The fault
-        ``oscillation_fraction`` causes the oscillation.
+        The rotation is that from time ``t`` on during ``dt`` seconds. The fault ``oscillation_fraction``
+        causes the oscillation.
         """
         faults = self.faults
         if not faults.oscillation_fraction:

@@ -16,12 +16,13 @@ DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"
 
 @dataclass(frozen=True, slots=True)
 class TransferSettings:
-    """The settings for the transfer of a program, in addition to the line settings.
+    """Settings for the transfer of a program, in addition to the line settings.
 
-    ``delimiter`` is the line before and after a program. If it is empty, only silence marks the end. With
-    ``sends_dc_codes``, DC2 and DC4 are sent before and after a program, and DC1 and DC3 before and after
-    reception. With ``needs_dc1``, sending starts only after DC1 from the other side. ``leader_nul_count``
-    is the number of NULs before and after a program.
+    - ``delimiter`` is the line before and after a program. If it is empty, only silence marks the end.
+    - ``sends_dc_codes``: DC2 and DC4 are sent before and after a program, DC1 and DC3 before and after
+      reception.
+    - ``needs_dc1``: sending starts only after DC1 from the other side.
+    - ``leader_nul_count`` is the number of NULs before and after a program.
     """
 
     line_settings: LineSettings
@@ -104,7 +105,7 @@ _SKIPPED_CODES = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))
 
 
 class ReceptionPhase(StrEnum):
-    """The phases of a reception."""
+    """Phase of receiving a program."""
 
     WAITING = "waiting"  # Waiting for the first %.
     STORING = "storing"
@@ -131,11 +132,11 @@ class ReceivedText:
 
 
 class ProgramParser:
-    """A parser of received characters.
+    """Parser of received characters.
 
-    ``add_characters`` adds characters, and ``build_program`` returns the complete program. Call
-    ``handle_silence`` at the end of the input. On a line with eight bits, the first % shows the encoding:
-    25 hex means eight bits, and A5 hex means seven bits with even parity.
+    ``add_characters`` adds characters, ``handle_silence`` marks the end of the input, and ``build_program``
+    returns the complete program. On a line with eight bits, the first % shows the encoding: 25 hex means
+    eight bits, and A5 hex means seven bits with even parity.
     """
 
     def __init__(self, settings: TransferSettings) -> None:
@@ -188,7 +189,7 @@ class ProgramParser:
                 self._store(character)
 
     def handle_silence(self) -> None:
-        """Finish the program at the end of the input.
+        """End the program after a silence, which marks the end of the input.
 
         A final % needs no line end. Raises IncompleteError if the program has not begun or the final % is
         missing. Without a delimiter, no final % is required.
@@ -221,7 +222,7 @@ class ProgramParser:
         )
 
     def _split_text(self, text: bytes) -> tuple[bytes, list[bytes]]:
-        """Return the text after the first %, and the lines of the program."""
+        """Return the rest of the line with the first %, and the lines of the program."""
         lines = split_lines(text)
         if not self._wrap:
             return b"", lines
@@ -389,10 +390,7 @@ def encode_program(text: bytes, settings: TransferSettings) -> bytes:
 
 
 def _strip_framing(lines: list[bytes], wrap: bytes) -> list[bytes]:
-    """Return the lines without the delimiter lines that they already contain.
-
-    These delimiters would otherwise be sent twice.
-    """
+    """Return the lines without their own delimiter lines, which would otherwise be sent twice."""
     if lines and lines[0].strip() == wrap:
         lines = lines[1:]
     return lines[:-1] if lines and lines[-1].strip() == wrap else lines

@@ -61,7 +61,7 @@ class TransferState:
 
 
 class _Transfer:
-    """The base class of both transfer directions.
+    """Base class of the transfers for sending and receiving.
 
     Any thread may read ``progress``, because it is always replaced as a whole.
     """
@@ -161,7 +161,7 @@ class SendTransfer(_Transfer):
         self._tell(out, STOPPED_BY_RECEIVER if still > STOP_DETECTION_S else "")
 
     def _wait_for_room(self, waiting: int) -> None:
-        """Wait until the pending bytes are transmitted, or until the other side sends a character."""
+        """Wait until the pending bytes are transmitted or a character arrives, and handle that character."""
         self._handle_codes(
             self._wire.receive(min(max(waiting, 1) * self._settings.line_settings.character_time_s, CYCLE_S))
         )

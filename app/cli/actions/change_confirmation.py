@@ -1,7 +1,7 @@
-"""Check of suspicious offset changes on the command line.
+"""Command-line check of suspicious offset changes.
 
-A change beyond the travel is rejected. Any other suspicious change must be confirmed by --yes, or by Y on a
-terminal. The rules are the same as on the screen.
+A change that exceeds the axis travel is rejected. Any other suspicious change must be confirmed by --yes,
+or by Y on a terminal. The rules are the same as on the screen.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ OffsetChanges = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
 def confirm_changes(store: Store, args: argparse.Namespace, changes: OffsetChanges) -> None:
-    """Raise CommandError if a value exceeds the travel, or if a suspicious change is not confirmed.
+    """Raise CommandError if a value exceeds the axis travel or a suspicious change is not confirmed.
 
     CommandError is also raised if the machine file with the travel is invalid. The option --yes confirms
-    suspicious changes, but does not permit a value beyond the travel. The store itself rejects values that
-    are out of range.
+    suspicious changes, but does not permit a value that exceeds the travel. The store itself rejects values
+    that are out of range.
     """
     travel = _machine_travel(store, args)
     tables = {kind: store.offsets.get_table(kind).read_rows() for kind in changes}
@@ -68,7 +68,10 @@ def _only_travel(found: tuple[Suspicion, ...]) -> tuple[Suspicion, ...]:
 
 
 def _machine_travel(store: Store, args: argparse.Namespace) -> TravelLimits:
-    """Return the travel of the command's machine in mm. Raises CommandError if its file is invalid."""
+    """Return the axis travel of the command's machine in mm.
+
+    Raises CommandError if the machine file is invalid.
+    """
     from app.compose.machine.machine_setup import load_machine_in_use, read_machine
 
     return find_travel_limits(
@@ -77,9 +80,9 @@ def _machine_travel(store: Store, args: argparse.Namespace) -> TravelLimits:
 
 
 def _describe_suspicions(suspicions: Mapping[OffsetKind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:
-    """Return one text for all suspicious changes.
+    """Return one message that describes all suspicious changes.
 
-    ``tools`` are the tools that may follow a master tool.
+    ``tools`` are the numbers of the tools that may follow a master tool.
     """
     texts = (
         describe_suspicions(each, partial(_format_change, kind), partial(_reason, tools))

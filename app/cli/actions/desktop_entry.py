@@ -56,7 +56,7 @@ def _entry_paths() -> tuple[Path, Path, Path, Path]:
 
 
 def _command() -> str:
-    """Return the command that starts this installation."""
+    """Return the shell command that starts this installation of TurnDesk."""
     entry_path = Path(sys.executable).with_name(ENTRY_NAME)
     if entry_path.exists():
         return _quote_word(str(entry_path))
@@ -72,10 +72,10 @@ def _quote_word(word: str) -> str:
 
 
 def install_entries(*, autostart: bool) -> list[Path]:
-    """Write the entries and return their paths.
+    """Write the desktop entries and return their paths.
 
-    The autostart entry is written only with ``autostart``. Raises CommandError if a file cannot be written,
-    or if the user has no home folder and an XDG variable is not set.
+    The autostart entry is written only if ``autostart`` is true. Raises CommandError if a file cannot be
+    written, or if the user has no home folder and an XDG variable is not set.
     """
     entry, icon, types, start = _entry_paths()
     shipped = files("resources") / "desktop"
@@ -109,7 +109,7 @@ def _update_databases(applications: Path, mime: Path) -> None:
 
 
 def remove_entries() -> list[Path]:
-    """Remove the existing entries and return their paths.
+    """Remove the existing desktop entries and return their paths.
 
     Raises CommandError if a file cannot be removed, or if the user has no home folder and an XDG variable
     is not set.

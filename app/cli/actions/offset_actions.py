@@ -92,7 +92,10 @@ def _show(args: argparse.Namespace) -> int:
 
 
 def _convert_to_inches(kind: OffsetKind, row: OffsetRow) -> dict[str, FieldValue]:
-    """Return all fields by name in the units in which they are entered. Lengths of tools are in inches."""
+    """Return all fields of an offset row by name, in the units in which the user enters them.
+
+    Lengths of tools are in inches.
+    """
     values: list[FieldValue] = list(row)
     return {
         name: _convert_type(field, value)
@@ -120,7 +123,7 @@ def _line(name: str, row: OffsetRow) -> str:
 
 
 def _format_shape(row: ShapeRow) -> str:
-    """Return the specified fields of a tool shape as text that could be entered again."""
+    """Return the defined fields of a tool shape in the form in which a user enters them."""
     field_texts = [f"{row.kind} {row.hand}"]
     values: list[FieldValue] = list(row)
     for field, value in zip(FIELDS_BY_KIND[OffsetKind.SHAPE].values(), values, strict=True):
@@ -133,7 +136,7 @@ def _format_shape(row: ShapeRow) -> str:
 
 
 def _format_details(row: ToolRow) -> str:
-    """Return the wear, tip, master mark and remark of a tool, if they are set."""
+    """Return those of a tool's wear, tip, master mark and remark that are set, as text."""
     wear = (
         Message(
             "  wear X {wear_x} Z {wear_z}",
@@ -305,7 +308,7 @@ def _parse_choice(field: RowField, word: str) -> str:
 
 
 def _convert_type(field: RowField, value: FieldValue) -> FieldValue:
-    """Return the value of a field in the unit in which it is entered."""
+    """Return a stored field value in the unit in which the user enters it."""
     return (
         convert_to_inches(value)
         if field.field_type is FieldType.LENGTH and not isinstance(value, str)
@@ -314,7 +317,10 @@ def _convert_type(field: RowField, value: FieldValue) -> FieldValue:
 
 
 def _parse_value(field: RowField, text: str) -> FieldValue:
-    """Return the value of an entered text, with lengths in mm. Raises CommandError if the text is invalid."""
+    """Return the field value of an entered text, with lengths in mm.
+
+    Raises CommandError if the text is invalid.
+    """
     if field.field_type is FieldType.TEXT:
         return text.strip()
     if field.field_type is FieldType.BOOLEAN and text.strip().lower() not in _FLAGS:

@@ -1,4 +1,4 @@
-"""Bug report on the installation, machine file and program, with the newest crash and log lines."""
+"""Bug report on the installation, machine file and program, with the latest crash and log lines."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ReportPart(NamedTuple):
 
 
 class _Stored(NamedTuple):
-    """Data from the store that the bug report uses."""
+    """Data from the TurnDesk store that the bug report uses."""
 
     user_names: frozenset[str] = frozenset()
     program_names: frozenset[str] = frozenset()
@@ -161,7 +161,7 @@ def _names_in(folder: Path) -> Iterator[str]:
 
 
 def _names_of_runs() -> Iterator[str]:
-    """Yield the program names in the file names of run logs.
+    """Yield the program names that appear in the file names of run logs.
 
     The file name ``20260102T030405000000-PIN``, for example, contains the program name PIN.
     """
@@ -244,7 +244,7 @@ def _last_lines(path: Path, change: Callable[[str], str]) -> str:
 
 
 def _read(path: Path, *, must_exist: bool) -> str:
-    """Return the last part of a text file. Raises CommandError if a required file cannot be read."""
+    """Return the end of a text file. Raises CommandError if a required file cannot be read."""
     try:
         with path.open("rb") as file:
             file.seek(max(0, path.stat().st_size - _MOST_BYTES))

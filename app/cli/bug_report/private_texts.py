@@ -24,7 +24,7 @@ _NETWORK = ("sharing", "announce", "status_page", "mtconnect", "office", "http",
 
 
 def mask_program_texts(text: str) -> str:
-    """Return a program in which ``x`` replaces each letter of its comments, strings and names.
+    """Return the program with each letter of its comments, strings and names replaced by ``x``.
 
     The length and position of each text do not change.
     """
@@ -39,9 +39,9 @@ def mask_program_texts(text: str) -> str:
 def mask_machine_file(text: str, public_strings: Collection[str], replacer: PrivateValueReplacer) -> str:
     """Return the text of a machine file without comments and private strings.
 
-    A string is retained if it is in ``public_strings``, the strings of the shipped machine files. Outside the
-    network tables, a string with the form of a terminal name is also retained. The text does not need to be
-    valid TOML.
+    ``public_strings`` are the strings of the shipped machine files, and these strings are retained. Outside
+    the network tables, strings with the form of a terminal name are also retained. The text does not need
+    to be valid TOML.
     """
     lines, table = [], ""
     for line in text.splitlines():
@@ -60,7 +60,7 @@ def mask_machine_file(text: str, public_strings: Collection[str], replacer: Priv
 
 
 def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]:
-    """Yield the parts of a line up to its comment, with all strings replaced."""
+    """Yield the parts of a line before its comment, with every string replaced by ``replaced``."""
     end = 0
     while True:
         string, comment = _STRING.search(line, end), line.find("#", end)
@@ -78,7 +78,7 @@ def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]
 
 
 def remove_record_name(log_line: str) -> str:
-    """Return a line of a run's event log without the name of the run's scope recording."""
+    """Return a line of a program run's event log without the name of its scope recording."""
     try:
         event = json.loads(log_line)
         event.pop("record", None)

@@ -69,7 +69,10 @@ class PrivateValueReplacer:
             self._known.setdefault(name.casefold(), (self.get_placeholder(kind, stem), suffix))
 
     def get_placeholder(self, kind: str, value: str) -> str:
-        """Return the replacement of a value. Values that differ only in case have the same replacement."""
+        """Return the placeholder that replaces a private value in the report.
+
+        Values that differ only in case have the same placeholder.
+        """
         key = f"{kind}:{value.casefold()}"
         if key not in self._given:
             self._counts[kind] = self._counts.get(kind, 0) + 1
@@ -99,7 +102,7 @@ class PrivateValueReplacer:
         return pattern.sub(lambda found: "".join(self._known[found[0].casefold()]), text)
 
     def _path(self, path: str) -> str:
-        """Return the replacement of a path.
+        """Return the text that replaces a path in the report.
 
         A path in TurnDesk or Python is shortened to the part that starts with its package.
         """

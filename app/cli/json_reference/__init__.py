@@ -1,1 +1,1 @@
-"""Reference page for the machine-readable output."""
+"""Generator of the reference page for machine-readable output."""

@@ -1,4 +1,4 @@
-"""Keys in the JSON output of commands, for the reference page and its tests."""
+"""Descriptions of the keys in commands' JSON output, for the reference page and its tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The keys of the JSON output of ``turndesk offsets``."""
+"""Descriptions of the keys in the JSON output of ``turndesk offsets``."""
 
 from __future__ import annotations
 

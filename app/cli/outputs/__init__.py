@@ -1,1 +1,1 @@
-"""Formatting of results as text and JSON."""
+"""Formatting of command results as text and JSON."""

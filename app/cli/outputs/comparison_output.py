@@ -71,7 +71,7 @@ def _pair_json(pair: Pair, dialect: Dialect) -> Json:
 
 
 def _round_value(value: float) -> float:
-    """Return a value rounded to six decimals, or 0.0 if its text would show zero."""
+    """Return a value rounded to six decimals, or 0.0 if the rounded value would be zero."""
     return 0.0 if abs(value) < _ZERO_TOLERANCE else round(value, 6)
 
 
@@ -79,7 +79,7 @@ def _round_value(value: float) -> float:
 
 
 def format_comparison(comparison: Json, *, is_metric: bool, dialect: Dialect) -> str:
-    """Return the comparison as text for the proof, in the unit that the program uses."""
+    """Return the text of the comparison for the proof, in the program's unit."""
     scale = MM_PER_INCH if is_metric and dialect is Dialect.OMNITURN else 1.0
     unit = "mm" if is_metric or dialect is not Dialect.OMNITURN else "in"
     pairs = comparison["features"]

@@ -45,7 +45,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
-    """Return the JSON keys that differ from those of a lathe in a mill's proof.
+    """Return the JSON keys of a mill's proof that differ from a lathe's proof.
 
     ``limits`` are machine positions, and ``final`` has the positions of all axes.
     """
@@ -74,8 +74,8 @@ def get_final_position(
 ) -> dict[str, float]:
     """Return the final position of a run, by axis.
 
-    The result has all axes and the working plane if ``is_complete``, and otherwise the axes of
-    ``setpoint``.
+    If ``is_complete`` is true, the result has all axes and the position in the working plane. Otherwise it
+    has only the axes of ``setpoint``.
     """
     if is_complete and mill.final_position is not None:
         return {name: at for name, at in _position_json(mill.final_position).items() if isinstance(at, float)}
@@ -105,9 +105,10 @@ def _position_json(swivel: PlanePosition) -> Json:
 
 
 def _plane_json(swivel: PlanePosition) -> Json:
-    """Return the plane of a PLANE block as JSON.
+    """Return the tilted plane of a PLANE block as JSON.
 
-    The JSON contains the frame of the plane by rows, the origin, and the target angles of the axes.
+    The JSON contains the rotation matrix of the plane by rows, its origin, and the target angles of the
+    axes.
     """
     q120, q121, q122 = (round_degrees(target) for target in swivel.system.target_angles)
     return {

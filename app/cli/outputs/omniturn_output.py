@@ -70,9 +70,10 @@ def format_decimals(values: FloatArray, decimal_places: int) -> list[str]:
 
 
 def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_places: int) -> list[str]:
-    """Return each number (m,), an integer count of 10^-``decimal_places``, as a decimal string.
+    """Return each number (m,) as a decimal string.
 
-    Each text has at least one digit before and after the decimal point.
+    ``count`` has the numbers as integer multiples of 10^-``decimal_places``. Each string has at least one
+    digit before and after the decimal point.
     """
     digits, point = _digit_table(count), _DIGITS - decimal_places
     for at in range(point - 1):
@@ -92,7 +93,7 @@ def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_place
 
 
 def _digit_table(count: IntArray) -> npt.NDArray[np.uint8]:
-    """Return the twelve digits of each number as characters, with the most significant digit first.
+    """Return twelve digit characters for each integer, with the most significant digit first.
 
     The shape of the result is (12, m).
     """
@@ -143,7 +144,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def _feed_value(block: Block) -> float:
-    """Return the feed of a block, in in/rev for a feed per revolution and otherwise in in/min."""
+    """Return the feed of a block, in in/rev if it is a feed per revolution and otherwise in in/min."""
     return to_inches(block.feed) if block.per_rev else to_inches_per_minute(block.feed)
 
 
@@ -165,7 +166,7 @@ def _feed_text(block: Block) -> str:
 
 
 def format_series(moves: TimedSeries) -> str:
-    """Return the table rows of a series of moves."""
+    """Return one table row for each move of a series."""
     series = moves.series
     line = f"%5d %5d  {series.pattern.kind:10s}%11.5f%11.5f%s%8.2f  %s\n"
     lines = series.line.tolist()
@@ -184,7 +185,7 @@ def format_series(moves: TimedSeries) -> str:
 
 
 def _feed_texts(series: StraightMoveSeries, text: Callable[[Block], str]) -> Iterable[str]:
-    """Return a text for each move of a series, for texts that depend only on the feed."""
+    """Return ``text(block)`` for each move of a series. The text may depend only on the feed."""
     like = series.pattern
     if series.feed is None:
         return [text(like)] * len(series)
@@ -237,7 +238,7 @@ def _interleave(separators: Sequence[str], columns: Sequence[Iterable[str]], cou
 
 
 def _plane_json(block: Block) -> Json:
-    """Return the end and the center of a block in the virtual mill's frame.
+    """Return the end point and the arc center of a block in the virtual mill's coordinate system.
 
     In the side plane of the part, the Z value is a diameter.
     """

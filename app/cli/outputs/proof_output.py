@@ -1,4 +1,4 @@
-"""Output of a proof as JSON with the keys and units of docs/json.md, and of its stock as text."""
+"""Output of a proof as JSON with the keys and units of docs/json.md, and of the stock as text."""
 
 from __future__ import annotations
 
@@ -98,7 +98,10 @@ def _points(profile: ProfilePoints, dialect: Dialect) -> list[list[float]]:
 
 
 def make_diagnostic_json(diagnostic: Diagnostic) -> Json:
-    """Return a diagnostic as JSON with the keys of docs/json.md. The column is 1 for a whole line."""
+    """Return a diagnostic as JSON with the keys of docs/json.md.
+
+    The column is 1 if the diagnostic applies to a whole line.
+    """
     return {
         "line": diagnostic.line,
         "column": max(diagnostic.column, 1) if diagnostic.line else 0,

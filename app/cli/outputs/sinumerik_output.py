@@ -1,4 +1,7 @@
-"""Output of elementary blocks of SINUMERIK programs in mm, degrees and minutes. X is as programmed."""
+"""Output of elementary blocks of SINUMERIK programs, in mm, degrees and minutes.
+
+X is output as programmed, which may be a diameter.
+"""
 
 from __future__ import annotations
 

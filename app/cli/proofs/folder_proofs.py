@@ -45,16 +45,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ProgramFiles:
-    """Paths of the programs, sorted by name, and the number of files that are not programs."""
+    """Program files found, sorted by name, and the number of files that are not programs."""
 
     paths: tuple[Path, ...]
     other_count: int
 
 
 def find_programs(names: Iterable[str]) -> ProgramFiles:
-    """Return the programs among these files and folders. Files named explicitly may have any suffix.
+    """Return the program files among the named files and in the named folders.
 
-    Raises CommandError if a folder cannot be read or contains no program, or if a name is empty.
+    Files named explicitly may have any suffix. Raises CommandError if a folder cannot be read or contains
+    no program, or if a name is empty.
     """
     found: set[Path] = set()
     others = 0
@@ -79,7 +80,10 @@ def find_programs(names: Iterable[str]) -> ProgramFiles:
 
 
 def _expand_names(names: Iterable[str]) -> Iterator[str]:
-    """Yield the names. Raises CommandError if a name is empty, because it would mean the current folder."""
+    """Yield the names of files and folders from the command line.
+
+    Raises CommandError if a name is empty, because it would mean the current folder.
+    """
     for name in names:
         if not name:
             raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
@@ -151,7 +155,7 @@ class _Unit:
 
 
 class _Run:
-    """One call of the command, with the programs to prove and the results reported so far."""
+    """One execution of the command, with the programs to prove and the results reported so far."""
 
     def __init__(
         self, args: argparse.Namespace, jobs: JobsByMachine, files: ProgramFiles, workers: WorkerSource,
@@ -172,7 +176,7 @@ class _Run:
         self._progress = ProgressBar("proving", len(files.paths))
 
     def prove_programs(self) -> None:
-        """Prove all programs, and save finished proofs even if the command is interrupted."""
+        """Prove all programs, and save completed proofs even if the command is interrupted."""
         proving: WorkDistributor[_Unit, Proof] = WorkDistributor(self._workers, self._submit)
         results = proving.iterate_results(self._iterate_units())
         try:
@@ -194,7 +198,10 @@ class _Run:
                 cache.delete_oldest()
 
     def print_outcome(self) -> int:
-        """Print the table, or the number of other files with --json, and return the exit status."""
+        """Print the table of results and return the exit status.
+
+        With --json, print only the number of files that are not programs.
+        """
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
         others = self._files.other_count
         if not self._args.json:
@@ -229,7 +236,10 @@ class _Run:
                 yield _Unit(index, source, job, key, cache)
 
     def _get_cache(self, machine: str, job: ProofJob) -> ProofCache | None:
-        """Return the cache for this machine, or None if the cache is off. Print the chosen machine once."""
+        """Return the proof cache for this machine, or None if caching is off.
+
+        The first call for each machine also prints which machine was chosen.
+        """
         if machine not in self._caches:
             if machine:
                 sys.stderr.write(describe_machine_choice("each Klartext program", machine))
@@ -325,7 +335,7 @@ def format_table(rows: Sequence[ProofRow], other_count: int) -> str:
 
 
 def format_verdict(proof: Proof) -> str:
-    """Return the result of a proof as one or two words."""
+    """Return the result of a proof in one or two words."""
     if proof.failure_reason:
         return "not proved"
     return "errors" if proof.count_findings("error") else "proved"
@@ -345,7 +355,7 @@ def _line(path: Path, proof: Proof) -> str:
 
 
 def _format_comparison(proof: Proof) -> str:
-    """Return one line of text that shows the effect of the other offsets."""
+    """Return one line of text that shows the effect of the offsets of --compare."""
     found = proof.report.get("compare")
     if not isinstance(found, dict):
         return ""

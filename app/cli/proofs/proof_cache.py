@@ -1,4 +1,4 @@
-"""Cache of proofs. The key of a proof is a hash of all data on which the proof depends.
+"""Cache of proofs, in which the key of a proof is a hash of all data that affect the proof.
 
 A file is written under a temporary name and then renamed, so that a killed process does not leave an
 incomplete proof. A damaged file cannot be decompressed and is ignored.
@@ -31,7 +31,7 @@ _STALE_AGE_S = 3600.0  # s; an older temporary file was left by a process that h
 
 
 class ProofCache:
-    """Saved proofs of one job in the folder ``proofs`` of the data folder.
+    """Saved proofs of one proof job, in the folder ``proofs`` of the data folder.
 
     The file name of a proof is a hash of the data on which the proof depends.
     """
@@ -45,7 +45,7 @@ class ProofCache:
     def get_key(self, source: ProgramSource, program_data: object = None) -> str:
         """Return the cache key of a program's proof.
 
-        ``program_data`` are data that apply only to this program.
+        ``program_data`` are further data of this program on which the proof depends.
         """
         text = format_for_hash(
             (source.name, str(source.dialect), source.text, source.subprograms, program_data)

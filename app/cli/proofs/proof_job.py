@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ComparisonOffsets:
-    """Offsets for a comparison: the name of the offsets file and the setup that uses these offsets."""
+    """Name of the offsets file of --compare, and the setup that uses its offsets."""
 
     name: str
     setup: Setup
@@ -28,7 +28,7 @@ class ComparisonOffsets:
 
 @dataclass(frozen=True)
 class ProofJob:
-    """Common data of programs that are proved together."""
+    """Common data of programs that are proved together: machine, setup, part and options."""
 
     machine: Machine
     setup: Setup
@@ -71,7 +71,10 @@ class JobsByMachine:
         return select_machine(source)
 
     def get_job(self, machine: str) -> ProofJob:
-        """Return the job for this machine. Raises CommandError if the machine or an option is invalid."""
+        """Return the proof job for a machine name. Raises CommandError if the machine is invalid.
+
+        CommandError is also raised if an option is invalid.
+        """
         if machine not in self._made:
             args = self.arguments
             if machine:
@@ -81,5 +84,5 @@ class JobsByMachine:
 
 
 def describe_machine_choice(program_name: str, machine: str) -> str:
-    """Return the line of text that reports which machine was chosen for a program."""
+    """Return the message that reports which machine was chosen for a program."""
     return f"turndesk: {program_name} is proved on the shipped {machine}; --machine chooses another one\n"

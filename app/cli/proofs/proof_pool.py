@@ -37,7 +37,7 @@ def count_cores() -> int:
 
 
 class WorkerSource(Protocol):
-    """Source of workers.
+    """Source of worker processes for units of work.
 
     ``killed_exception`` is the exception that a unit of work raises if its worker is killed.
     """
@@ -46,7 +46,7 @@ class WorkerSource(Protocol):
 
     @property
     def max_units_in_progress(self) -> int:
-        """Return the largest number of units that may be in progress."""
+        """Return the maximum number of units of work that may be in progress at the same time."""
 
     def start_workers(self, worker_count: int | None = None, /) -> Executor:
         """Start ``worker_count`` workers, or all workers if it is None, and return their executor."""
@@ -120,7 +120,7 @@ class WorkDistributor(Generic[WorkUnit, UnitResult]):
     def iterate_results(
         self, units: Iterator[WorkUnit]
     ) -> Generator[tuple[WorkUnit, UnitResult | BaseException], None, None]:
-        """Yield each unit with its result or its exception.
+        """Yield each unit of work with its result or its exception.
 
         The exception BrokenExecutor means that the unit killed its worker.
         """

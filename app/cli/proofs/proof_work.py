@@ -47,7 +47,7 @@ class Proof:
 
 
 class VersionMismatchError(Exception):
-    """Error for a worker with another version of TurnDesk, which could prove programs differently."""
+    """Error raised because a worker with another TurnDesk version could prove programs differently."""
 
 
 def prove_pickled(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
@@ -115,7 +115,7 @@ def prove_with_findings(
 
 
 def _run_record(job: ProofJob) -> RunRecorder | None:
-    """Return the recorder that collects data for a report, or None if no report is required."""
+    """Return the recorder of run data for a report, or None if the job requires no report."""
     if not job.needs_report_section:
         return None
     from app.report.run_record import RunRecorder
@@ -133,7 +133,7 @@ def _unpacked(packed: bytes) -> ProofJob:
 
 @lru_cache(maxsize=1)
 def get_code_hash() -> str:
-    """Return a hash of TurnDesk's code. The version number alone does not change during development."""
+    """Return a hash of TurnDesk's code, because the version number can stay the same between changes."""
     from hashlib import sha256
 
     total = sha256()

@@ -1,4 +1,7 @@
-"""The file that ``--report`` writes, in HTML or PDF. Its name is temporary until all programs are proved."""
+"""Report file of ``--report`` in HTML or PDF.
+
+The file has a temporary name until all programs are proved.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,10 @@ _HTML, _PDF = {".html", ".htm"}, {".pdf"}
 
 
 class _Pages(Protocol):
-    """Writer that adds programs to a report one at a time. All methods may raise OSError."""
+    """Interface of a writer that adds one program after another to a report.
+
+    All methods may raise OSError.
+    """
 
     def add_page(self, name: str, html: str, /) -> None:
         """Add the HTML of the next program under its name."""
@@ -33,7 +39,7 @@ class _Pages(Protocol):
         """
 
     def close(self) -> None:
-        """Close the file, even if it is not complete."""
+        """Close the file, even if the report is incomplete."""
 
 
 class _HtmlPages:

@@ -1,6 +1,6 @@
-"""Table of the backends. The module of each backend defines one ``BACKEND``.
+"""Table of the backends, and the rows of ``turndesk machine check``.
 
-The module also defines the rows of ``turndesk machine check``.
+The module of each backend defines one ``BACKEND``.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ DeviceSimulation = Callable[
 class ConnectedMachine:
     """Ports of a connected machine.
 
-    ``on_screen_station`` is the operator station on the screen, or None if the machine has its own station.
-    ``list_more_rows`` returns rows of ``turndesk machine check`` that follow the station's row.
-    ``list_measured_rows`` returns the names of those rows, and of inputs outside the backend, whose values
-    are measured by hardware.
+    - ``on_screen_station`` is the operator station on the screen, or None if the machine has its own.
+    - ``list_more_rows`` returns the rows of ``turndesk machine check`` that follow the station's row.
+    - ``list_measured_rows`` returns the names of the rows with values that hardware measures. They
+      include the rows of ``list_more_rows`` and inputs outside the backend.
     """
 
     ports: MachinePorts
@@ -55,16 +55,16 @@ class ConnectedMachine:
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """Functions of a backend.
+    """Functions of a backend. ``device_name`` names the device in messages about no response.
 
-    ``device_name`` is the name of the device in the message about a missing response. ``create_drivers``
-    creates the drivers that the driver host runs. ``connect`` connects the machine in the control's
-    process, including an inverter. A backend with both functions uses the driver host if the machine file
-    specifies one. ``is_simulated`` returns whether the machine and its devices are simulated on this
-    computer. ``simulate_devices`` simulates only the devices, to try a machine file without hardware.
-    ``survey_nodes`` asks every node or checks every pin, and yields name, address, fault and details.
-    ``list_measured_rows`` returns the rows of ``turndesk machine check`` whose values hardware reports. By
-    default, no row counts as checked.
+    - ``create_drivers`` creates the drivers that the driver host runs.
+    - ``connect`` connects the machine in the control's process, including an inverter. A backend with
+      both functions uses the driver host if the machine file specifies one.
+    - ``is_simulated`` returns whether the machine and its devices are simulated on this computer.
+    - ``simulate_devices`` simulates only the devices, to try a machine file without hardware.
+    - ``survey_nodes`` queries every node or pin, and yields its name, address, fault and details.
+    - ``list_measured_rows`` returns the rows of ``turndesk machine check`` whose values hardware
+      reports. By default, no row counts as checked.
     """
 
     device_name: str
@@ -97,7 +97,7 @@ def _backend(word: str) -> Backend:
 
 
 def list_simulatable_backends() -> list[str]:
-    """Return the names of the backends whose devices can be simulated without the rest of the machine."""
+    """Return the names of the backends that can simulate their devices without the other hardware."""
     return [word for word in BACKENDS if _backend(word).simulate_devices is not None]
 
 

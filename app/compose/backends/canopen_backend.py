@@ -146,7 +146,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
 def _encoder_config(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
     """Return the configuration of the spindle encoder, or None if the machine does not have one.
 
-    An encoder connected to a drive has no node entry, because the drive's node maps its second input.
+    An encoder at a drive's second encoder input needs no node entry, because the drive maps its value.
     """
     model = machine.hardware.find_driver_table(EncoderTable)
     if model is None:
@@ -236,7 +236,7 @@ def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the axes and the spindle that have a node, and all inputs of the modules."""
+    """Yield the names of the axes and spindle that have a node, and of all inputs of the I/O modules."""
     config = create_canopen_config(machine)
     yield from (axis.name for axis in config.axes if axis.node is not None)
     if config.spindle is not None or config.encoder is not None:

@@ -31,9 +31,9 @@ def connect_machine(machine: Machine, clock: Clock, lock_descriptor: int | None 
 
 
 def remove_feature_inputs(machine: Machine) -> Machine:
-    """Return a copy of the machine with only those inputs that are wired to its backend.
+    """Return a copy of the machine without the inputs that optional features provide.
 
-    The inputs that optional features provide are removed.
+    The remaining inputs are wired to the machine's backend.
     """
     for extra in extras().values():
         machine = extra.remove_own_inputs(machine)

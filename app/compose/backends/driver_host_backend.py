@@ -55,5 +55,5 @@ def _open_connection(
 
 
 def _is_virtual(machine: Machine) -> bool:
-    """Return whether the machine has a bus that another process cannot reach."""
+    """Return whether the machine uses a virtual bus that another process cannot reach."""
     return find_backend(machine).connect is None and is_simulated(machine)

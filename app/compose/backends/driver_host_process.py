@@ -1,4 +1,4 @@
-"""The driver host process, and the class that starts the process.
+"""Driver host process, and the class that starts this process.
 
 The command is ``python -m app.compose.backends.driver_host_process FD ZERO BELL``, with the pickled machine
 on stdin.

@@ -94,7 +94,7 @@ def create_hal_drivers(machine: Machine, clock: Clock) -> DriverBundle:
 
 
 def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, str, str]]:
-    """Yield every pin named in the machine file, with the error that HAL reports for the pin."""
+    """Yield each pin named in the machine file, with any error that HAL reports for it."""
     session = HalSession(create_hal_config(machine), 0.0, check_only=True)
     session.close()
     for each in session.pin_verdicts:

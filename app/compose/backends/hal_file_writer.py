@@ -39,9 +39,10 @@ _BOARD_BUILDERS: Mapping[str, Callable[[LatheData], HalFile]] = {
 class GeneratedHal:
     """HAL files and tables that are generated for a machine.
 
-    ``name`` is the file name in [hal], and ``text`` is the HAL file. ``extra_files`` are the additional
-    files by name. ``wiring_rows`` are the rows of the wiring table, and ``wiring_table`` is the table as
-    lines of text. ``measurement_lines`` are the measurements that the builder must make.
+    - ``name`` is the file name in [hal], and ``text`` is the text of the HAL file.
+    - ``extra_files`` are the additional files by name.
+    - ``wiring_rows`` are the rows of the wiring table, and ``wiring_table`` is the same table as text.
+    - ``measurement_lines`` describe the measurements that the machine builder must make.
     """
 
     name: str
@@ -124,7 +125,7 @@ def build_hal_file(machine: Machine) -> HalFile:
 
 
 def _terminal_names(machine: Machine, hal: HalTable) -> Iterator[tuple[str, str]]:
-    """Yield every pin or signal name in the machine file, with its key."""
+    """Yield the key and the name of every HAL pin or signal in the machine file."""
     yield from ((f"hal.{key}", getattr(hal, key)) for key in ("machine_on", "charge_pump", "link_fault"))
     for axis, pins in hal.axes.items():
         yield from ((f"hal.axes.{axis}.{key}", name) for key, name in asdict(pins).items())

@@ -1,4 +1,4 @@
-"""Connection of a frequency inverter on a serial line. It replaces the spindle of the backend."""
+"""Connection of a frequency inverter on a serial line, which replaces the backend's spindle."""
 
 from __future__ import annotations
 
@@ -102,9 +102,9 @@ def _attended(
 
 
 def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[UnknownPart]:
-    """Return the parts of the machine whose state is unknown.
+    """Return the parts of the machine that do not report their state.
 
-    The spindle is unknown if the inverter and its encoder do not report its state.
+    The spindle is included if neither the inverter nor its encoder reports its state.
     """
     rest = ports.unknown() - {UnknownPart.SPINDLE}
     return rest | {UnknownPart.SPINDLE} if spindle.is_state_unknown else rest
@@ -128,7 +128,7 @@ class AxisOnlySamples:
         self._spindle = slice(1 + 3 * axis_count, 4 + 3 * axis_count)
 
     def take(self, max_rows: int = 8192) -> FloatArray:
-        """Return the samples of the backend with the last load of the inverter.
+        """Return the backend's samples with the latest load that the inverter reported.
 
         The spindle speed and the revolutions are unknown.
         """

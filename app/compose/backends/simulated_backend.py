@@ -56,10 +56,7 @@ def create_sim_config(machine: Machine) -> SimConfig:
 
 
 def _tool_setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimToolSetter | None:
-    """Return the simulated tool setter, or None if it cannot be simulated.
-
-    The result is None if the machine file has no tool setter or there are no tool tips.
-    """
+    """Return the simulated tool setter, or None if the machine has no tool setter or tool tips."""
     model = machine.hardware.find_driver_table(SetterModel)
     return SimToolSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
 
@@ -86,7 +83,7 @@ def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:
 
 
 def _connect_in_process(machine: Machine, clock: Clock) -> ConnectedMachine:
-    """Connect the simulated machine in this process. An inverter that drives its spindle is real."""
+    """Connect the simulated machine in this process. A configured inverter for the spindle is real."""
     ports, hands = create_simulation(machine, clock)
     close = _do_nothing
     if has_inverter(machine):

@@ -1,1 +1,1 @@
-"""Control process with the executor and the drivers. The operator screen is a client of this process."""
+"""Control process with the executor and the drivers. The operator screen is its client."""

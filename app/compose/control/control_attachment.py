@@ -1,4 +1,4 @@
-"""First step of the screen's startup, which finds a running control or starts a new one."""
+"""First step of the screen's startup, which connects to a running control or starts a new one."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ CLOSE_TIMEOUT_S = 20.0  # s, for drives that are switching on; then the machine 
 
 @dataclass(slots=True)
 class ControlEventHandlers:
-    """Functions that are called in the client's thread for messages of the control."""
+    """Callback functions for messages of the control, which are called in the client's thread."""
 
     on_event: Callable[[LogEvent, Receipt | None], None]
     on_interrupted_job: Callable[[InterruptedJob | None], None]
@@ -95,9 +95,9 @@ class ControlClient:
     ) -> None:
         """Wait for the first message of the control.
 
-        The scope ``recordings`` of an earlier control continue with the data of this control. Raises
-        DriverError if the control reports an error, ends, does not respond or has a different version.
-        Raises OSError or EOFError if the connection ends after the first message.
+        If an earlier control has ended, its scope ``recordings`` continue with the data of this control.
+        Raises DriverError if the control reports an error, ends, does not respond or has a different
+        version. Raises OSError or EOFError if the connection ends after the first message.
         """
         self._connection, self.control_process = connection, process = started_control
         hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
@@ -165,7 +165,7 @@ class ControlClient:
         return time.monotonic() - self.heard_at
 
     def set_input(self, name: str, is_on: bool) -> None:
-        """Switch an input of a simulated machine on or off."""
+        """Set an input of a simulated machine on or off."""
         self._outbox.put(InputChange(name, is_on))
 
     def report_alive(self, snapshot: Snapshot) -> None:
@@ -276,7 +276,10 @@ class ControlClient:
                 _log.error("the screen does not know this message of the control: %r", message)
 
     def _handle_loss(self, events: ControlEventHandlers) -> None:
-        """Show an alarm that the control process has ended. Its drivers have stopped the machine."""
+        """Raise an operator alarm because the control process has ended.
+
+        The drivers of the control have stopped the machine.
+        """
         why = Message("the process of the control has ended")
         last = self.snapshot
         alarm = make_alarm("control-silent", why, last.line, last.t)

@@ -36,9 +36,9 @@ class CommandMessage(NamedTuple):
 
 
 class StationAction(NamedTuple):
-    """Call of a method of the simulated operator station.
+    """Request to call a method of the simulated operator station.
 
-    ``acted_at_s`` is the time of the action in seconds.
+    ``acted_at_s`` is the time of the operator's action in seconds.
     """
 
     name: str
@@ -58,7 +58,7 @@ class ScreenAliveMessage(NamedTuple):
 
 
 class StopSocketMessage(NamedTuple):
-    """Announcement that the next data is the file descriptor of a socket for stop keys."""
+    """Message that a file descriptor follows. It belongs to a socket for stop keys."""
 
 
 class EventStoredMessage(NamedTuple):
@@ -116,7 +116,7 @@ class EventMessage(NamedTuple):
 
 
 class InterruptedJobNote(NamedTuple):
-    """Message with the job that a power failure would interrupt now, or None if no job is running."""
+    """Message with the job that is running, which a power failure would interrupt, or None."""
 
     job: InterruptedJob | None
 

@@ -330,7 +330,7 @@ class ControlServer:
                 self._connected.set_input(name, on)
 
     def _attach_reading(self, command: Command) -> Command:
-        """Return the command with its program already read.
+        """Return the command with the result of reading its program.
 
         The executor's thread does not have enough time to read a program.
         """
@@ -374,7 +374,10 @@ class ControlServer:
             self.closing_event.set()
 
     def _run_without_screen(self) -> None:
-        """React to the loss of the screen, which counts parts and sends stop keys."""
+        """Block the start of the next part if the machine continues without a screen.
+
+        The lost screen no longer counts parts or sends stop keys.
+        """
         self._saved = NOT_SAVED
         if self._machine.hardware.continues_without_screen:
             self.executor.post(BlockNextPart(_NO_SCREEN_TEXT))
@@ -391,7 +394,7 @@ class ControlServer:
 
 
 def _row(event: LogEvent, began: datetime) -> EventRow:
-    """Return the event as a row of the event log. ``began`` is the time zero of the control's clock."""
+    """Return the event as a row of the event log."""
     at = format_utc(began + timedelta(seconds=event.time_s))
     return EventRow(at, event.kind, event.text, event.line_number, event.record_name)
 

@@ -23,11 +23,11 @@ _LOOK = 0.05  # s between two attempts to lock
 
 
 class ControlSlot:
-    """First slot of a data folder without a running owner, reserved for this process.
+    """First slot in a data folder whose owner is no longer running, reserved for this process.
 
-    ``drivers_lock`` is the file descriptor of a lock that a driver host inherits. It prevents another control
-    from using the drivers of this slot before that driver host has ended. Both locks are None if the folder
-    is not writable, or if all slots have owners.
+    ``drivers_lock`` is the file descriptor of a lock that a driver host inherits. The lock prevents another
+    control from using the drivers of this slot before that driver host has ended. Both locks are None if
+    the folder is not writable, or if all slots have owners.
     """
 
     def __init__(self, folder: Path, drivers_timeout_s: float = DRIVERS_TIMEOUT_S) -> None:
@@ -75,9 +75,10 @@ class ControlSlot:
 
 
 def _locked_later(path: Path, limit: float) -> int:
-    """Wait until the drivers of the last owner have ended, and return the locked file.
+    """Wait until the last owner's drivers have ended, and return the locked file's descriptor.
 
-    Raises DriverError if ``limit`` seconds pass first, and OSError if the file cannot be opened.
+    Raises DriverError if they do not end within ``limit`` seconds, and OSError if the file cannot be
+    opened.
     """
     until = time.monotonic() + limit
     while (file := _locked(path)) is None:
@@ -88,7 +89,7 @@ def _locked_later(path: Path, limit: float) -> int:
 
 
 def _locked(path: Path) -> int | None:
-    """Return the file opened with an exclusive lock, or None if another process has locked it.
+    """Return the descriptor of the exclusively locked file, or None if another process locked it.
 
     Raises OSError if the file cannot be opened.
     """

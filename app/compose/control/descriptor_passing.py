@@ -34,7 +34,7 @@ def receive_descriptor(connection: Connection) -> int:
 
 
 class SharedMemory:
-    """Shared memory without a file, which exists until the last process closes it.
+    """Anonymous shared memory, which exists until the last process closes it.
 
     ``memory_view`` is a view of its bytes.
     """
@@ -45,7 +45,7 @@ class SharedMemory:
 
     @classmethod
     def create(cls, size_bytes: int) -> SharedMemory:
-        """Return new memory of ``size_bytes`` bytes that are all zero.
+        """Return new shared memory of ``size_bytes`` bytes, all set to zero.
 
         Raises OSError if the memory cannot be allocated.
         """

@@ -1,4 +1,4 @@
-"""The control that the screen uses. A new control replaces it after it has ended or hangs."""
+"""The control process that the screen uses, which is replaced after it ends or hangs."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ ShowText = Callable[[str], None]
 
 
 class LiveControl:
-    """The control process of the screen. ``restart`` replaces a process that has ended or does not respond.
+    """The control process of the screen. ``restart`` replaces it after it ends or hangs.
 
-    A machine never has two controls at the same time. The old process has ended before a new control
-    starts, and the new control waits until the old driver host has ended (``control_slot.py``). Methods can
-    be called from any thread. Only ``close`` waits.
+    A machine never has two controls at the same time. A new control starts only after the old process has
+    ended, and then waits for the end of the old driver host (``control_slot.py``). Methods can be called
+    from any thread. Only ``close`` waits.
     """
 
     def __init__(self, client: ControlClient, machine: Machine, folder: Path) -> None:
@@ -66,7 +66,10 @@ class LiveControl:
         return self._client
 
     def start_threads(self, handlers: ControlEventHandlers, show_text: ShowText) -> None:
-        """Start the threads for messages. ``show_text`` shows the operator the progress of a restart."""
+        """Start the threads that receive and send messages of the control.
+
+        ``show_text`` shows the operator the progress of a restart.
+        """
         self._events = replace(handlers, on_interrupted_job=self._note)
         self._noted, self._say = handlers.on_interrupted_job, show_text
         self._client.start_threads(self._events)
@@ -87,7 +90,7 @@ class LiveControl:
             self._client.operate_station(name, *values)
 
     def set_input(self, name: str, is_on: bool) -> None:
-        """Switch an input of a simulated machine on or off."""
+        """Set an input of a simulated machine on or off."""
         self._client.set_input(name, is_on)
 
     def report_alive(self, snapshot: Snapshot) -> None:
@@ -141,9 +144,10 @@ class LiveControl:
                 self._start(old)
 
     def _is_silent(self, client: ControlClient) -> bool:
-        """Wait until a silent control can no longer move the machine, and then return True.
+        """Return whether the control remains silent and can no longer move the machine.
 
-        Return False if the control responds again, or if the screen closes.
+        The method waits for this state. It returns False if the control responds again, or if the screen
+        closes.
         """
         self._say(tr("CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP"))
         last_response_at = client.heard_at
@@ -156,7 +160,7 @@ class LiveControl:
         return True
 
     def _has_ended(self, client: ControlClient) -> bool:
-        """Ask the process to end, kill it if necessary, and return whether it has ended."""
+        """Ask the control process to end, kill it if necessary, and return whether it has ended."""
         client.ask_to_end()
         ended = client.handle.wait_for_end(END_TIMEOUT_S) or client.handle.kill_process(KILL_TIMEOUT_S)
         if ended and client.control_process is not None:
@@ -189,7 +193,7 @@ class LiveControl:
         self._events.on_rest_change()
 
     def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
-        """Send the program and the values that the screen shows to a new control."""
+        """Send the loaded program and the operator's values, as shown on the screen, to a new control."""
         for name, values in self._state.list_station_actions():
             new.operate_station(name, *values)
         for command in self._state.list_commands(last):

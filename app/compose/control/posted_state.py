@@ -1,4 +1,4 @@
-"""State that the screen has sent to the control. A replacement control needs the same state."""
+"""Record of the state that the screen sent to the control, used to restore a replacement control."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _STATION: Final = {
 
 
 class PostedState:
-    """The loaded program, the operator's values, and the settings of the simulated station."""
+    """Record of the loaded program, the operator's values and the simulated station's settings."""
 
     def __init__(self, interrupted_job: InterruptedJob | None) -> None:
         self.interrupted_job = interrupted_job  # the job that the end of the control would interrupt
@@ -42,7 +42,7 @@ class PostedState:
         self._station: dict[str, StationCall] = {}
 
     def note_command(self, command: Command) -> None:
-        """Update the state for a command that was sent."""
+        """Update the recorded state for a command that was sent to the control."""
         match command:
             case LoadJob(job, proof) | ChangeOffsets(Job() as job, proof):
                 self._job, self._proof, self._renewal = job, proof, None
@@ -56,12 +56,12 @@ class PostedState:
                 self._values[type(command)] = command
 
     def note_station_action(self, name: str, values: tuple[object, ...]) -> None:
-        """Update the state for an action at the simulated station."""
+        """Update the recorded state for an action at the simulated station."""
         if name in _STATION:
             self._station[_STATION[name]] = name, values
 
     def list_commands(self, last_snapshot: Snapshot) -> list[Command]:
-        """Return the commands that restore this state in a new control. No command starts a motion.
+        """Return the commands that restore the recorded state in a new control, without any motion.
 
         ``last_snapshot`` is the last snapshot of the previous control.
         """
@@ -82,5 +82,5 @@ class PostedState:
         return found
 
     def list_station_actions(self) -> list[StationCall]:
-        """Return the station actions that restore this state at the simulated station of a new control."""
+        """Return the actions that restore the recorded state at the simulated station of a new control."""
         return list(self._station.values())

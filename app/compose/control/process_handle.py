@@ -10,7 +10,7 @@ from contextlib import suppress
 
 
 class ProcessHandle:
-    """Handle of one process.
+    """Handle of one operating system process.
 
     The handle still refers to this process after the system has reused its process number.
     """

@@ -1,4 +1,4 @@
-"""Rights of the control process: real-time priority, locked memory and the nice value."""
+"""Check of the control process's rights: real-time priority, locked memory and nice value."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
 
 class ProcessRight(NamedTuple):
-    """A right of the process with the granted value. A refused right also has the consequence."""
+    """A right that the process requested, with the granted value, or the consequence if refused."""
 
     name: str
     granted: str
@@ -29,9 +29,10 @@ class ProcessRight(NamedTuple):
 
 
 def acquire_rights() -> tuple[ProcessRight, ...]:
-    """Request the rights for this process, and return the result of each request. No exception is raised.
+    """Request the rights for this process, and return the result of each request.
 
-    The nice value is requested only if real-time priority is refused.
+    A refused request does not raise an exception. The nice value is requested only if real-time priority is
+    refused.
     """
     scheduling = _scheduling()
     others = (_nice(), *_check_autogroup()) if scheduling.missing else ()
@@ -39,7 +40,7 @@ def acquire_rights() -> tuple[ProcessRight, ...]:
 
 
 def check_rights() -> tuple[ProcessRight, ...]:
-    """Return the rights that a control would receive. This process gives them up again afterwards."""
+    """Return the rights that a control would receive. They are released again after the check."""
     policy, priority, nice = (
         os.sched_getscheduler(0),
         os.sched_getparam(0),
@@ -86,9 +87,9 @@ def _nice() -> ProcessRight:
 
 
 def _check_autogroup() -> tuple[ProcessRight, ...]:
-    """Return a warning row if the kernel groups processes by session, and otherwise ().
+    """Return a warning if the kernel groups processes by session (autogroup), and otherwise ().
 
-    With these groups, nice values apply only within one session.
+    With autogroup, nice values apply only within one session.
     """
     with suppress(OSError):
         if _AUTOGROUP.read_text().strip() == "1":

@@ -45,11 +45,11 @@ class ScreenOutbox:
         self._shown: Snapshot | None = None
 
     def request_snapshot(self) -> None:
-        """Make the sender send the newest snapshot."""
+        """Make the sender thread send the newest snapshot."""
         self._ready.set()
 
     def request_changed_snapshot(self) -> None:
-        """Make the sender send the newest snapshot immediately, marked as changed."""
+        """Make the sender thread send the newest snapshot immediately, marked as changed."""
         self._stirred = True
         self._ready.set()
 
@@ -73,7 +73,7 @@ class ScreenOutbox:
             return list(self._events)
 
     def set_interrupted_job(self, job: InterruptedJob | None) -> None:
-        """Replace the note about the interrupted job."""
+        """Replace the waiting message about the job that a power failure would interrupt."""
         self._noted = InterruptedJobNote(job)
         self._ready.set()
 
@@ -83,7 +83,7 @@ class ScreenOutbox:
         self._ready.set()
 
     def report_closed(self) -> None:
-        """Make the sender report that the machine is closed."""
+        """Make the sender thread report that the machine is closed."""
         self._closed = True
         self._ready.set()
 

@@ -1,4 +1,4 @@
-"""Files in the data folder with the events and the interrupted job of a control without a screen."""
+"""Files that a control without a screen writes: its events and its interrupted job."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EVENTS_FILE_NAME = "left_events.json"
 
 
 def save_note(folder: Path, job: InterruptedJob | None) -> None:
-    """Save the interrupted job, or None if no job is interrupted. A disk error is logged."""
+    """Save a note of the interrupted job, or of None if no job is interrupted. Log a disk error."""
     try:
         write_atomically(
             folder / NOTE_FILE_NAME,
@@ -30,7 +30,7 @@ def save_note(folder: Path, job: InterruptedJob | None) -> None:
 
 
 def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
-    """Return whether a control without a screen has saved a note, and its interrupted job.
+    """Return whether a note was saved by a control without a screen, and its interrupted job.
 
     The note is then deleted.
     """
@@ -45,13 +45,13 @@ def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
 
 
 def remove_note(folder: Path) -> None:
-    """Delete the note. A connected screen has already stored its contents."""
+    """Delete the note of the interrupted job, because a connected screen has stored its contents."""
     with suppress(OSError):
         (folder / NOTE_FILE_NAME).unlink(missing_ok=True)
 
 
 class UnconfirmedEvents(NamedTuple):
-    """Events that no screen has confirmed, with the program and the origin of each event."""
+    """Events that no screen has confirmed as stored, each with its program and origin."""
 
     program: str = ""
     event_rows: tuple[EventRow, ...] = ()
@@ -59,7 +59,7 @@ class UnconfirmedEvents(NamedTuple):
 
 
 def save_events(folder: Path, unconfirmed_events: UnconfirmedEvents) -> None:
-    """Save the events that no screen has confirmed. A disk error is logged."""
+    """Save the events that no screen has confirmed as stored. Log a disk error."""
     program, rows, origins = unconfirmed_events
     events = [[*row[:5], pack_message(row.text), *origin] for row, origin in zip(rows, origins, strict=True)]
     try:
@@ -69,7 +69,7 @@ def save_events(folder: Path, unconfirmed_events: UnconfirmedEvents) -> None:
 
 
 def pop_events(folder: Path) -> UnconfirmedEvents:
-    """Return the events that no screen has confirmed, and delete their file."""
+    """Return the saved events that no screen has confirmed as stored, and delete their file."""
     path = folder / EVENTS_FILE_NAME
     try:
         program, events = json.loads(path.read_bytes())

@@ -34,9 +34,9 @@ def get_settings_key(machine: Machine) -> str:
 
 
 def create_record(machine: Machine) -> dict[str, object]:
-    """Return the data to store when a machine file is accepted.
+    """Return the record to store when a user accepts a machine file.
 
-    The data contains the text of the file and a hash of the values that are written to each node at
+    The record contains the text of the file and a hash of the values that are written to each node at
     startup.
     """
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
@@ -92,7 +92,7 @@ def guard_commands(
     reviewed_changes: MachineFileChanges,
     report_refusal: Callable[[str], None],
 ) -> Callable[[Command], None]:
-    """Return a function that posts commands but does not always permit switching on the drives.
+    """Return a function that posts commands, but rejects switching the drives on if necessary.
 
     It rejects that command while changes of the machine file are not accepted.
     """

@@ -1,4 +1,4 @@
-"""Modules that declare the drivers' tables in a machine file, each loaded only when needed."""
+"""List of the modules that declare drivers' machine file tables, each loaded only when needed."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from core.table_schema import DriverDeclaration, find_raw_value
 class DriverModule(NamedTuple):
     """Location of a ``DriverDeclaration``, with the names in a machine file that require it.
 
-    ``tables`` are the paths of its tables. ``backend_name`` and ``spindle`` are the names of a backend and
-    of a spindle driver. ``attribute_name`` is the name of the ``DriverDeclaration`` in the module. If
-    ``is_always_loaded`` is true, the module is loaded for every file.
+    - ``tables`` are the paths of its tables.
+    - ``backend_name`` and ``spindle`` are the names of a backend and of a spindle driver.
+    - ``attribute_name`` is the name of the ``DriverDeclaration`` in the module.
+    - ``is_always_loaded`` means that the module is loaded for every file.
     """
 
     module_name: str

@@ -12,7 +12,10 @@ _LINEAR_AXES = ("X", "Y", "Z")
 
 
 def build_kinematics(machine: Machine) -> Kinematics | None:
-    """Return the axes of a mill, or None if the machine has no Y axis or no [kinematics] table."""
+    """Return the kinematic chain of a mill, or None for a machine without a Y axis.
+
+    The result is also None if the machine file has no [kinematics] table.
+    """
     names = tuple(axis.name for axis in machine.axes)
     if machine.kinematics is None or not set(_LINEAR_AXES) <= set(names):
         return None

@@ -55,9 +55,9 @@ def load_machine(path: Path | None = None) -> Machine:
 
 
 def load_named_machine(name: str | None) -> Machine:
-    """Return the machine for a file or for the name of a shipped machine, or the shipped lathe for None.
+    """Return the machine for a file path or for the name of a shipped machine.
 
-    Raises MachineFileError that lists every finding.
+    If ``name`` is None, return the shipped lathe. Raises MachineFileError that lists every finding.
     """
     if _is_shipped(name):
         return load_shipped_machine(name)

@@ -1,7 +1,7 @@
 """Reading of the machine file, and creation of the setup in which a program is executed.
 
 The machine in use is the machine for which the operator screen was last opened. Commands for offsets check
-values against its travel.
+values against the travel of this machine.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _SETTINGS_KEY = (
 
 
 def read_machine(path: str | None) -> Machine:
-    """Return the machine for a file or for the name of a shipped machine, or the shipped lathe for None.
+    """Return the machine for a file path or for the name of a shipped machine.
 
-    Raises CommandError that lists every finding.
+    If ``path`` is None, return the shipped lathe. Raises CommandError that lists every finding.
     """
     from app.compose.machine.machine_files import load_named_machine
     from core.table_schema import MachineFileError
@@ -92,7 +92,10 @@ def create_setup(
     block_delete: bool = False,
     is_strict: bool = False,
 ) -> Setup:
-    """Return the setup of a program after power-up at machine home. Unspecified inputs are open."""
+    """Return the setup of a program that starts after power-up, with the axes at machine home.
+
+    Inputs that are not specified are open.
+    """
     return Setup(
         start=(0.0,) * len(machine.axes),
         kinematics=_read_kinematics(machine),

@@ -93,7 +93,10 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
 
 
 def describe_problem(name: str, path: Path) -> CodedError | None:
-    """Return why this file cannot be a member ``name``, or None. Raises OSError if it is unreadable."""
+    """Return why a file cannot be the archive member ``name``, or None if it can.
+
+    Raises OSError if the file cannot be read.
+    """
     top = name.partition("/")[0]
     try:
         _check_path(name)
@@ -114,7 +117,7 @@ def is_machine_file(path: Path) -> bool:
 
 
 class _Extraction:
-    """Extraction of one archive that counts the extracted bytes."""
+    """Extraction of one setup archive, which counts the extracted bytes."""
 
     def __init__(self, source: Path, file: zipfile.ZipFile, folder: Path) -> None:
         self._source, self._file, self._folder = source, file, folder
@@ -240,7 +243,7 @@ def _no_place() -> CommandError:
 
 
 def _check_path(name: str) -> None:
-    """Raise CommandError or StoreError if this name is not permitted in a setup."""
+    """Raise CommandError or StoreError if a setup file may not contain a member of this name."""
     parts = PurePosixPath(name).parts
     if name == STORE:
         return

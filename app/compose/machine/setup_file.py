@@ -1,4 +1,4 @@
-"""Setup of a machine in one file that another control can load.
+"""Setup file, which contains a machine's complete setup for loading on another control.
 
 The file contains the store with its settings, the programs and the machine file.
 """
@@ -121,7 +121,7 @@ def _list_machine_members(named: str | None) -> dict[str, Path]:
 
 
 def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, ...]:
-    """Write the archive and return the omitted programs.
+    """Write the setup archive, and return the names of the files that it omits.
 
     Raises CommandError if a file cannot be read, or if the disk is full.
     """
@@ -186,9 +186,9 @@ def check_setup(source: Path) -> SetupContents:
 def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
     """Load a complete setup, and return its contents and the path of the saved old store, or None.
 
-    All files are written to temporary paths before the store is changed, so that an error while they are
-    written changes nothing. Raises CommandError if the file is damaged, if a file cannot be written, or
-    while TurnDesk is running on this computer.
+    The path is None if there was no old store. All files are written to temporary paths before the store is
+    changed. An error during writing therefore changes nothing. Raises CommandError if the file is damaged,
+    if a file cannot be written, or while TurnDesk is running on this computer.
     """
     folder, stamp = find_data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as staged:
@@ -208,7 +208,7 @@ def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
 
 
 class _StagedFiles:
-    """Files that have temporary names in their final folders until all files are complete.
+    """Files that have temporary names in their target folders until all of them are complete.
 
     Incomplete files are deleted.
     """

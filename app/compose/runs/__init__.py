@@ -1,1 +1,1 @@
-"""Services and records of a run: the journal, the event log and the error log."""
+"""Services and records of a program run: the journal, the event log and the error log."""

@@ -44,9 +44,9 @@ class ErrorLog:
 
     @property
     def error_text(self) -> str:
-        """Return the reason why the log cannot be written, or an empty string if it can.
+        """Return the reason why the error log cannot be written, or an empty string if it can.
 
-        Reading this property also retries the write after a delay.
+        After a delay, reading this property also retries the write.
         """
         found = self._file.error_text if self._file else ""
         if found and time.monotonic() >= self._next:

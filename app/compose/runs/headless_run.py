@@ -1,4 +1,4 @@
-"""A run without a screen, which by default uses the simulated lathe and the fastest possible clock.
+"""Program run without a screen, by default on the simulated lathe with a clock that does not wait.
 
 Tool life is counted and reported as on the screen. A part does not start with a worn insert.
 """
@@ -38,9 +38,10 @@ from drivers.wakeups import ManualClock, RealClock
 
 
 class HeadlessToolLife:
-    """Tool life during a run without a screen. ``update`` is called at every step of the run.
+    """Counter of tool life during a program run without a screen.
 
-    Without a store, nothing is counted and a message is printed.
+    ``update`` is called at every step of the run. Without a store, nothing is counted and a message is
+    printed.
     """
 
     def __init__(
@@ -96,14 +97,17 @@ def run_headless(
     report_progress: Callable[[float], None],
     duration_s: float = RING_DURATION_S,
 ) -> Iterator[HeadlessRun]:
-    """Yield a run without a screen on the machine, with these inputs and with automatic button presses.
+    """Yield a program run without a screen, with these inputs and automatic button presses.
 
     A machine that is not simulated runs in real time. ``discard_interrupted`` permits a start after an
-    interrupted job. The scope record is saved in the folder of records and contains at least the last
-    ``duration_s`` seconds of samples; a value above ``RING_DURATION_S`` is reduced to it. A run in real
-    time counts tool life, parts and cycles as on the screen, but a faster run counts nothing. Raises
-    CommandError if the machine does not respond, if an input does not exist or is wired, if a job was
-    interrupted, or if ``discard_interrupted`` is used for a simulated machine.
+    interrupted job.
+
+    The scope record is saved in the folder of records. It contains at least the last ``duration_s`` seconds
+    of samples, up to ``RING_DURATION_S``. A run in real time counts tool life, parts and cycles as on the
+    screen, but a faster run counts nothing.
+
+    Raises CommandError if the machine does not respond, if an input does not exist or is wired, if a job
+    was interrupted, or if ``discard_interrupted`` is used for a simulated machine.
     """
     paced = _is_real_time(machine, is_real_time)
     with (
@@ -177,9 +181,9 @@ def _connect(machine: Machine, real_time: bool) -> Iterator[tuple[RealClock | Ma
 def _open_journal(
     machine: Machine, *, discard_interrupted: bool, real_time: bool, print_line: Callable[[str], None]
 ) -> Iterator[tuple[Journal | None, StoreFunction]]:
-    """Yield the journal of the run, which may be None, and the function that saves an interrupted job.
+    """Yield the journal of the program run and the function that saves an interrupted job.
 
-    A simulated machine does not save an interrupted job.
+    The journal may be None. A simulated machine does not save an interrupted job.
     """
     if is_simulated(machine) and discard_interrupted:
         raise CommandError(
@@ -234,7 +238,7 @@ def _demand_anew(left: InterruptedJob, *, discard_interrupted: bool) -> None:
 def _start_function(
     machine: Machine, connected: ConnectedMachine, print_line: Callable[[str], None]
 ) -> Callable[[], None] | None:
-    """Return the function that starts a cycle, or None if a command may start the cycle.
+    """Return the function that starts a cycle, or None if a command can start the cycle.
 
     The function presses the palm buttons of the station on the screen, or asks the user to press the real
     buttons.

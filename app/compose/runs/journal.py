@@ -49,7 +49,7 @@ RETRY_INTERVAL_S = 5.0  # s between two attempts to open a store
 
 
 def _do_nothing() -> None:
-    """Do nothing. This is the default callback for a store that opens late."""
+    """Do nothing. This function is the default callback for a store that opens late."""
 
 
 class Journal(Persistence):
@@ -111,7 +111,10 @@ class Journal(Persistence):
         return store
 
     def _read_interrupted(self, store: Store) -> None:
-        """Read damage reports, the interrupted job, and runs without an end. Raises StoreError on failure."""
+        """Read damage reports, the interrupted job, and records of runs that have no end.
+
+        Raises StoreError on failure.
+        """
         self.damage = (*store.repair_messages, *store.find_damaged_rows())
         self._last_origin = store.runs.read_last_origin()
         left = None
@@ -153,7 +156,7 @@ class Journal(Persistence):
 
     @property
     def held(self) -> str:
-        """Return a description of the entries that wait in memory, or an empty string if there are none."""
+        """Return a description of the entries that wait in memory, or an empty string if none wait."""
         store, held = self._store, self._held
         if store is not None:
             return store.pending_entries.description if store.pending_entries is not None else ""
@@ -163,7 +166,7 @@ class Journal(Persistence):
         return PendingEntries("", event_count=len(held), part_count=parts).description
 
     def note(self, job: InterruptedJob | None) -> None:
-        """Save the job that a power failure would interrupt now, or None if no job is running."""
+        """Save the running job, which a power failure would interrupt, or None if no job is running."""
         with self._lock:
             self._noted, self._has_noted = job, True
         self._post_noted()
@@ -206,16 +209,16 @@ class Journal(Persistence):
         return book
 
     def _attach_book(self, book: OffsetBook | PartsBook, store: Store | None) -> None:
-        """Register a book that must use the new store whenever the store is replaced.
+        """Register a book whose store must be replaced whenever the journal's store is replaced.
 
-        The store may also be replaced while the book is being created.
+        The journal's store may also be replaced while the book is being created.
         """
         self._books.append(book)
         if self._store is not store:
             book.use_store(self._store, self._write_error)
 
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
-        """Save an event, and count a finished part for its program.
+        """Save an event. For a completed part, also increase the part count of its program.
 
         The receipt is confirmed when the event is on the disk. An event that waits in memory is confirmed
         together with the next event that is written to the disk.
@@ -229,12 +232,15 @@ class Journal(Persistence):
                 self._write(self._store, event, receipt)
 
     def has_stored(self, origin: EventOrigin) -> bool:
-        """Return whether an earlier screen has stored the event with this origin."""
+        """Return whether a previous screen process has already stored the event with this origin."""
         last = self._last_origin
         return last is not None and origin.control == last.control and origin.number <= last.number
 
     def resume_recording(self, snapshot: Snapshot) -> None:
-        """Resume recording for a control that ran without this process, before its events arrive."""
+        """Resume recording of events from a control that ran while the screen process was not running.
+
+        Call this method before the events of that control arrive.
+        """
         with self._lock:
             self._program = snapshot.program
             if snapshot.state in CYCLE_STATES and self._store is not None:
@@ -301,7 +307,7 @@ class Journal(Persistence):
             written.result()
 
     def log_change(self, text: str, user_name: str = "") -> None:
-        """Log a change if a user is logged in."""
+        """Log a data change under the name of the user, if a user is signed in."""
         now = self.who()
         if now:
             self._post(lambda store: store.events.log_event("change", text, author=user_name or now))
@@ -428,11 +434,11 @@ class Journal(Persistence):
 
     @property
     def waiting(self) -> bool:
-        """Return whether a temporary error prevented opening the store, so that the journal will retry."""
+        """Return whether the journal will retry opening the store, because the error is temporary."""
         return self._store is None and self._opener is not None
 
     def _retry_open(self) -> None:
-        """Retry opening the store until it succeeds, for example after space on a full disk was freed."""
+        """Retry opening the store until it succeeds, for example after disk space has been freed."""
         while not self._closing.wait(RETRY_INTERVAL_S):
             self._reopen()
             if self._store is not None:
@@ -444,7 +450,7 @@ class Journal(Persistence):
             write(store)
 
     def require_store(self) -> Store:
-        """Return the open store, which is a different object after a restore.
+        """Return the open store. After a restore, this is a different object than before.
 
         Raises StoreError if no store is open.
         """

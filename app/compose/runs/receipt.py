@@ -1,4 +1,4 @@
-"""Receipt of an event, with its origin in a control process and the function that confirms its storage."""
+"""Receipt of an event, which identifies the event and confirms that it is stored."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from core.store.store_rows import EventOrigin
 
 
 class Receipt(NamedTuple):
-    """Origin of an event, and the function that confirms its storage.
+    """Origin of an event in a control process, and the function that confirms its storage.
 
     ``confirm_storage`` is called from any thread when the event is on the disk, or when it need not be
     stored.

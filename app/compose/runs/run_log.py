@@ -1,4 +1,4 @@
-"""Event log file of one run, and limits on the files in the log folder."""
+"""Event log file of one program run, and limits on the files in the log folder."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ class _LogFile(NamedTuple):
 
 
 class EventLog:
-    """Event log of one run, with one JSON object per line. A disk error never stops the machine."""
+    """Event log of one program run, with one JSON object per line.
+
+    A disk error never stops the machine.
+    """
 
     def __init__(self, path: Path, file: TextIO) -> None:
         self.path = path
@@ -40,7 +43,7 @@ class EventLog:
     @classmethod
     @contextmanager
     def create(cls, program: str) -> Iterator[EventLog]:
-        """Yield a log in the data folder that is named after the time and the program.
+        """Yield a log in the data folder, whose file is named after the time and the program.
 
         Raises CommandError if the file cannot be created.
         """
@@ -85,9 +88,10 @@ class EventLog:
 
 
 def delete_old_files(folder: Path, newest_path: Path) -> None:
-    """Delete the oldest run and crash files beyond ``MAX_FILES``, ``MAX_TOTAL_BYTES`` and ``MAX_AGE_S``.
+    """Delete the oldest run and crash files until the log folder is within its limits.
 
-    ``newest_path``, which is being written, is not deleted. Files that cannot be deleted are ignored.
+    The limits are ``MAX_FILES``, ``MAX_TOTAL_BYTES`` and ``MAX_AGE_S``. The file ``newest_path``, which is
+    being written, is not deleted. Files that cannot be deleted are ignored.
     """
     with suppress(OSError):
         kept = [_kept(path) for what in ("*.jsonl", "crash-*.txt") for path in folder.glob(what)]

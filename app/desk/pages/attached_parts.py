@@ -1,6 +1,6 @@
-"""Interfaces of pages, start handlers and watchers that are attached to TurnDesk.
+"""Interfaces of the pages, start handlers and frame watchers that are attached to TurnDesk.
 
-The module also defines the order in which they close.
+The module also defines the order in which these objects close.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class StartHandler(Protocol):
     is_open: bool
 
     def barred(self) -> str:
-        """Return the reason why the start buttons have no effect, or an empty string if they work."""
+        """Return the reason why the start buttons are disabled, or an empty string if they are enabled."""
         ...
 
 

@@ -14,11 +14,12 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class CodeHelp:
-    """Help for the code at the cursor, with a list of choices to insert.
+    """Help for the program code at the cursor, with a list of choices to insert.
 
-    ``current_entry`` is the code at the cursor. ``choices`` are the listed codes, and ``marked`` is the
-    index of the selected choice. ``start_column`` is the column where the typed part of the code begins, or
-    0 if a choice is inserted at the cursor.
+    - ``current_entry`` is the code at the cursor.
+    - ``choices`` are the listed codes, and ``marked`` is the index of the selected choice.
+    - ``start_column`` is the column where the typed part of the code begins, or 0 if a choice is
+      inserted at the cursor.
     """
 
     current_entry: CodeBookEntry | None = None
@@ -37,10 +38,9 @@ class CodeHelp:
         self.current_entry = None if code_book is None else code_book.at(line, column)
 
     def open_choices(self) -> bool:
-        """List the completions of the typed text, or the chapter of the code at the cursor.
+        """List the completions of the typed text, or else the code book chapter of the code at the cursor.
 
-        The chapter is listed if there are no completions. Returns False if no code book exists yet, because
-        the text is still being proved for the first time.
+        Returns False if no code book exists yet, because the text is still being proved for the first time.
         """
         if self._book is None:
             return False
@@ -63,7 +63,7 @@ class CodeHelp:
         self.start_column = 0
 
     def move_chapters(self, chapter_count: int) -> None:
-        """Move forward by ``chapters`` chapters, or backward if the number is negative."""
+        """Move forward by ``chapter_count`` chapters of the code book, or backward if it is negative."""
         if self._book is not None and self.choices:
             self._show_chapter(self._book.find_chapter(self.selected_entry) + chapter_count)
 
@@ -76,7 +76,7 @@ class CodeHelp:
 
     @property
     def words(self) -> tuple[tuple[str, str], ...]:
-        """Return the words of the selected choice with their meanings."""
+        """Return the address words of the selected code with their meanings."""
         chosen = self.selected_entry
         return self._book.list_words(chosen) if self._book is not None and chosen is not None else ()
 

@@ -1,4 +1,4 @@
-"""Interface between the editor and a panel of an optional feature that writes program lines with forms."""
+"""Interface between the editor and an optional panel that writes program lines with forms."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from app.desk.pages.table_content import FunctionKey
 
 
 class PanelModel:
-    """Panel without functions, for an editor whose panel is not installed. A feature overrides all members.
+    """Panel without functions, for an editor whose panel is not installed.
 
-    ``text`` is the program with the lines that the panel writes. ``text_number`` counts the texts to prove.
-    ``write_count`` counts the texts that replace the editor's text. After each replacement, the cursor
-    moves to line ``cursor_line``.
+    A feature overrides all members.
+
+    - ``text`` is the program with the lines that the panel writes.
+    - ``text_number`` counts the texts to prove.
+    - ``write_count`` counts the texts that replace the editor's text.
+    - ``cursor_line`` is the line to which the cursor moves after each replacement.
     """
 
     text: str = ""
@@ -22,12 +25,12 @@ class PanelModel:
 
     @property
     def path_line(self) -> int:
-        """Return the line, counted from 1, up to which the path is drawn."""
+        """Return the program line, counted from 1, up to which the tool path is drawn."""
         return 0
 
     @property
     def is_list_shown(self) -> bool:
-        """Return whether the page can be left without losing input."""
+        """Return whether the panel shows a list, so that leaving the page loses no input."""
         return True
 
     def open_file(self, file: Path) -> None:

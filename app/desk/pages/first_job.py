@@ -1,4 +1,4 @@
-"""Card that guides the operator through the first job, from choosing a program to the first part."""
+"""Guidance card for the operator's first job, from choosing a program to the first part."""
 
 from __future__ import annotations
 
@@ -53,7 +53,10 @@ FIRST_JOB_STEPS = (
 
 @dataclass(slots=True)
 class FirstJobCard:
-    """Progress of the first job. A completed step remains completed until the card is shown again."""
+    """Progress of the operator through the steps of the first job.
+
+    A completed step remains completed until the card is shown again.
+    """
 
     step_index: int = 0
     _dry: bool = False  # A cycle that counts no part is running.

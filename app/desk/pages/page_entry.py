@@ -1,10 +1,11 @@
-"""Conditions for opening a page or a program. Both the keys and the page check them.
+"""Conditions for opening a page or a program, which both the keys and the page check.
 
 The original control cancels the spindle-on command when its editor is opened, so that the operator does not
 type next to a turning chuck. The executor has no command that only stops the spindle, because Reset also
-cancels the program. TurnDesk therefore does not open the editor until the spindle has stopped. While a
-cycle runs, the machine uses the program as it was loaded. A different program can be edited and proved
-during that time. Pause, Scroll Lock and Esc stop the machine as on other pages.
+cancels the program. TurnDesk therefore does not open the editor until the spindle has stopped.
+
+While a cycle runs, the machine uses the program as it was loaded. A different program can be edited and
+proved during that time. Pause, Scroll Lock and Esc stop the machine as on other pages.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ STOP_AXES_FIRST = "AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM"
 
 
 def find_program_refusal(snapshot: Snapshot) -> str:
-    """Return the reason why no other program can be chosen now, or an empty string if one can."""
+    """Return the reason why the operator cannot choose another program now.
+
+    The result is an empty string if another program can be chosen.
+    """
     if snapshot.state in MANUAL_STATES:
         return STOP_AXES_FIRST
     return PROGRAM_RUNNING if snapshot.state in ACTIVE_STATES else ""

@@ -1,4 +1,4 @@
-"""Registry of the pages and watchers that are attached to TurnDesk."""
+"""Registry of the page models and watchers that are attached to TurnDesk."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class PageRegistry:
         self._attached[type(model)] = model
 
     def attach_lazily(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
-        """Register a model that the first call of ``find_model`` creates.
+        """Register a page model that is created by the first call of ``find_model``.
 
         ``model_class`` is the class name with its module, for example
         ``app.editor.editor_model.EditorModel``.
@@ -62,7 +62,7 @@ class PageRegistry:
         self._starts.append(page)
 
     def add_run_watcher(self, watcher: FrameWatcher) -> None:
-        """Register a watcher that observes every frame of a program run, but no frame of an MDI line."""
+        """Register a watcher that observes every frame of a program run, but not of an MDI line."""
         self._run_watchers.append(watcher)
 
     def add_frame_watcher(self, watcher: Callable[[Snapshot], None]) -> None:
@@ -74,11 +74,11 @@ class PageRegistry:
         self._program_keys[name] = key
 
     def set_notice_finder(self, find_notice: Callable[[Snapshot], NoticeRow | None]) -> None:
-        """Set the function that returns a notice between cycles, for example about the next job."""
+        """Set the function that finds a notice to show between cycles, for example about the next job."""
         self._notice = find_notice
 
     def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
-        """Set the function that opens an alarm's recording, given the name of the recording."""
+        """Set the function that opens the scope recording of an alarm by name."""
         self._open_record = open_recording
 
     # --- uses ----------------------------------------------------------------------------------------
@@ -99,17 +99,17 @@ class PageRegistry:
         return self._run_watchers
 
     def notify_run_watchers(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Notify the run watchers of a frame of a program run."""
+        """Pass a frame of a program run to the run watchers."""
         for watcher in self._run_watchers:
             watcher.observe(snapshot, loaded)
 
     def notify_frame_watchers(self, snapshot: Snapshot) -> None:
-        """Notify the frame watchers of a frame."""
+        """Pass the snapshot of a frame to the frame watchers."""
         for see in self._frame_watchers:
             see(snapshot)
 
     def find_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice that a feature shows between cycles, or None."""
+        """Return the notice that a feature shows between cycles, or None if there is no notice."""
         return self._notice(snapshot)
 
     def open_recording(self, name: str) -> None:

@@ -1,4 +1,4 @@
-"""Tables with an entry line and function keys. The list pages of TurnDesk use these tables."""
+"""Tables with an entry line and function keys, which the list pages of TurnDesk show."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class RejectedText(str):
 
 
 def refused(text: str) -> str:
-    """Return a rejected value as RejectedText, or return it unchanged if it is a name.
+    """Return a rejected value as RejectedText, but return a rejected name unchanged.
 
-    An operator edits a rejected name instead of typing it again.
+    The operator edits a rejected name instead of typing it again.
     """
     return text if set(text) - EXPRESSION_CHARACTERS else RejectedText(text)
 
@@ -52,8 +52,9 @@ def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
 class TableRow:
     """One row of a table.
 
-    ``is_lit`` draws a lamp, which is filled if True and hollow if False. None draws no lamp. A cell may
-    have two lines if the table has ``has_tall_rows`` set. ``outline`` is drawn in the last cell.
+    - ``is_lit`` draws a lamp, which is filled if True and hollow if False. None draws no lamp.
+    - A cell may have two lines if the table has ``has_tall_rows`` set.
+    - ``outline`` is drawn in the last cell.
     """
 
     cells: tuple[str, ...]
@@ -67,9 +68,10 @@ class TableRow:
 class TableContent:
     """Content of a table with a title, column heads and an entry line.
 
-    ``column_shares`` divide the table's width. ``marked`` is the index of the selected row, or -1 without a
-    selection. ``question`` and ``text`` are the entry line. Cells of the columns ``raw_columns`` contain
-    names and user texts, which are not translated.
+    - ``column_shares`` are the fractions of the table's width that the columns have.
+    - ``marked`` is the index of the selected row, or -1 if no row is selected.
+    - ``question`` and ``text`` are shown in the entry line.
+    - Cells of the columns ``raw_columns`` contain names and user texts, which are not translated.
     """
 
     title: str
@@ -101,7 +103,8 @@ class FunctionKey(NamedTuple):
 class InputField:
     """Input field for text or for numbers.
 
-    If ``words`` is True, the field accepts any character. Otherwise it accepts only characters of numbers.
+    If ``words`` is True, the field accepts any character. Otherwise it accepts only the characters of
+    numbers.
     """
 
     words: bool = False
@@ -109,7 +112,7 @@ class InputField:
     proposed_text: str = ""  # A proposed text that the first character replaces and Back edits.
 
     def propose(self, text: str) -> None:
-        """Set a proposed text. The first typed character replaces the text."""
+        """Show a proposed text, which the first typed character replaces."""
         self.text = self.proposed_text = text
 
     def accepts_key(self, key: str) -> bool:

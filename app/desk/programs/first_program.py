@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def load_first_program(desk: Desk, name: str | None) -> None:
-    """Load the running or interrupted program. If there is no such program, load the program ``name``."""
+    """Load the running or interrupted program, or else the program ``name``."""
     if desk.read_snapshot().state in CYCLE_STATES:
         _show_running_program(desk, name)
         return
@@ -42,7 +42,7 @@ def load_first_program(desk: Desk, name: str | None) -> None:
 
 
 def _show_running_program(desk: Desk, named: str | None) -> None:
-    """After a restart of the screen, load the program that the control is still running."""
+    """Load the program that the control is still running after the screen has restarted."""
     now = desk.read_snapshot()
     last = desk.settings_store.persistence.read_setting(LAST_PROGRAM_SETTING)
     known = (Path(each) for each in (named, last) if isinstance(each, str))

@@ -25,7 +25,7 @@ It is called on the worker thread.
 
 
 def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
-    """Return an error for each tool in the line that does not have a measured offset."""
+    """Return an error for each tool in the MDI line that does not have a measured offset."""
     missing = proved_job.proof.unset(job)
     text = "Tool {number} has not been set."
     return tuple(
@@ -38,7 +38,7 @@ def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
 
 @dataclass(slots=True)
 class PreparedMdiLine:
-    """One MDI line, from the key press that requests it until the start buttons run it. A line runs once.
+    """One MDI line, from the key press that requests it until it runs. A line runs only once.
 
     Only Cycle Start starts the line. While no line is ready, Cycle Start has no effect.
     """
@@ -54,7 +54,7 @@ class PreparedMdiLine:
     _begun: int = 0  # Number of lines that the executor had started at the last update.
 
     def prove_line(self, text: str, snapshot: Snapshot, on_failed: Callable[[str], None]) -> None:
-        """Prove this line from the current machine state. A line that is already ready is canceled.
+        """Prove this MDI line from the current machine state, and cancel a line that is already ready.
 
         ``on_failed`` is called with an error text if the proof fails unexpectedly.
         """
@@ -77,17 +77,18 @@ class PreparedMdiLine:
         self.ready_job, self.diagnostics = None, ()
 
     def renew_line_mode(self, snapshot: Snapshot) -> None:
-        """Make Cycle Start run only lines. The MDI page calls this method once per frame while it is open.
+        """Make Cycle Start run MDI lines instead of the program.
 
-        The command is repeated until the snapshot shows its effect. The executor rejects the command during
-        a program, which may have started after the snapshot was made.
+        The MDI page calls this method once per frame while it is open. The command is repeated until the
+        snapshot shows its effect. The executor rejects the command during a program, which may have started
+        after the snapshot was made.
         """
         if snapshot.state in CYCLE_STATES or snapshot.starts is StartAction.MDI_LINE:
             return
         self._prepare()
 
     def update(self, snapshot: Snapshot) -> bool:
-        """Process the results of the worker, and return whether the line has just started.
+        """Process the results of the worker, and return whether the MDI line has just started.
 
         The page calls this method once per frame.
         """

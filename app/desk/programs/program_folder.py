@@ -1,4 +1,4 @@
-"""Program folders, and a monitor for changes of the loaded program's file.
+"""Program folders, and a monitor that detects changes of the loaded program's files.
 
 ``FILE TO BE PROCESSED`` lists the programs of these folders. Cycle Start runs the loaded text. If the file
 is changed on another computer, the operator must see that the new text is not loaded.
@@ -125,9 +125,9 @@ _FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an
 
 
 class ProgramFileMonitor:
-    """Monitor that compares the program's files with the loaded text in a separate thread.
+    """Monitor that compares the loaded text with the program's files in a separate thread.
 
-    The separate thread is necessary because a network drive may hang.
+    The separate thread is necessary because access to a network drive may hang.
     """
 
     def __init__(
@@ -160,7 +160,7 @@ class ProgramFileMonitor:
         return tr(Message(said[0], name=said[1])) if said[0] and source is loaded.source else ""
 
     def start(self) -> None:
-        """Start the thread that checks the file."""
+        """Start the thread that checks the program's files."""
         self._thread.start()
 
     def close(self) -> None:
@@ -169,7 +169,7 @@ class ProgramFileMonitor:
         self._wanted.set()
 
     def request_check(self) -> None:
-        """Request an immediate check of the file, because TurnDesk has just written it."""
+        """Request an immediate check of the program file, because TurnDesk has just written it."""
         self._wanted.set()
 
     def compare_files(self) -> None:
@@ -204,7 +204,7 @@ class ProgramFileMonitor:
                 self.check_safely()
 
     def check_safely(self) -> None:
-        """Check the file once. If the check raises an exception, the file counts as unreadable."""
+        """Check the program's files once. If an exception occurs, they count as unreadable."""
         with CaughtAttempt() as trial:
             self.compare_files()
         if trial.error is not None:
@@ -222,7 +222,7 @@ def _stamp(file: Path) -> _FileStamp:
 
 
 def _find_difference(file: Path, read: ProgramSource) -> str:
-    """Return the message about this file, or an empty string if the file equals the loaded text."""
+    """Return the message that a file differs from the loaded text, or an empty string if equal."""
     try:
         now = load_source(file)
     except SourceError as error:
@@ -231,7 +231,7 @@ def _find_difference(file: Path, read: ProgramSource) -> str:
 
 
 def _describe_read_error(error: SourceError) -> str:
-    """Return the message about a file whose program text cannot be read."""
+    """Return the message that a program file cannot be read."""
     cause = error.__cause__
     if not isinstance(cause, OSError):
         return FILE_CHANGED_TEXT  # The file could be read, but is not a program.

@@ -29,7 +29,7 @@ ApproachLegs = tuple[tuple[float, float, bool], ...]
 
 
 class FirstMoveResult(NamedTuple):
-    """Result of the first-move check.
+    """Result of checking the first move of a program for collisions.
 
     The result has one verdict for a start at the current position and one verdict for Cycle Repeat.
     ``approach_legs`` is the path to draw. ``zero_position`` is the machine position, X and Z in mm, at
@@ -63,7 +63,7 @@ class LoadingPhase(StrEnum):
 class ProvedJob:
     """Proof of a job with its diagnostics.
 
-    If ``waits_for_part`` is True, the start must wait for the proof of the part, because an error of the
+    If ``waits_for_part`` is True, the job must not start before the part is proved, because an error of the
     part may prevent the start. ``first_move_result`` is the result of the first-move check of an MDI line
     or a restart.
     """
@@ -75,7 +75,7 @@ class ProvedJob:
 
     @property
     def first_move_clearance(self) -> Clearance | None:
-        """Return the verdict on the first move, or None if the move was not checked."""
+        """Return the verdict of the first-move check, or None if the move was not checked."""
         return self.first_move_result.start_clearance if self.first_move_result is not None else None
 
 
@@ -94,12 +94,12 @@ class PartProof:
     error_text: str = ""
 
     def add_to_proof(self, proof: Proof, name: str) -> Proof:
-        """Return the proof of the program, to which the errors and warnings of the part are added."""
+        """Return the proof of the program with the errors and warnings of the part added."""
         errors = tuple(d.format_one_line(name) for d in self.diagnostics if d.severity is Severity.ERROR)
         return replace(proof, errors=(*proof.errors, *errors), warnings=self.warning_texts)
 
     def merge_diagnostics(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        """Return these diagnostics and the given diagnostics without duplicates.
+        """Return the diagnostics of the part and the given diagnostics, without duplicates.
 
         The diagnostics are sorted by line and column.
         """
@@ -114,7 +114,7 @@ def _no_part(_picture: ProgramPicture, _watch: ProgressCallback) -> PartProof | 
 
 @dataclass(frozen=True, slots=True)
 class LoadingSteps:
-    """Functions of other packages that load a program. They are called only on the worker thread.
+    """Functions of other packages that load a program, called only on the worker thread.
 
     The ``ProgressCallback`` receives the progress. It may raise AbandonedError, which the functions must
     not catch.
@@ -197,11 +197,17 @@ class ProgramLoader:
             self.worker.request_work(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
     def replace_loaded(self, loaded: LoadedProgram) -> None:
-        """Replace the loaded program with an object that has a new proof or progress of this program."""
+        """Replace the loaded program with an updated object for the same program.
+
+        The updated object has a new proof or a new progress of loading.
+        """
         self._now = loaded
 
     def wait_until_loaded(self, timeout_s: float) -> LoadedProgram:
-        """Wait until loading is finished, and return the program. Only scripts and tests use this method."""
+        """Wait until loading is complete, and return the program.
+
+        Only scripts and tests use this method.
+        """
         self.worker.wait_for_results(timeout_s)
         return self.loaded_program
 
@@ -234,10 +240,7 @@ class ProgramLoader:
         _freeze_garbage()
 
     def _prove_part(self, job: Job, proved: ProvedJob, picture: ProgramPicture, request: WorkRequest) -> None:
-        """Prove the part. The program may already be running.
-
-        A program can run before this proof ends if it does not have to wait for the proof.
-        """
+        """Prove the part. The program may run before this proof ends unless it must wait for the proof."""
         watch = partial(self._reached, request) if proved.waits_for_part else request
         part = self.loading_steps.prove_part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
@@ -264,7 +267,7 @@ class ProgramLoader:
 
 
 def find_final_phase(proof: Proof) -> LoadingPhase:
-    """Return the phase of a program whose proof is complete."""
+    """Return the loading phase of a program whose proof is complete."""
     return LoadingPhase.REFUSED if proof.errors else LoadingPhase.READY
 
 

@@ -26,10 +26,11 @@ from core.message import Message
 
 @dataclass(slots=True)
 class RunningRenewal:
-    """One renewal of the proof during a run. A newer renewal or a newly loaded program replaces it.
+    """One renewal of the proof during a program run.
 
-    The renewal uses the text of the running program, and not the file on the disk. The screen shows the old
-    program until the executor uses the new program.
+    A newer renewal or a newly loaded program replaces this renewal. It uses the text of the running
+    program, and not the file on the disk. The screen shows the old program until the executor uses the new
+    program.
     """
 
     program_loader: ProgramLoader
@@ -47,9 +48,10 @@ class RunningRenewal:
         self.worker = LatestRequestWorker("renewing", thread_owner=self.program_loader.worker)
 
     def begin_renewal(self) -> bool:
-        """Announce the renewal and begin proving. Return False if no program is loaded.
+        """Announce the renewal to the executor and begin proving.
 
-        After the announcement, the executor does not start a part with the old offsets.
+        Returns False if no program is loaded. After the announcement, the executor does not start a part
+        with the old offsets.
         """
         now = self.program_loader.loaded_program
         if now.job is None:
@@ -61,7 +63,7 @@ class RunningRenewal:
         return True
 
     def is_in_use(self, snapshot: Snapshot) -> bool:
-        """Return whether the executor uses the renewed program. If so, the screen also shows that program."""
+        """Return whether the executor uses the renewed program, and if so, show it on the screen."""
         ready = self._next
         if ready is None or ready.job is None or self.program_loader.load_count != self._loads:
             return False
@@ -77,9 +79,10 @@ class RunningRenewal:
         return True
 
     def poll_error(self) -> str:
-        """Return the reason why the next part will not start, once for each reason, or an empty string.
+        """Return the reason why the next part will not start, or an empty string.
 
-        If the program could not be proved again, the executor is informed.
+        Each reason is returned only once. If the program could not be proved again, the executor is
+        informed.
         """
         self.worker.deliver_results()
         if self._trouble:
@@ -200,7 +203,7 @@ class ProgramRenewal:
                 self.program_loader.start_loading(now.path, now.has_block_delete)
 
     def _report_error(self, snapshot: Snapshot) -> None:
-        """Warn that the next part will not start. The operator can still undo the change at this time."""
+        """Warn that the next part will not start, while the operator can still undo the change."""
         why = self.running_renewal.poll_error()
         if why and snapshot.state in ACTIVE_STATES:
             self.show_warning(

@@ -1,9 +1,11 @@
-"""Check of the first move of the next start for a collision with the part, which prevents the start.
+"""Check whether the first move of the next start would collide with the part.
 
-A program is checked on a worker each time the axes stop at a new position. The worker that proves an MDI
-line or a restart also checks its first move. The executor receives the verdict, and rejects a start without
-a verdict. The geometry is in ``core/proving/start_check.py``. Any worker may use ``FirstMoveChecker``,
-because it does not read a clock or wait for the machine.
+A collision prevents the start. A program is checked on a worker each time the axes stop at a new position.
+The worker that proves an MDI line or a restart also checks its first move. The executor receives the
+verdict, and rejects a start without a verdict.
+
+The geometry is in ``core/proving/start_check.py``. Any worker may use ``FirstMoveChecker``, because it does
+not read a clock or wait for the machine.
 """
 
 from __future__ import annotations
@@ -42,7 +44,7 @@ if TYPE_CHECKING:
 
 
 class PreviousPart(NamedTuple):
-    """The program that made the part in the chuck.
+    """The program that made the part now in the chuck.
 
     If the program was interrupted, this object also contains the interrupted job.
     """
@@ -85,7 +87,10 @@ class FirstMoveQuery(NamedTuple):
 
 
 def add_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
-    """Return the proof with this verdict on the first move, which is an error if it was rejected."""
+    """Return the proof with the verdict of the first-move check added.
+
+    A rejected first move is an error.
+    """
     found = result.start_clearance
     if not found.code:
         return replace(proved_job, first_move_result=result)
@@ -98,13 +103,16 @@ def add_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
 
 @dataclass(slots=True)
 class FirstMoveChecker:
-    """Checker of first moves. It caches the last part history for the next check."""
+    """Checker of first moves, which caches the latest part history for the next check."""
 
     _lock: Lock = field(default_factory=Lock)
     _history: tuple[ProgramPicture, PartHistory] | None = None
 
     def check_first_move(self, query: FirstMoveQuery, report_progress: ProgressCallback) -> FirstMoveResult:
-        """Return the verdict on this start. AbandonedError of ``report_progress`` is passed on."""
+        """Return the verdict on the first move of this start.
+
+        AbandonedError of ``report_progress`` is passed on.
+        """
         with self._lock:
             return self._judge(query, report_progress)
 
@@ -179,7 +187,7 @@ def _now(asked: FirstMoveQuery, part: PreviousPart) -> StartState:
 
 
 def _make_verdict(plain: Clearance, found: FirstMove, part: PreviousPart) -> Clearance:
-    """Return the verdict with its text.
+    """Return the verdict of a first-move check with its text.
 
     A finding that depends on an assumption is a warning. Any other finding prevents the start.
     """
@@ -274,12 +282,12 @@ class FirstMoveWatch:
 
     @property
     def start_refusal(self) -> str:
-        """Return the reason why the first move prevents a start of the program, or an empty string."""
+        """Return why the first move prevents a program start, or an empty string if it does not."""
         return self.first_move_result.start_clearance.why if self.first_move_result is not None else ""
 
     @property
     def is_checking(self) -> bool:
-        """Return whether the verdict is not known yet. The program cannot start until then."""
+        """Return whether the first-move check is still pending. The program cannot start until it ends."""
         return self._asked is not None and self.first_move_result is None
 
     # =
@@ -307,7 +315,7 @@ class FirstMoveWatch:
     # --- requests -----------------------------------------------------------------------------------------
 
     def _track_part(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Update the part in the chuck. An interrupted part remains there until a program starts."""
+        """Update which part is in the chuck. An interrupted part stays there until a program starts."""
         found, job, picture = snapshot.interrupted, loaded.job, loaded.picture
         self._loaded = PreviousPart(job, picture) if job is not None and picture is not None else None
         if snapshot.state in CYCLE_STATES and snapshot.starts not in MDI_ACTIONS:
@@ -355,7 +363,7 @@ class FirstMoveWatch:
 
 
 def make_drawn_legs(result: FirstMoveResult | None) -> tuple[ApproachLeg, ...]:
-    """Return the first move as legs for the path view to draw. The label is at the end of the move."""
+    """Return the first move as path legs for the path view, with the label at the end of the move."""
     if result is None:
         return ()
     (zero_x, zero_z), last = result.zero_position, len(result.approach_legs) - 1

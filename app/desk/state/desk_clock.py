@@ -10,7 +10,7 @@ from functools import partial
 
 @dataclass(slots=True)
 class DeskClock:
-    """Clock for monotonic time in seconds and for the local time of day as text."""
+    """Clock with monotonic time in seconds and with the local time of day as text."""
 
     read_seconds: Callable[[], float] = time.monotonic
     format_local_time: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))

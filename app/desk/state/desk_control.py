@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 class DeskControl:
     """Access to the commands, the snapshots and the simulated station of the control.
 
-    ``station_panel`` is None if the machine has its own operator station. ``set_input`` switches an input
-    of a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a
-    recorder. ``open_stop_channel`` opens a connection that sends stop keys to the control without the
-    screen. ``restart_control`` replaces a silent control with a new control, or is None if this is not
-    possible. ``read_identity`` returns the identity of a control process, or an empty string for a control
-    in this process.
+    - ``station_panel`` is None if the machine has its own operator station.
+    - ``set_input`` switches an input of a simulated machine.
+    - ``recordings`` contains the last minutes of samples, or is None without a recorder.
+    - ``open_stop_channel`` opens a connection that sends stop keys to the control without the screen.
+    - ``restart_control`` replaces a silent control, or is None if this is not possible.
+    - ``read_identity`` returns the identity of a control process, or an empty string for a control in
+      this process.
     """
 
     post: Callable[[Command], None]

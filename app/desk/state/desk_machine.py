@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeskMachine:
-    """Name, axes and start buttons of the machine.
+    """Machine data for the screen: name, axes and start buttons.
 
     ``machine`` is the machine as its machine file describes it, or None without a file. ``allows_one_hand``
     is True if no real axis or spindle moves, so that the palm buttons may be pressed one after the other.
@@ -35,5 +35,5 @@ class DeskMachine:
 
     @property
     def is_table_rotary(self) -> bool:
-        """Return whether the rotary axes turn the table instead of the head."""
+        """Return whether the rotary axes move the table instead of the head."""
         return self.machine is None or self.machine.has_rotary_table

@@ -16,7 +16,10 @@ from core.store.store_errors import StoreError
 
 
 class ProgramRuns:
-    """Part counter, run history and card of the first job. ``persistence`` stores all three."""
+    """Part counter, run history and guidance card for the first job.
+
+    ``persistence`` stores all three.
+    """
 
     def __init__(self, persistence: Persistence) -> None:
         self.part_counter = PartCounter(persistence)
@@ -29,11 +32,11 @@ class ProgramRuns:
 
     @property
     def first_job_card(self) -> FirstJobCard:
-        """Return the card of the first job."""
+        """Return the card that guides the operator through the first job."""
         return self._first_job
 
     def restart_first_job(self) -> None:
-        """Restart the first job at its first step."""
+        """Restart the guidance for the first job at its first step."""
         self._first_job = FirstJobCard()
 
     def record_frame(
@@ -60,7 +63,7 @@ class ProgramRuns:
         self._first_job.save_step(self._persistence)
 
     def pop_part_warning(self, snapshot: Snapshot, loaded: LoadedProgram) -> str:
-        """Return the first new warning about a part that was proved while its program was running.
+        """Return the next new warning about a part that was proved while its program was running.
 
         Each warning is returned only once. If there is no new warning, the result is an empty string.
         """

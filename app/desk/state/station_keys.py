@@ -18,9 +18,8 @@ from core.executor.commands import CycleStart, SetFeedOverride
 class StationKeys:
     """E-stop, start button, spindle switch and feed override on the screen.
 
-    If the machine has its own station, ``start_feed_hold`` starts feed hold in place of an E-stop.
-    ``barred`` returns why the start button has no effect. ``is_two_hand`` is True if the machine has palm
-    buttons.
+    If the machine has its own station, the E-stop key calls ``start_feed_hold`` instead. ``barred`` returns
+    why the start button is disabled. ``is_two_hand`` is True if the machine has palm buttons.
     """
 
     desk_control: DeskControl
@@ -69,8 +68,8 @@ class StationKeys:
     def step_override(self, steps: int) -> None:
         """Change the feed override by a number of steps of ten percent.
 
-        If the station is simulated, this method turns the pot of the station, so that the knob always shows
-        the override value.
+        On a simulated station, this method moves the feed override pot, so that the knob always shows the
+        override value.
         """
         if self.desk_control.station_panel is not None:
             self.station_controls.turn_feed_pot(steps)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class StorageState:
-    """State of the store and of the program file. If there is no store, no data are unsaved."""
+    """State of the data store and the program file. Without a store, no data count as unsaved."""
 
     _problem: Callable[[], str] = str
     _waiting: Callable[[], str] = str
@@ -34,14 +34,14 @@ class StorageState:
         return self._problem()
 
     def read_unsaved(self) -> str:
-        """Return a text that lists the data waiting in memory to be saved.
+        """Return a description of the data that wait in memory to be saved.
 
         The result is an empty string if no data are waiting.
         """
         return self._waiting()
 
     def read_file_difference(self) -> str:
-        """Return the difference between the program file and the loaded program, or an empty string."""
+        """Return how the program file differs from the loaded program, or an empty string if equal."""
         return self._difference()
 
     def recheck_file(self) -> None:

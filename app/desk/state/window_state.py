@@ -10,9 +10,10 @@ from app.desk.late_presses import LatePressFilter
 
 @dataclass(slots=True)
 class WindowState:
-    """State of the main window. Without a window, the current page does not prevent a start.
+    """State of the main window that affects starts and prompts.
 
-    ``late_presses`` drops key presses that would start an action after a stall of the screen.
+    Without a window, cycles can always be started. ``late_presses`` drops key presses that would start an
+    action after a stall of the screen.
     """
 
     late_presses: LatePressFilter
@@ -31,7 +32,7 @@ class WindowState:
         is_stop_held: Callable[[], bool],
         find_press_age: Callable[[], float],
     ) -> None:
-        """Use the functions of this window instead of those of the previous window."""
+        """Connect the functions of a window in place of those of the previous window."""
         self._wake, self._is_stop_held, self._press_age = wake_window, is_stop_held, find_press_age
 
     def set_page(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
@@ -43,7 +44,7 @@ class WindowState:
         self._starts_here, self._has_field = can_start, has_field
 
     def set_keyboard_lost(self, is_lost: bool) -> None:
-        """Set whether another window has the keyboard focus. This window then receives no keys."""
+        """Set whether another window has the keyboard focus, so that TurnDesk receives no keys."""
         self._keyboard_away = is_lost
 
     # --- read by the model ---------------------------------------------------------------------------
@@ -71,5 +72,8 @@ class WindowState:
         return self._press_age()
 
     def wake_window(self) -> None:
-        """Make the window read a state that changed while the machine was at rest, from any thread."""
+        """Make the window read a state that changed while the machine was at rest.
+
+        Any thread may call this method.
+        """
         self._wake()

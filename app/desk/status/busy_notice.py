@@ -10,9 +10,10 @@ from core.message import Message
 
 
 class BusyNotice:
-    """Message that feed hold reacts late. ``show_message`` shows a text on the prompt line.
+    """Notice to the operator that feed hold reacts late because the computer is busy.
 
-    The message appears once in each busy period, and again if the delay has doubled.
+    The notice appears once in each busy period, and again if the delay has doubled. ``show_message`` shows
+    a text on the prompt line.
     """
 
     def __init__(self, show_message: Callable[[str], None]) -> None:
@@ -20,7 +21,7 @@ class BusyNotice:
         self._told = 0.0  # s
 
     def check_snapshot(self, snapshot: Snapshot) -> None:
-        """Check a snapshot, and show the message if necessary.
+        """Check the feed hold delay in a snapshot, and show the notice if necessary.
 
         The screen calls this method once per frame.
         """

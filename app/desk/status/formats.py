@@ -40,7 +40,7 @@ def format_angle(degrees: float) -> str:
 
 
 def find_rotary_feed_unit(per_rev: bool) -> str:
-    """Return the unit of the feed for a move in which only the C axis moves."""
+    """Return the unit of the feed for a move of the C axis only."""
     return f"°/{'rev' if per_rev else 'min'}"
 
 
@@ -75,9 +75,9 @@ def format_percent(fraction: float) -> str:
 
 
 def format_duration(seconds: float) -> str:
-    """Return a time in seconds as ``m:ss``, or as ``h:mm:ss`` from one hour on. The time is rounded down.
+    """Return a time in seconds as ``m:ss``, or as ``h:mm:ss`` if it is one hour or longer.
 
-    The text of an unknown or negative time is a dash.
+    The time is rounded down. The text of an unknown or negative time is a dash.
     """
     if not math.isfinite(seconds) or seconds < 0:
         return NO_VALUE
@@ -88,7 +88,7 @@ def format_duration(seconds: float) -> str:
 
 
 def format_file_size(size_bytes: int) -> str:
-    """Return a size in bytes as text, in a unit that gives one to three digits before the decimal point."""
+    """Return a file size in bytes as text, in a unit that leaves one to three integer digits."""
     for unit, most in (("B", 1e3), ("KB", 1e6), ("MB", 1e9)):
         if size_bytes < most:
             return f"{size_bytes / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
@@ -96,7 +96,7 @@ def format_file_size(size_bytes: int) -> str:
 
 
 def format_wall_time(utc_time: str, today_format: str = "%H:%M") -> str:
-    """Return a UTC time of the store as local time, with the date unless it is today.
+    """Return a UTC time of the store as local time, with the date if it is not today.
 
     ``today_format`` is the format for times of today. An invalid time is returned unchanged.
     """

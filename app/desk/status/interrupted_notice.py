@@ -1,7 +1,8 @@
 """Notices about an interrupted job, and about parts of the machine that do not respond.
 
-The notice of an interrupted job contains the program, the line, and the tool's position at the stop and
-now. The other notice appears if the connection is lost, because the machine may continue to move.
+The notice of an interrupted job contains the program, the line, the tool's position at the stop and its
+current position. The other notice appears if the connection is lost, because the machine may continue to
+move.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ _POSITION_TOLERANCE = 0.05  # Tolerance in mm or degrees within which the positi
 
 @dataclass(frozen=True, slots=True)
 class NoticeRow:
-    """A notice that remains until the operator acts, with a text, values below the text, and labeled keys.
+    """A notice that remains until the operator acts.
 
-    ``color_name`` is the name of the background color.
+    It has a text, values below the text, and labeled keys. ``color_name`` is the name of the background
+    color.
     """
 
     text: str
@@ -37,7 +39,7 @@ class NoticeRow:
 def make_interrupted_notice(
     snapshot: Snapshot, loaded: LoadedProgram, units: DisplayUnits
 ) -> NoticeRow | None:
-    """Return the notice about the interrupted job, or None without an interrupted job."""
+    """Return the notice about the interrupted job, or None if no job was interrupted."""
     found = snapshot.interrupted
     if found is None:
         return None
@@ -61,7 +63,7 @@ def make_interrupted_prompt(snapshot: Snapshot, loaded: LoadedProgram, start_ins
     """Return the prompt for an interrupted job on the Automatic page.
 
     The prompt is empty if the loaded program was not interrupted. ``start_instruction`` is the instruction
-    that says how to start a cycle.
+    for starting a cycle.
     """
     line = snapshot.interrupted_line
     if not line or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
@@ -108,7 +110,7 @@ def _changed(found: InterruptedJob, loaded: LoadedProgram) -> bool:
 
 
 def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
-    """Return a text that gives the number of the repetition in which the line was interrupted.
+    """Return as text in which repetition the line was interrupted.
 
     The result is an empty string unless the line runs more than once per part.
     """
@@ -139,9 +141,10 @@ def _describe_positions(found: InterruptedJob, snapshot: Snapshot, units: Displa
 
 
 def _describe_uncertainty(found: InterruptedJob) -> str:
-    """Return a warning that the last second before a loss of control was not recorded.
+    """Return a warning that the last second before the control failed was not recorded.
 
-    The job's state is written once per second. After any other interruption, the result is an empty string.
+    The job's state is written once per second. After any other kind of interruption, the result is an empty
+    string.
     """
     if found.why != POWER_LOST_REASON:
         return ""

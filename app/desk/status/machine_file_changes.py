@@ -1,4 +1,4 @@
-"""Changes of the machine file since the operator accepted it. They prevent enabling the drives."""
+"""Changes of the machine file since the operator accepted it, which prevent enabling the drives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.message import Message
 
 @dataclass(slots=True)
 class MachineFileChanges:
-    """Changes of the machine file. They are empty if the file is the accepted file.
+    """List of changes in the machine file, which is empty if the file is the accepted file.
 
     ``file_path`` is the path of the file. ``save_acceptance`` stores the current file as accepted.
     """

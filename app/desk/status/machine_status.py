@@ -1,7 +1,7 @@
 """Texts and values of one snapshot for the operator, and detection of a silent control.
 
-The module also describes which event a waiting program (WAITING) needs in order to continue. It contains no
-Qt and no machine logic.
+The module also describes the event that a waiting program (WAITING) needs in order to continue. It contains
+no Qt and no machine logic.
 """
 
 from __future__ import annotations
@@ -46,7 +46,10 @@ CANCEL_HINT = "PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM"
 
 
 def describe_wait(snapshot: Snapshot) -> str:
-    """Return the title of a wait. It names the cause, and for an input also the expected state."""
+    """Return the title for a waiting program, which names the cause of the wait.
+
+    For an input, the title also contains the expected state.
+    """
     name = snapshot.waiting_for
     if not name or name in _WAIT_PROMPTS:
         return name
@@ -57,7 +60,7 @@ def describe_wait(snapshot: Snapshot) -> str:
 
 
 def make_wait_prompt(snapshot: Snapshot, is_simulated: bool = False) -> str:
-    """Return the prompt for a wait, or an empty string if the wait is unknown.
+    """Return the prompt for a waiting program, or an empty string if the cause of the wait is unknown.
 
     ``is_simulated`` is True if the inputs can be switched on the screen.
     """
@@ -116,7 +119,7 @@ STATE_TONES = {
 
 @dataclass(frozen=True, slots=True)
 class MachineStatus:
-    """All values on the page that come from the machine, formatted as text."""
+    """All values from the machine that a page displays, formatted as text."""
 
     program_name: str
     state_text: str
@@ -146,7 +149,7 @@ def _find_tool_text(modal: ModalState) -> str:
 
 
 def _find_secondary_offset(modal: ModalState) -> str:
-    """Return the text after the tool number.
+    """Return the text for the offset that is displayed after the tool number.
 
     The text is the secondary offset, or the cutting edge and the zero offset.
     """
@@ -166,10 +169,11 @@ def make_status(
 ) -> MachineStatus:
     """Return the texts and values of a snapshot for the operator.
 
-    ``has_c_axis`` is True if the machine has a C axis. ``program_language`` is the machine's program
-    language. ``third_axis`` is the name of the C axis. ``is_table_rotary`` is True if a rotary table of a
-    mill turns, and not only the head. All values are in one unit, which depends on ``units`` and the
-    snapshot.
+    - ``has_c_axis`` is True if the machine has a C axis, and ``third_axis`` is the name of that axis.
+    - ``program_language`` is the machine's program language.
+    - ``is_table_rotary`` is True if a rotary table of a mill turns, and not only the head.
+
+    All values are in one unit system, which depends on ``units`` and the snapshot.
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
@@ -244,7 +248,10 @@ SILENCE_TIMEOUT_S = 1.0  # Seconds without a new snapshot. The executor makes a 
 
 @dataclass(slots=True)
 class SilenceWatch:
-    """Detector of a silent control. It compares the time stamps of snapshots with the screen's clock."""
+    """Detector of a control that no longer responds.
+
+    It compares the time stamps of snapshots with the screen's clock.
+    """
 
     is_silent: bool = False
     _stamp: float | None = None

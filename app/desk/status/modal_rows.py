@@ -1,4 +1,4 @@
-"""Modal state as rows of text for MDI and SEARCHTO. Each group of codes has one row."""
+"""Modal state as rows of text for MDI and SEARCHTO, with one row for each group of codes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ModalRow:
 
 
 def make_modal_rows(modal_state: Checkpoint, program_language: str = "omniturn") -> tuple[ModalRow, ...]:
-    """Return the rows for the machine's program language, always in the same order."""
+    """Return the rows of the modal state for the machine's program language, in a fixed order."""
     modal = modal_state.modal
     if program_language != "omniturn":
         return _make_rows(modal_state, program_language)
@@ -55,7 +55,7 @@ _MODAL_GROUPS = {
 
 
 def _make_rows(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
-    """Return the rows for Klartext or SINUMERIK from the saved modal state.
+    """Return the modal rows for Klartext or SINUMERIK from the saved modal state.
 
     Without a saved state, the rows show the state at the end of a program.
     """

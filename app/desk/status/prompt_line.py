@@ -1,7 +1,7 @@
 """Prompt line, which shows the currently possible actions and the response to the last key.
 
-State, question and message have separate places on the screen. A message remains for 4 s or until the next
-key. The prompt depends on one snapshot and the loaded program.
+State, question and message are at separate places on the screen. A message remains for 4 s or until the
+next key. The prompt depends on one snapshot and the loaded program.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def make_prompt(
 
 
 def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tuple[str, ...]:
-    """Return the texts about the next start, which take precedence over all other prompts.
+    """Return the messages about the next start, which take precedence over all other prompts.
 
     Warnings of the proof are included only on a page where a cycle can be started.
     """
@@ -112,7 +112,10 @@ def _estop(release: str) -> str:
 
 
 def reason(status: MachineStatus) -> str:
-    """Return the text below the prompt: the cause of a stop, and for a feed hold also the remedy."""
+    """Return the text below the prompt, which gives the cause of a stop.
+
+    For a feed hold, the text also gives the remedy.
+    """
     if status.alarms:
         return Message("CAUSE: {stop}", stop=describe_cause(status.alarms[0]))
     if status.stop_cause is None:
@@ -128,7 +131,7 @@ def reason(status: MachineStatus) -> str:
 def describe_cause(alarm: Alarm) -> str:
     """Return the cause of an alarm.
 
-    If the catalog gives a different most likely cause, the text also contains that cause.
+    If the alarm catalog gives a different most likely cause, the text also contains that cause.
     """
     likely = alarm.causes[0] if alarm.causes else ""
     cause = translate_cause(alarm)
@@ -138,7 +141,7 @@ def describe_cause(alarm: Alarm) -> str:
 
 
 def translate_cause(alarm: Alarm) -> str:
-    """Return the translated cause of an alarm. The text of a program at M00 or M01 is not translated."""
+    """Return the translated cause of an alarm, but leave a program's text at M00 or M01 untranslated."""
     of_program = alarm.code in PROGRAM_STOP_CODES and alarm.cause not in CATALOG[alarm.code].causes
     return mark_untranslated(alarm.cause) if of_program else tr(alarm.cause)
 
@@ -180,7 +183,10 @@ def find_missing_tools(loaded: LoadedProgram) -> list[str]:
 
 
 def make_refusal(loaded: LoadedProgram) -> str:
-    """Return why the loaded program will not run, as its first error and the number of others."""
+    """Return the message that the loaded program will not run.
+
+    The message contains the program's first error and the number of further errors.
+    """
     if loaded.phase is LoadingPhase.UNREADABLE:
         return Message(
             "{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM",
@@ -208,9 +214,10 @@ def make_refusal(loaded: LoadedProgram) -> str:
 
 
 def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
-    """Return the remedy for a program that will not run, if ``prompt`` shows its error.
+    """Return the remedy for the program error that ``prompt`` shows.
 
-    If the program can start, return the first warning of a check instead.
+    If the program can start, return the first warning of a check instead. Otherwise the result is an empty
+    string.
     """
     errors = loaded.blocking_errors
     if errors:
@@ -258,9 +265,11 @@ class PromptLine:
     """The message and the question on the prompt line.
 
     A message remains for ``MESSAGE_TIME_S`` seconds or until the next key. A change of the machine's state
-    does not remove a message. A question is valid in the machine state in which it was asked. Y executes
-    the action. N and Esc only remove the question. An action that loses data has its own key, which is
-    different from the key that caused the question. ``read_time_s`` returns monotonic time in seconds.
+    does not remove it. A question is valid in the machine state in which it was asked. Y executes the
+    action. N and Esc only remove the question.
+
+    An action that loses data is confirmed by its own key, which differs from the key that caused the
+    question. ``read_time_s`` returns monotonic time in seconds.
     """
 
     read_snapshot: Callable[[], Snapshot]
@@ -287,7 +296,7 @@ class PromptLine:
 
     @property
     def notice_kind(self) -> MessageKind:
-        """Return the kind of the displayed notice."""
+        """Return the kind of the message or question that is displayed."""
         if not self.message and self.on_confirmed is not None:
             return MessageKind.QUESTION
         return MessageKind.SUCCESS if self.is_success else MessageKind.REFUSAL
@@ -349,7 +358,7 @@ class PromptLine:
             self.message = ""
 
     def clear_message(self) -> None:
-        """Remove the message for the previous key, but not a question."""
+        """Remove the message for the previous key, but keep an open question."""
         if not self.is_lasting:
             self.message = ""
 
@@ -365,7 +374,7 @@ class PromptLine:
         self._heard.append(event)
 
     def note_start_attempt(self) -> None:
-        """Record an attempt to start, so that a refusal is shown even if it is the same as before."""
+        """Record an attempt to start, so that even a repeated refusal with the same reason is shown."""
         self._refused = ""
 
     def update(self, snapshot: Snapshot) -> None:

@@ -1,4 +1,4 @@
-"""Texts and units of one snapshot for the position, feed and spindle readouts and for the lamps."""
+"""Texts and units of one snapshot for the position, feed and spindle displays and the lamps."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def make_mode_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 
 def make_lamps(snapshot: Snapshot, *, is_table_rotary: bool = True) -> tuple[Lamp, ...]:
-    """Return the lamps of a lathe, or those of a mill, which include its rotary axes.
+    """Return the lamps of a lathe, or of a mill including its rotary axes.
 
     The outputs are identified by their names in the machine file (coolant, collet, live1 …).
     ``is_table_rotary`` is True if a rotary table turns on this mill.
@@ -79,7 +79,8 @@ def make_lamps(snapshot: Snapshot, *, is_table_rotary: bool = True) -> tuple[Lam
 def make_drives_lamp(snapshot: Snapshot, key: str = "") -> Lamp:
     """Return the lamp of the drives, which is lit while the drives have power.
 
-    An alarm also switches the power off. If the drives do not respond, the lamp shows a question mark.
+    An alarm also switches the drive power off. If the drives do not respond, the lamp shows a question
+    mark.
     """
     if UnknownPart.AXES in snapshot.unknown:
         return Lamp("DRIVES ?", is_lit=True, key=key, is_warning=True)
@@ -96,7 +97,7 @@ def _make_output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
 
 
 def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
-    """Return a mill's lamps, one for a tilted plane and one for a table or head not at 0 degrees."""
+    """Return the lamps for a mill's tilted plane and for a table or head that is not at 0 degrees."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.is_tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > ZERO_TOLERANCE_DEG for name, at in rotary if name in "ABC")
@@ -106,7 +107,10 @@ def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
 
 
 def _make_spindle_lamp(snapshot: Snapshot) -> Lamp:
-    """Return the spindle's lamp. It depends on the measured speed, so that it is also lit during coasting."""
+    """Return the spindle's lamp, which is also lit while the spindle coasts.
+
+    The lamp depends on the measured speed.
+    """
     if UnknownPart.SPINDLE in snapshot.unknown:
         return Lamp("SPINDLE UNKNOWN", is_lit=True, is_warning=True)
     if snapshot.is_orienting:
@@ -122,7 +126,7 @@ def _make_spindle_lamp(snapshot: Snapshot) -> Lamp:
 
 
 def _make_collet_lamp(snapshot: Snapshot) -> Lamp:
-    """Return the collet's lamp. It depends on the output and not on the program's modal state."""
+    """Return the collet's lamp, which depends on the output and not on the program's modal state."""
     if "collet" in snapshot.absent:
         return Lamp("MANUAL COLLET", is_lit=False)
     if "collet" in snapshot.outputs:
@@ -138,7 +142,7 @@ _LINEAR_AXIS_COUNT = 3
 
 
 def find_plane_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
-    """Return the tip's position in the working plane in mm, and the angles of the rotary axes in degrees."""
+    """Return the tool tip position in the working plane in mm, with the rotary axis angles in degrees."""
     zero = swivel.system.kinematics.zero_angles
     return (
         *swivel.system.transform.convert_to_frame_point(_slides(snapshot.actual)),
@@ -152,7 +156,7 @@ def find_home_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float
 
 
 def find_remaining_distance(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
-    """Return the distance to go of the block for each axis of the working plane and each rotary axis.
+    """Return the remaining distance to the block end for each working-plane axis and rotary axis.
 
     Values are in mm and degrees.
     """
@@ -187,7 +191,7 @@ def _slides(at: tuple[float, ...]) -> tuple[float, float, float]:
 
 
 def _find_shown_position(snapshot: Snapshot, swivel: PlanePosition, zero: Mapping[str, float]) -> list[float]:
-    """Return the angles of the rotary axes, each measured from the zero of its axis.
+    """Return the displayed angles of the rotary axes, each measured from the zero of its axis.
 
     The angle of a modulo axis is from 0 to 360 degrees.
     """
@@ -269,7 +273,7 @@ _MILL_SYSTEMS = {
 
 
 def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
-    """Return the position. If C wraps in the modal state, its angle is from 0 to 360 degrees."""
+    """Return the position, with C from 0 to 360 degrees if C wraps in the modal state."""
     if not snapshot.modal.is_c_modulo:
         return at
     return (*at[:-1], round(at[-1], formats.ANGLE_DECIMALS) % 360.0)
@@ -278,12 +282,11 @@ def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]
 def make_position_readout(
     snapshot: Snapshot, readout: ReadoutKind, has_c_axis: bool, is_metric: bool, third_axis: str = "C"
 ) -> PositionReadout:
-    """Return two values for every axis.
+    """Return the position display, which has two values for every axis.
 
     The second value is the distance to go, or the position if the first value is the distance to go.
-
-    ``is_metric`` selects mm instead of inches. ``has_c_axis`` includes the C axis of a lathe, which is named
-    ``third_axis``.
+    ``is_metric`` selects mm instead of inches. ``has_c_axis`` includes the C axis of a lathe, which is
+    named ``third_axis``.
     """
     diameter = snapshot.shows_diameter
     second_kind = ReadoutKind.POSITION if readout is ReadoutKind.TO_GO else ReadoutKind.TO_GO
@@ -413,7 +416,7 @@ def _directions(language: str) -> tuple[str, str, str]:
 
 
 def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: str) -> SpindleReadout:
-    """Return the commanded and measured speed, and the surface speed in m/min or ft/min.
+    """Return the commanded and measured spindle speed, and the surface speed in m/min or ft/min.
 
     ``program_language`` is the machine's program language. OmniTurn writes M05, and the other languages
     write M5.

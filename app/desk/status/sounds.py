@@ -1,4 +1,4 @@
-"""Sounds for program ends, stops and alarms. An audio program of the computer plays them.
+"""Sounds for program ends, stops and alarms, played by an audio program of the computer.
 
 Sounds are off until the operator sets a volume. A thread plays only the newest sound, so that no caller
 waits.
@@ -78,7 +78,7 @@ def play_wav(wav_bytes: bytes) -> None:
 
 
 def _run_player(command: list[str]) -> str:
-    """Run a player. Return the reason if it fails, or an empty string if it succeeds."""
+    """Run an audio player, and return the reason if it fails or an empty string if it succeeds."""
     try:
         done = subprocess.run(command, capture_output=True, timeout=_PLAY_TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""Prompt for the current state, the reason why no cycle starts, and the remaining cycle time."""
+"""Prompt for the current state, reasons that prevent a cycle start, and the remaining cycle time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def make_page_prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page_prompt: str = "") -> str:
-    """Return the prompt for the current state. Questions and messages are displayed elsewhere.
+    """Return the prompt for the current state, without questions and messages.
 
     ``page_prompt`` is the prompt of the current page. An alarm or an E-stop replaces this prompt.
     """
@@ -60,7 +60,7 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page: str) ->
 
 
 def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
-    """Return the reminders of the watchers.
+    """Return the reminders of the frame watchers that are due.
 
     The result is an empty string during an alarm, an interrupted job or a refusal.
     """
@@ -73,7 +73,7 @@ def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
 
 
 def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
-    """Return the reason why the start buttons have no effect, or an empty string if they work."""
+    """Return the reason why the start buttons are disabled, or an empty string if they are enabled."""
     refused = desk.barred() or desk.find_first_move_refusal(snapshot)
     if refused or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
         return refused

@@ -1,1 +1,1 @@
-"""Separate connection from the keyboard's stop keys to the control, independent of the screen."""
+"""Separate connection that sends the keyboard's stop keys to the control, bypassing the screen."""

@@ -1,9 +1,12 @@
-"""Key watcher process, which is started with ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``.
+"""Key watcher process for the stop keys.
 
-LINE and SCREEN are file descriptors of two sockets. The watcher is a separate process, because a painting
-call of Qt holds Python's lock, which blocks all threads of the screen's process. The watcher sends every
-press of a stop key to the control over LINE and to the screen over SCREEN. It does so only while a window
-of TurnDesk has the keyboard focus, and it ends when the screen ends.
+The command is ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``. LINE and SCREEN are file
+descriptors of two sockets. The watcher sends every press of a stop key to the control over LINE and to the
+screen over SCREEN. It does so only while a window of TurnDesk has the keyboard focus, and it ends when the
+screen ends.
+
+The watcher is a separate process, because a painting call of Qt holds Python's global interpreter lock,
+which blocks all threads of the screen's process.
 """
 
 from __future__ import annotations
@@ -31,7 +34,7 @@ The codes do not depend on the keyboard layout.
 
 
 class KeyWatcher:
-    """Watcher that decides which key presses stop the machine, and sends them."""
+    """Watcher of the keyboard, which detects presses of stop keys and sends them."""
 
     def __init__(
         self, raw_keys: RawKeyReader, stop_channel: socket.socket, screen_channel: socket.socket
@@ -52,7 +55,7 @@ class KeyWatcher:
                 self.handle_press(key)
 
     def read_focus(self) -> bool:
-        """Read the window data that the screen has sent. Return False if the screen has ended."""
+        """Read the focus record that the screen has sent. Return False if the screen has ended."""
         try:
             while record := self._screen.recv(MAX_RECORD_BYTES, socket.MSG_DONTWAIT):
                 self._focus = FocusRecord.from_bytes(record)

@@ -1,4 +1,4 @@
-"""Client of the key watcher in the screen's process. It starts the watcher and communicates with it.
+"""Client in the screen's process that starts the key watcher and communicates with it.
 
 The client sends the X window IDs of TurnDesk to the watcher and receives stops from it.
 """
@@ -55,7 +55,7 @@ class KeyWatcherClient:
                 self._shown = focus
 
     def read_stops(self) -> list[StopPress]:
-        """Return the stops that the watcher has sent to the control since the last call."""
+        """Return the stop key presses that the watcher has sent to the control since the last call."""
         self._read()
         found, self._news = self._news, []
         return found

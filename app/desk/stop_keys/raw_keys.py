@@ -1,4 +1,4 @@
-"""Reader of key presses directly from the X server, which works even if the program with the focus hangs.
+"""Reader of key presses directly from the X server, even while the focused program hangs.
 
 XInput 2.0 sends raw events to every client that selects them, and other clients still receive their events.
 While another client has grabbed the keyboard, for example a screen lock, a client of version 2.0 receives

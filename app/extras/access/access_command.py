@@ -244,7 +244,7 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
 
 
 def read_pin(prompt: str) -> str:
-    """Return an entry from the terminal without echo, or a line from stdin if there is no terminal."""
+    """Read a PIN from the terminal without echo, or read one line from stdin if it is not a terminal."""
     if sys.stdin.isatty():
         return getpass.getpass(prompt)
     return sys.stdin.readline().strip()

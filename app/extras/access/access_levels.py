@@ -26,7 +26,7 @@ _DOT = "●"
 
 @dataclass(slots=True)
 class _Draft:
-    """Entry with several steps, either the PIN to sign in with or the data of a user."""
+    """Unfinished entry with several steps: the PIN for signing in, or the data of a user."""
 
     entry_step: str  # sign in, name, level, pin or again
     name: str = ""
@@ -35,9 +35,9 @@ class _Draft:
 
 
 class AccessLevelsFunction(SpecialFunction):
-    """Special function for access levels.
+    """Special function that shows the users and their access levels.
 
-    Enter on a name asks for the PIN. A user with SERVICE level can edit users.
+    Enter on a user name asks for that user's PIN. A user with SERVICE level can edit users.
     """
 
     name = "ACCESS LEVELS"
@@ -58,7 +58,7 @@ class AccessLevelsFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of rows that can be selected."""
+        """Return the number of rows in the displayed table."""
         return len(ACCESS_RULES) if self.shows_levels else len(self.access.user_list.rows)
 
     @property
@@ -68,7 +68,7 @@ class AccessLevelsFunction(SpecialFunction):
         return rows[min(self.marked, len(rows) - 1)] if rows and not self.shows_levels else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of users, or the table of the level that each type of change requires."""
+        """Return the displayed table: the users, or the access level required for each type of change."""
         if self.shows_levels:
             rows = tuple(TableRow((act.value, rule.level.name)) for act, rule in ACCESS_RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
@@ -156,7 +156,7 @@ class AccessLevelsFunction(SpecialFunction):
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the entry or of the list."""
+        """Handle a key in the open entry, or in the list if no entry is open."""
         if self.draft is None:
             return super().handle_key(key)
         if key == "Enter":
@@ -265,7 +265,7 @@ class AccessLevelsFunction(SpecialFunction):
         self.persistence.require_store().people.save_user(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
-        """Change and reload the users on the worker. Report the change, and log it with the user name."""
+        """Change the users on the worker and reload them. Show the change, and log it with the user name."""
 
         def done(_none: None) -> None:
             self.access.log_access(noted)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class AccessExtra(OptionalFeature):
-    """Optional feature with sign-in by PIN, the ACCESS LEVELS function in F10, and ``turndesk access``."""
+    """Optional feature with sign-in by PIN, ACCESS LEVELS in the F10 list, and ``turndesk access``."""
 
     subcommands = {
         "access": Subcommand("store", "manage users, access levels and PINs"),
@@ -38,7 +38,7 @@ class AccessExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return the ACCESS LEVELS function, which follows LAMPS AND SOUND in the list."""
+        """Return the ACCESS LEVELS function, paired with the function that it follows in the F10 list."""
         from app.extras.access.access_levels import AccessLevelsFunction
         from app.extras.access.sign_in import get_sign_in
 
@@ -56,7 +56,10 @@ class AccessExtra(OptionalFeature):
         return True
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk access``, documented after ``scope FILE --json``."""
+        """Return the JSON outputs of ``turndesk access``.
+
+        The reference lists them after ``scope FILE --json``.
+        """
         from app.extras.access.access_command import OUTPUTS
 
         return OUTPUTS

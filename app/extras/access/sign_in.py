@@ -25,7 +25,7 @@ _WRONG, _MINUTES = "wrong PINs", "access minutes"  # names of settings
 
 @dataclass(slots=True)
 class PinSignIn:
-    """Implementation of ``app.desk.access.SignInSession`` with PINs.
+    """Sign-in by PIN, an implementation of ``app.desk.access.SignInSession``.
 
     ``note_activity`` must be called for every key and touch.
     """
@@ -43,7 +43,7 @@ class PinSignIn:
         self.access.reload()
 
     def reload(self) -> None:
-        """Load the timeout of the automatic sign-out and the number of wrong PINs.
+        """Load the timeout of the automatic sign-out and the number of wrong PIN entries.
 
         Raises StoreError if the data cannot be read.
         """
@@ -133,9 +133,9 @@ class PinSignIn:
         self._used, self._warned = self.access.read_time_s(), False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process results. After a timeout without input, warn the user and then sign the user out.
+        """Process the results of the worker, and sign the user out after a timeout without input.
 
-        This method is called once per frame.
+        The user is warned before the sign-out. This method is called once per frame.
         """
         self.worker.deliver_results()
         self.update_reset(snapshot)
@@ -173,7 +173,7 @@ class PinSignIn:
 
 
 def get_sign_in(access: UserAccess) -> PinSignIn:
-    """Return the PIN sign-in of TurnDesk, and create it if it does not exist yet."""
+    """Return the PIN sign-in attached to the user access, and create it if it does not exist yet."""
     return access.sign_in_session if isinstance(access.sign_in_session, PinSignIn) else PinSignIn(access)
 
 
@@ -182,7 +182,7 @@ RESET_DELAY_S = 600.0  # seconds
 
 @dataclass(slots=True)
 class AccessReset:
-    """Service reset of the access levels after a waiting time.
+    """Service reset, which removes all users after the E-stop was pressed for a waiting time.
 
     ``remove_all_users`` is called when the waiting time is over.
     """
@@ -206,7 +206,7 @@ class AccessReset:
         return self._since is not None
 
     def find_start_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why the reset cannot start, or an empty string."""
+        """Return the reason why the service reset cannot start, or an empty string."""
         if not self.access.user_list.is_access_restricted:
             return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not MachineState.ESTOP:

@@ -1,7 +1,7 @@
 """Analyses of a scope record: path error, thread passes, ball-bar plot, axis or spindle response.
 
-An analysis uses the frozen curves of the scope, or else the last program run in the live samples. A worker
-calculates the results. If no result is possible, the page shows the reason.
+An analysis uses the frozen curves of the scope. If the scope is not frozen, it uses the last program run in
+the live samples. A worker calculates the results. If no result is possible, the page shows the reason.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ _WORST = 12
 class AnalysesModel:
     """Model of the analyses page.
 
-    ``selected_row`` is the selected row of the table, and ``magnification`` is the factor by which the
-    drawing enlarges errors.
+    ``selected_row`` is the selected row of the result table. ``magnification`` is the factor by which the
+    drawing enlarges path errors.
     """
 
     scope: ScopeModel
@@ -77,7 +77,7 @@ class AnalysesModel:
     # --- what is asked -------------------------------------------------------------------------------
 
     def restart_analysis(self) -> None:
-        """Discard the result and analyze the current data when the page opens."""
+        """Discard the result, so that the current data are analyzed again."""
         self._of = None
         self.result = None
 
@@ -103,12 +103,12 @@ class AnalysesModel:
         self.restart_analysis()
 
     def change_magnification(self, steps: int) -> None:
-        """Change the magnification of the errors by a number of steps."""
+        """Increase or decrease the magnification of the errors by a number of steps."""
         at = min(range(len(MAGNIFICATIONS)), key=lambda i: abs(MAGNIFICATIONS[i] - self.magnification))
         self.magnification = MAGNIFICATIONS[max(0, min(len(MAGNIFICATIONS) - 1, at + steps))]
 
     def handle_key(self, key: str) -> bool:
-        """Move the selection with an arrow key and return whether the key was used."""
+        """Select a table row with an arrow key, and return whether the key was used."""
         count = len(self.make_table().rows)
         if key not in ROW_STEPS or not count:
             return False
@@ -120,9 +120,9 @@ class AnalysesModel:
         self.selected_row = max(0, min(len(self.make_table().rows) - 1, row))
 
     def update(self) -> None:
-        """Process the result of the worker and start the requested analysis.
+        """Process the result of the worker, and start the selected analysis.
 
-        This method is called once per frame. Each analysis is requested only once.
+        This method is called once per frame. Each analysis is started only once.
         """
         self.worker.deliver_results()
         if self._of is None and not self.worker.is_busy:
@@ -207,9 +207,9 @@ class AnalysesModel:
 
 
 def find_last_run(record: ScopeRecord) -> ScopeRecord:
-    """Return the part of a record in which program lines were last executed.
+    """Return the part of a record that contains the last program run.
 
-    If no program line was executed, the whole record is returned.
+    If the record contains no program run, the whole record is returned.
     """
     lines = record.values_by_channel.get("line")
     if lines is None or not (lines > 0).any():

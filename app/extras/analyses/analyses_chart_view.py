@@ -28,9 +28,10 @@ class AnalysisChart(Chart):
         self.drawing = AnalysisDrawing()
 
     def show_drawing(self, drawing: AnalysisDrawing) -> bool:
-        """Try to show a drawing, and return whether it is shown.
+        """Show a drawing, and return whether it is shown.
 
-        The result is False while the plots are still being created. The caller must then try again.
+        The result is False while the plots are still being created. The caller must then call this method
+        again.
         """
         if not self.prepare_plots(bool(drawing.upper_curves) + bool(drawing.lower_curves)):
             return False
@@ -56,7 +57,7 @@ class AnalysisChart(Chart):
             set_curve_points(line, points[:, 0], points[:, 1])
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Scale equal axes again after the size of the chart has changed."""
+        """Adjust axes of equal scale again after the size of the chart has changed."""
         super().resizeEvent(event)
         if self.isVisible() and self.plots:  # Qt also calls this method while pyqtgraph creates the chart.
             self._fit()

@@ -1,6 +1,6 @@
-"""Page of the analyses, each with a drawing and a table.
+"""Page of the analyses: path error, thread passes, ball-bar plot and responses.
 
-The analyses are path error, thread passes, ball bar and responses.
+Each analysis has a drawing and a table.
 """
 
 from __future__ import annotations
@@ -78,7 +78,8 @@ class DrawingArea(QWidget):
     ) -> None:
         """Show a drawing in mm or inches, unless it is already shown.
 
-        ``drawing_id`` identifies the drawing. ``make_drawing`` is called to create it.
+        ``drawing_id`` identifies the drawing. ``make_drawing`` is called only if the drawing is not shown
+        yet.
         """
         if self.chart is None or drawing_id == self._shown:
             return
@@ -103,7 +104,7 @@ _TABLE, _HEAD = 50.0, 3.4  # units
 
 
 class DescriptionLine(Panel):
-    """Line that describes the analysis, or gives the reason why there is no result."""
+    """Line with the description of the analysis, or the reason why it has no result."""
 
     background_color = "panel"
     description_text = RedrawingAttribute("")
@@ -116,7 +117,7 @@ class DescriptionLine(Panel):
 
 
 class AnalysesPage(ListPage):
-    """Page that shows the analyses model."""
+    """Screen page for the analyses."""
 
     NAME = page_table.ANALYSES
     model: _Keys
@@ -221,11 +222,11 @@ class _Keys:
         return False
 
     def on_open(self) -> None:
-        """Analyze the current data."""
+        """Analyze the current data when the page opens."""
         self._analyses.restart_analysis()
 
     def handle_escape(self) -> bool:
-        """Return False because there is nothing to close."""
+        """Return False because the model has no entry or question that Esc could close."""
         return False
 
     def prompt_text(self) -> str:
@@ -233,4 +234,4 @@ class _Keys:
         return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE")
 
     def on_close(self) -> None:
-        """Do nothing because there is nothing to close."""
+        """Do nothing because the model has nothing to close."""

@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class AnalysisKind(Enum):
-    """Type of analysis."""
+    """Type of analysis, such as path error or ball-bar plot."""
 
     PATH = "PATH ERROR"
     THREAD = "THREAD"

@@ -1,4 +1,4 @@
-"""Tables of path error, thread passes, ball-bar plot and responses; text above a response."""
+"""Result tables of the analyses, and the description above the drawing of a response."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _length(mm: float, metric: bool) -> str:
 
 
 def make_path_table(title: str, found: Found, metric: bool, marked: int) -> TableContent:
-    """Return the table of the worst points of a path."""
+    """Return the table of the points with the largest path error."""
     path = found.path_error
     assert path is not None
     rows = tuple(
@@ -53,7 +53,7 @@ def make_path_table(title: str, found: Found, metric: bool, marked: int) -> Tabl
 def make_thread_table(
     title: str, thread: ThreadAnalysis, vmax: float, metric: bool, marked: int
 ) -> TableContent:
-    """Return the table of the passes of a thread."""
+    """Return the table of the passes of a threading cycle."""
     rows = tuple(
         TableRow(
             (

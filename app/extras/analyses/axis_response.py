@@ -1,4 +1,4 @@
-"""Response of an axis to its last move: step response, lag, and the effect of other limits.
+"""Response of an axis to its last move: step response, lag, and effect of other error limits.
 
 The analysis uses a move from rest to rest, such as a jog step. It does not move an axis or write to a
 drive.
@@ -59,7 +59,7 @@ class AxisMotion:
 
     @property
     def following_error(self) -> FloatArray:
-        """Return the following error at each sample as an array (n,)."""
+        """Return the following error in mm at each sample as an array (n,)."""
         return self.setpoints - self.positions
 
     def predict_error(self, factor: float) -> FloatArray:
@@ -71,7 +71,7 @@ class AxisMotion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AxisResponse(AxisMotion):
-    """Motion from rest to rest with its step response."""
+    """Axis motion from rest to rest, with its step response."""
 
     step_response: StepResponse
 
@@ -166,7 +166,7 @@ def draw_response(response: AxisMotion) -> AnalysisDrawing:
 
 @dataclass(frozen=True, slots=True)
 class UnitFormat:
-    """Text format for lengths and speeds in the selected unit of length."""
+    """Formatter for lengths and speeds in the selected unit of length, mm or inches."""
 
     metric: bool
 

@@ -1,4 +1,4 @@
-"""Drawing of an analysis, with lines and labeled points in internal units."""
+"""Drawing of an analysis, with lines and labeled points. Lengths are in mm."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ FloatArray = npt.NDArray[np.float64]
 class AnalysisDrawing:
     """Drawing of an analysis in one or two plots.
 
-    ``command_points`` (n, 2) is the commanded curve. ``upper_curves`` belong to the first plot, and
-    ``lower_curves`` belong to the second plot. ``has_equal_axes`` means that both axes are lengths with the
-    same scale. ``labeled_points`` are points with labels. ``axis_labels`` are the labels of the vertical
-    axis, the vertical axis of the second plot, and the horizontal axis. In a label, {unit} is replaced by
-    the unit of length.
+    - ``command_points`` (n, 2) is the commanded curve.
+    - ``upper_curves`` are in the first plot, and ``lower_curves`` are in the second plot.
+    - ``has_equal_axes`` means that both axes are lengths with the same scale.
+    - ``axis_labels`` are for the vertical axis, the second vertical axis, and the horizontal axis.
+    - ``labeled_points`` are points with labels. In a label, {unit} is replaced by the unit of length.
     """
 
     command_points: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
@@ -34,7 +34,7 @@ class AnalysisDrawing:
 
     @property
     def is_inverted(self) -> bool:
-        """Return whether the vertical axis points down, as the X axis of a lathe does for the operator."""
+        """Return whether the vertical axis points down, as the operator sees the X axis of a lathe."""
         return self.has_equal_axes and self.axis_labels[0].startswith("X")
 
 

@@ -135,14 +135,14 @@ class DriveTestModel:
         return self.scope.metric
 
     def _get_series_length(self, inches: tuple[float, ...], mm: tuple[float, ...], at: int) -> float:
-        """Return one length of a series, converted to mm.
+        """Return one length from a series of selectable lengths, converted to mm.
 
         ``at`` is the index in the series for the selected unit.
         """
         return mm[at] if self.is_metric else inches[at] * MM_PER_INCH
 
     def make_test_path(self, axis: str, sign: int) -> DriveTestMotion:
-        """Return the test path of the current selection for a direction."""
+        """Return the test path for the current settings, an axis and a direction."""
         if self.shape is Shape.RAMP:
             size = self._get_series_length(INCH_RAMPS, MM_RAMPS, self.ramp_index)
             return DriveTestMotion(
@@ -196,7 +196,7 @@ class DriveTestModel:
             )
 
     def change_setting(self, row: int) -> None:
-        """Change the setting in the touched row."""
+        """Select the next value of the setting in the touched row."""
         if self.displayed_part is None:
             actions = (self.select_next_shape, self.select_next_size, self.select_next_speed)
             if row < len(actions):
@@ -221,7 +221,7 @@ class DriveTestModel:
         return find_jog_refusal(snapshot.state)
 
     def find_direction_refusal(self, direction: TestDirection) -> str:
-        """Return the reason why this direction cannot be tested, or an empty string.
+        """Return the reason why an axis cannot be tested in this direction, or an empty string.
 
         The control makes its own check before the axis moves.
         """
@@ -242,7 +242,7 @@ class DriveTestModel:
         return ""
 
     def describe_travel(self, direction: TestDirection) -> str:
-        """Return a text with the start, end and duration of the travel.
+        """Return the start, end and duration of the test travel as display text.
 
         The positions are in machine coordinates.
         """
@@ -301,9 +301,9 @@ class DriveTestModel:
             self._ended(snapshot)
 
     def _ended(self, snapshot: Snapshot) -> None:
-        """Finish a test.
+        """Handle the end of a test, whether it was completed or stopped.
 
-        A test that was completed is analyzed when its last samples are available.
+        A completed test is analyzed when its last samples are available.
         """
         assert self._begun is not None
         test_status, live = snapshot.drive_test, self.scope.live_samples
@@ -359,7 +359,7 @@ class DriveTestModel:
         return False
 
     def on_open(self) -> None:
-        """Clear the requested direction when the page opens."""
+        """Clear the question about the test travel when the page opens."""
         self.held_jog.requested_direction = None
 
     def handle_escape(self) -> bool:
@@ -376,7 +376,7 @@ class DriveTestModel:
         return self.held_jog.active_jog is not None
 
     def release_all(self) -> None:
-        """Stop the motion, because key releases are lost without the focus."""
+        """Stop the motion when the page loses the keyboard focus, because key releases are then lost."""
         self.held_jog.release_all(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.requested_direction = None
 
@@ -415,7 +415,7 @@ class DriveTestModel:
         return describe_test_path(self.results.test_path, self.is_metric) + "  ·  " + self.saved_record_text
 
     def make_table(self) -> TableContent:
-        """Return the table of the selection or of the results of the last test."""
+        """Return the table of the test settings, or of the results of the last test."""
         if self.displayed_part is not None and self.results is not None:
             return make_results_table(tr("DRIVE TEST"), self.results, self.is_metric, self.displayed_part)
         units = UnitFormat(self.is_metric)

@@ -1,4 +1,4 @@
-"""Results of a drive test: responses, bandwidth, and the effect of other limits.
+"""Results of a drive test: responses, bandwidth, and the effect of other following-error limits.
 
 The record of a test contains the commanded test path, so a stored record gives the same results.
 """
@@ -135,7 +135,10 @@ def _about(times: FloatArray, begin: float, end: float) -> slice:
 def _sine(
     record: ScopeRecord, path: DriveTestMotion, first: int, last: int, frequency: float
 ) -> SineResponse:
-    """Return the response to a sine. The first period is omitted, because the axis still settles."""
+    """Return the response to a sine motion.
+
+    The first period is omitted, because the axis is still settling.
+    """
     times = record.times_s
     cut = _about(times, float(times[first]) + 1.0 / frequency, float(times[last]))
     asked, done = (record.values_by_channel[f"{path.axis} {what}"][cut] for what in ("demand", "actual"))
@@ -162,7 +165,7 @@ def describe_test_path(path: DriveTestMotion, metric: bool) -> str:
 
 
 class ResultsPart(Enum):
-    """Part of the results that is displayed at one time. A small screen cannot show all results."""
+    """Part of the results that the page shows at one time, because a small screen cannot show all."""
 
     RESPONSE = "response"
     LIMITS = "window"
@@ -172,7 +175,7 @@ class ResultsPart(Enum):
 def make_results_table(
     title: str, results: DriveTestResults, metric: bool, displayed_part: ResultsPart = ResultsPart.ALL
 ) -> TableContent:
-    """Return the table of the responses, followed by the effect of other limits."""
+    """Return the table of the responses, followed by the effect of other following-error limits."""
     units = UnitFormat(metric)
     rows = (
         [TableRow(cells) for cells in _responses(results, units)]
@@ -211,7 +214,10 @@ def _responses(found: DriveTestResults, units: UnitFormat) -> list[tuple[str, ..
 
 
 def _gain(ramp: RampResponse) -> str:
-    """Return the gain Kv = v/e of the position loop as text, or a dash if feedforward removes the lag."""
+    """Return the gain Kv = v/e of the position loop as text.
+
+    The result is a dash if feedforward removes the lag.
+    """
     return (
         f"{formats.format_fixed(1.0 / abs(ramp.lag_s), 0)} /s" if abs(ramp.lag_s) > 1e-5 else formats.NO_VALUE
     )

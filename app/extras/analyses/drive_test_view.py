@@ -1,4 +1,4 @@
-"""Page of the drive test with drawing, arrow pad, selection and results."""
+"""Page of the drive test, with drawing, arrow pad, test settings and results."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class DriveTestPage(HeldKeysPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys: the results key (F5) until a test has run."""
+        """Return the disabled keys, which are F5 (results) until a test has run, and none afterward."""
         return frozenset() if self.model.results is not None else frozenset({"F5"})
 
     def find_pending_question(self) -> str:
@@ -97,7 +97,7 @@ class DriveTestPage(HeldKeysPage):
         return self.model.prompt_text()
 
     def is_animating(self) -> bool:
-        """Return whether the page shows live measurements, which is the case while a test key is held."""
+        """Return whether the page shows live measurements because a test key is held down."""
         return self.model.is_active
 
     def try_leave(self) -> bool:

@@ -1,6 +1,6 @@
 """Response of the spindle to its last speed change: rise, overshoot, settling time and variation.
 
-The analysis uses the record of an ordinary run-up. It never turns the spindle; only programs and MDI do.
+The analysis uses a recorded speed change. It does not command the spindle; only programs and MDI do.
 """
 
 from __future__ import annotations
@@ -30,12 +30,13 @@ _SHARES = (0.62, 0.38)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SpindleResponse:
-    """Response of the spindle to one change of speed.
+    """Response of the spindle to one change of speed. All speeds are in rpm.
 
-    ``times_s`` (n,) are seconds from the change. ``commanded_rpm`` (n,) and ``measured_rpm`` (n,) are
-    speeds in rpm. ``step_responses`` are the responses for the at-speed tolerance of the machine file and
-    for each of ``TOLERANCE_RATIOS``. ``variation_rpm`` is the peak-to-peak variation and ``mean_error_rpm``
-    is the mean error over the last second, both in rpm.
+    - ``times_s`` (n,) are seconds from the change.
+    - ``commanded_rpm`` (n,) and ``measured_rpm`` (n,) are the speeds at these times.
+    - ``step_responses`` are for the at-speed tolerance of the machine file and each of ``TOLERANCE_RATIOS``.
+    - ``variation_rpm`` is the peak-to-peak variation over the last second, and ``mean_error_rpm`` is the
+    mean error.
     """
 
     times_s: FloatArray
@@ -59,8 +60,8 @@ class SpindleResponse:
 def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0.
 
-    Only a change of more than twice the at-speed tolerance of the new speed counts. Raises AnalysisError if
-    the machine has no spindle, if the record has no such change or no measured spindle speed, or if the
+    A change counts only if it exceeds twice the at-speed tolerance of the new speed. Raises AnalysisError
+    if the machine has no spindle, if the record has no such change or no measured spindle speed, or if the
     change is too small for one of ``TOLERANCE_RATIOS``.
     """
     if model is None:

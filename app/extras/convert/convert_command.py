@@ -70,7 +70,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _m_codes(text: str) -> frozenset[int]:
-    """Return the M codes in a list such as 41,42.
+    """Return the M-code numbers in a comma-separated list such as 41,42.
 
     Raises ArgumentTypeError if the text is not a list of M codes.
     """

@@ -19,7 +19,10 @@ class ConvertExtra(OptionalFeature):
     }
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk convert``, documented after ``access table --json``."""
+        """Return the JSON outputs of ``turndesk convert``.
+
+        The reference lists them after ``access table --json``.
+        """
         from app.extras.convert.convert_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}

@@ -1,6 +1,6 @@
 """Form that makes a program from a drawing (DXF, SVG).
 
-Workers read the drawing, plan the program and try it. The program consists of shape lines.
+Workers read the drawing, plan the program and test the program. The program consists of shape lines.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ DRAWING_SHAPE = Shape(
 
 @dataclass(frozen=True, slots=True)
 class FilledDrawing(FilledShape):
-    """Form of a drawing with its values.
+    """Values that are entered in the form of a drawing.
 
     ``program_lines`` contains the program lines of several shapes.
     """
@@ -130,7 +130,7 @@ class FilledDrawing(FilledShape):
     program_lines: tuple[str, ...] = ()
 
     def make_lines(self, settings: ProgramSettings) -> list[str]:
-        """Return the program lines that the shapes of the form write."""
+        """Return the program lines that the form writes for its entries."""
         code = CodeWriter(settings)
         self.shape.write_lines(self, settings, code)
         return code.lines
@@ -138,12 +138,13 @@ class FilledDrawing(FilledShape):
 
 @dataclass(slots=True)
 class DrawingForm(ShapeForm):
-    """Form of a drawing.
+    """Form that makes a program from a drawing.
 
-    ``drawing_files`` are the available drawings, and ``preceding_lines`` are the program lines before the
-    form. ``pending_request`` is the request for a plan that is not finished. After the trial,
-    ``comparison`` compares the part with the drawing, and ``remarks`` lists what the program requires and
-    which sections stay uncut.
+    - ``drawing_files`` are the available drawings, and ``preceding_lines`` are the program lines before the
+    form.
+    - ``pending_request`` is the request for a plan that is not complete yet.
+    - ``comparison`` is the comparison of the part with the drawing after the trial.
+    - ``remarks`` lists what the program requires and which sections remain uncut.
     """
 
     drawing_files: Mapping[str, Path] = field(default_factory=dict)
@@ -154,7 +155,7 @@ class DrawingForm(ShapeForm):
     is_canceled: bool = False
 
     def calculate(self) -> None:
-        """Request a plan for the current entries.
+        """Request a new program plan for the current entries.
 
         The previous plan remains until the new plan arrives.
         """
@@ -177,7 +178,7 @@ class DrawingForm(ShapeForm):
         self._show()
 
     def apply_settings(self, settings: ProgramSettings) -> None:
-        """Calculate the form again with other tool data, unless the operator canceled reading.
+        """Recalculate the form with changed tool data, unless the operator canceled reading the drawing.
 
         After a cancellation, F6 starts reading the drawing again.
         """
@@ -213,7 +214,7 @@ class DrawingForm(ShapeForm):
         self.error_texts["FILE"] = CANCELED_MESSAGE
 
     def show_plan(self, plan: DrawingPlan) -> None:
-        """Show a finished plan."""
+        """Show the program plan that the worker has calculated."""
         self.plan, self.pending_request = plan, None
         self.calculation_count += 1
         values = {word: v for word in self.entered_texts if (v := self._value(word)) is not None}
@@ -234,7 +235,7 @@ class DrawingForm(ShapeForm):
         )
 
     def show_trial(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
-        """Show the result of the trial: the proof, and the comparison with the drawing."""
+        """Show the result of the trial: the errors of the proof, and the comparison with the drawing."""
         plan = self.plan
         if plan is None or plan.program is None or plan.profile is None:
             return
@@ -272,14 +273,14 @@ class DrawingForm(ShapeForm):
         return self.plan.choices.get(field.word, ())
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a word to translate.
+        """Return whether a choice is a screen text that is translated.
 
         Layer names are not translated.
         """
         return choice in field.choices or choice in _WORDS.get(field.word, ())
 
     def get_dimension_text(self, word: str) -> str:
-        """Return the number of a contour, or the text of another dimension."""
+        """Return the text of a dimension in the sketch. For a contour, this is its number."""
         return (
             word.removeprefix("CONTOUR ")
             if word.startswith("CONTOUR ")
@@ -334,7 +335,7 @@ TrialFunction = Callable[
 def skip_trial(
     _text: str, _plan: DrawingPlan, _watch: ProgressCallback
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Return an empty result.
+    """Return a trial result without comparison and errors.
 
     This function replaces the trial if no machine data are available.
     """
@@ -342,9 +343,9 @@ def skip_trial(
 
 
 class AddedDrawingForm(AddedForm):
-    """Drawing form in the list of shapes.
+    """Entry for the drawing form in the list of shapes.
 
-    ``find_drawing_files`` returns the available drawings, and ``run_trial`` tries a program.
+    ``find_drawing_files`` returns the available drawings, and ``run_trial`` tests a program.
     """
 
     key, shape = "X", DRAWING_SHAPE
@@ -362,7 +363,7 @@ class AddedDrawingForm(AddedForm):
     def open_form(
         self, settings: ProgramSettings, preceding_lines: tuple[str, ...], requested_file: Path | None
     ) -> DrawingForm:
-        """Return a form that lists the available drawings, starting with the requested drawing."""
+        """Return a form that lists the available drawings, with the requested drawing first."""
         files = dict(self.find_drawing_files())
         if requested_file is not None:
             files = {
@@ -376,7 +377,7 @@ class AddedDrawingForm(AddedForm):
         return has_drawing_suffix(name)
 
     def calculate(self, form: ShapeForm, show_form: ShowForm, show_message: Callable[[str], None]) -> None:
-        """Plan the program for the entries on a worker, and then try the program."""
+        """Plan the program for the entries on a worker, and then test the program."""
         if not isinstance(form, DrawingForm) or form.pending_request is None:
             return
         asked = form.pending_request
@@ -395,9 +396,9 @@ class AddedDrawingForm(AddedForm):
     def _try(
         self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
     ) -> None:
-        """Try the program ``text`` on a worker.
+        """Test the program ``text`` on a worker.
 
-        If the form has been closed, ``text`` is None and nothing is tried.
+        If the form has been closed, ``text`` is None and no test is run.
         """
         if not form.program_lines or text is None:
             return
@@ -415,7 +416,7 @@ class AddedDrawingForm(AddedForm):
             form.cancel()
 
     def function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
-        """Return F6, which cancels reading the drawing or starts it again."""
+        """Return the key F6, which cancels reading the drawing or starts reading it again."""
 
         def read_again() -> None:
             form.calculate()

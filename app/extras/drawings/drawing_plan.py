@@ -62,7 +62,8 @@ class PlanRequest:
 class PlacedElement:
     """Element of a drawing as (z, r) points relative to the axis of rotation.
 
-    ``line_number`` and ``contour_number`` count from 1. An element without such a number has the value 0.
+    ``line_number`` and ``contour_number`` count from 1. The value 0 means that the element has no such
+    number.
     """
 
     points: tuple[tuple[float, float], ...]
@@ -99,9 +100,9 @@ class DrawingPlanner:
         self.is_reading = False
 
     def make_plan(self, request: PlanRequest, report_progress: ProgressCallback) -> DrawingPlan:
-        """Return the plan. The errors in the plan are stored by field.
+        """Return the plan of a program, which contains the errors by form field.
 
-        ``watch`` can raise an exception to cancel the work.
+        ``report_progress`` can raise an exception to cancel the work.
         """
         try:
             drawing = self._drawing(request.drawing_path, report_progress)
@@ -128,9 +129,9 @@ class DrawingPlanner:
 
 
 class _PlanBuilder:
-    """Calculation of one plan in steps.
+    """Builder that calculates one plan in steps.
 
-    Each step adds proposals and can end the plan with an error.
+    Each step adds proposed values and can end the plan with an error.
     """
 
     def __init__(self, drawing: Drawing, request: PlanRequest) -> None:
@@ -141,7 +142,10 @@ class _PlanBuilder:
         self.view: DrawingPlacement | None = None
 
     def get_entry_text(self, name: str, proposed: str = "") -> str:
-        """Return the entry of a field, or else ``proposed``, which is also added to the proposals."""
+        """Return the entry of a field, or ``proposed`` if the field is empty.
+
+        ``proposed`` is also added to the proposed values of the form.
+        """
         if proposed:
             self.proposals[name] = proposed
         value = self.request.entered_values.get(name, proposed)
@@ -299,7 +303,7 @@ _FIELDS = frozenset(
 
 
 def _find_form_field(word: str) -> str:
-    """Return the form field that shows an error of a shape about its field ``word``."""
+    """Return the field of the drawing form that shows the error of a shape's field ``word``."""
     return word if word in _FIELDS else "CONTOUR" if word.startswith("#") else "T"
 
 

@@ -1,4 +1,4 @@
-"""Setup of the drawing form with the available drawings and a trial that uses the current tools."""
+"""Setup of the drawing form: the available drawings, and the trial with the current tools."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from core.part.tool_shape import ToolShape
 
 
 def add_drawing_form(shapes: ShapesModel, desk: Desk, machine: Machine) -> None:
-    """Add the form of a drawing to the list of shapes."""
+    """Add the drawing form to the list of shapes."""
 
     def files() -> dict[str, Path]:
         return {each.name: each.path for each in desk.program_choice.program_folders.list_drawings()}
@@ -38,7 +38,10 @@ def run_trial(
     plan: DrawingPlan,
     report_progress: ProgressCallback,
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Prove the program with the form's stock and the current tools, and compare the part."""
+    """Prove the program with the form's stock and the current tools.
+
+    The result also contains the comparison of the part with the drawing.
+    """
     made, chosen, mm = plan.program, plan.profile, plan.request.settings.mm
     if made is None or chosen is None:
         return None, ()

@@ -23,7 +23,7 @@ class DrawingsExtra(OptionalFeature):
     drawing_suffixes = (".dxf", ".svg")
 
     def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
-        """Add the DRAWING form if ``model`` is the model of the shapes."""
+        """Add the DRAWING form if ``model`` is the shapes model."""
         from app.extras.drawings.drawings_setup import add_drawing_form
         from app.extras.shapes.shapes_model import ShapesModel
 
@@ -31,7 +31,10 @@ class DrawingsExtra(OptionalFeature):
             add_drawing_form(model, desk, machine)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk profile``, documented after ``access table --json``."""
+        """Return the JSON outputs of ``turndesk profile``.
+
+        The reference lists them after ``access table --json``.
+        """
         from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}

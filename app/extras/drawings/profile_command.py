@@ -216,7 +216,7 @@ def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, mac
 
 
 def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
-    """Return the language of the output file name, or else the language of the machine.
+    """Return the language of the program, from the output file name or else from the machine.
 
     Raises CommandError if the language is Klartext.
     """
@@ -366,7 +366,10 @@ def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 def _typed(
     chosen: ContourProfile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]
 ) -> dict[str, FieldValue]:
-    """Return the command's options as field values of the shapes, in the length unit of the program."""
+    """Return the command's options as field values of the shape forms.
+
+    Lengths are in the length unit of the program.
+    """
     from core.extras.drawings.profile_description import propose_fields
 
     said: dict[str, FieldValue | None] = {

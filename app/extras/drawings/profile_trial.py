@@ -26,7 +26,7 @@ _HOME = ToolOffset(12.7, -76.2)
 
 @dataclass(frozen=True, slots=True)
 class TrialStock:
-    """Stock of a trial in mm: bar diameter, stock in front of the face, predrilled hole diameter."""
+    """Stock of a trial: bar diameter, face allowance and predrilled hole diameter, all in mm."""
 
     bar_diameter_mm: float
     face_stock_mm: float = 0.0
@@ -37,7 +37,7 @@ class TrialStock:
 class TrialResult:
     """Result of a trial.
 
-    ``comparison`` is None if the program makes no part. ``errors`` are the errors of the proof.
+    ``comparison`` is None if the program does not cut a part. ``errors`` are the errors of the proof.
     """
 
     comparison: DrawingComparison | None
@@ -54,9 +54,9 @@ def run_profile_trial(
     report_progress: Callable[[float], None] | None = None,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> TrialResult:
-    """Prove the program and compare the part with the profile.
+    """Prove the program and compare the simulated part with the contour profile.
 
-    The trial uses the same position and the required nose offset ``nose_offset`` for all tools.
+    The trial uses the same position for all tools, and ``nose_offset`` as the required tool nose offset.
     """
     of_edge = nose_offset is not None and nose_offset.quadrant
     secondary = (

@@ -55,13 +55,13 @@ class JobsExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return the JOBS function, which follows MEASURED PARTS in the list."""
+        """Return the JOBS function, paired with the function that it follows in the F10 list."""
         from app.extras.jobs.jobs_watch import JobsFunction
 
         return ((JobsFunction(desk), "MEASURED PARTS"),)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk jobs``, documented after ``shift --json``."""
+        """Return the JSON outputs of ``turndesk jobs``, which the reference lists after ``shift --json``."""
         from app.extras.jobs.jobs_command import OUTPUTS
 
         return OUTPUTS

@@ -1,4 +1,4 @@
-"""Model of the JOBS page, independent of Qt: the queue, the selected job's setup, and the keys."""
+"""Model of the JOBS page, independent of Qt: job queue, setup of the selected job, and keys."""
 
 from __future__ import annotations
 
@@ -216,7 +216,7 @@ class JobsModel:
                    Tone.PAUSE if station.required_actions else Tone.RUN)  # fmt: skip
 
     def read_setup_notes(self, program: str) -> Sequence[str]:
-        """Return the notes from the setup sheet of the program (F10)."""
+        """Return the notes that are stored for the setup sheet of a program."""
         if self._notes[0] != program:
             try:
                 kept = self.desk.program_runs.part_counter.persistence.read_setting(
@@ -267,7 +267,7 @@ class JobsModel:
         )
 
     def check_loadable(self) -> bool:
-        """Return whether the selected job can be loaded, and show the reason if it cannot."""
+        """Return whether the selected job can be loaded. If it cannot, show the reason."""
         if why := self.load_refusal:
             self.desk.say(why)
         return not why
@@ -346,7 +346,7 @@ class JobsModel:
         )
 
     def clear_finished_jobs(self) -> None:
-        """Remove finished jobs after confirmation."""
+        """Remove the jobs whose required number of parts has been made, after confirmation."""
         done = sum(job.is_done for job in self.jobs)
         if not done:
             self.desk.show_success("NO FINISHED JOBS TO CLEAR")
@@ -449,10 +449,7 @@ class JobsModel:
         return True
 
     def on_close(self) -> None:
-        """Cancel the entry when the page closes.
-
-        The selected job is then no longer proved before the other jobs.
-        """
+        """Cancel the entry, and end the priority of the selected job's proof, when the page closes."""
         self.entry_kind, self.job_watch.selected_program = "", ""
 
     def close(self) -> None:
@@ -460,7 +457,7 @@ class JobsModel:
 
 
 def _folded(text: str) -> str:
-    """Return a text split into the two lines of a table cell."""
+    """Return a text wrapped to at most two lines for a table cell."""
     first, *more = wrap(text, _WIDE) or [""]
     return f"{first}\n{' '.join(more)}" if more else first
 

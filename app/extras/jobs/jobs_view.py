@@ -1,4 +1,4 @@
-"""Page JOBS (J or Shift+F6), with the queue above and the setup of the selected job below."""
+"""Page JOBS (J or Shift+F6), with the job queue above and the setup of the selected job below."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; ratio of the height
 
 
 class JobsPage(ListPage):
-    """Page that shows the job model. The page passes key presses to the model."""
+    """Screen page for the job queue. The page passes key presses to its model."""
 
     NAME = "JOBS"
     model: JobsModel
@@ -36,7 +36,7 @@ class JobsPage(ListPage):
         self._asked = ""
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys of the model. Add F2 if no job can be loaded."""
+        """Return the disabled function keys, including F2 if the selected job cannot be loaded."""
         return super().find_disabled_keys() | ({"F2"} if self.model.load_refusal else set())
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
@@ -56,9 +56,9 @@ class JobsPage(ListPage):
         self.make_function_keys()[name].action()
 
     def _load(self) -> None:
-        """Open the Automatic page and load the job.
+        """Open the Automatic page and load the selected job.
 
-        The Automatic page is opened first because loading can ask about an interrupted job.
+        The Automatic page is opened first because loading can show a question about an interrupted job.
         """
         model = self.model
         if model.check_loadable() and self.host.open_page(page_table.AUTOMATIC):
@@ -82,7 +82,7 @@ class JobsPage(ListPage):
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the queue, the setup and the keyboards."""
+        """Arrange the queue, the setup and the on-screen keyboards."""
         self._lay_out()
 
     def _lay_out(self) -> None:

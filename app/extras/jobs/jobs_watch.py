@@ -1,4 +1,4 @@
-"""Watch of the job queue: the active job, the next job and its required setup.
+"""Monitoring of the job queue: the active job, the next job and its required setup.
 
 A worker proves the next job while another job runs. The proof does not affect the running program.
 """
@@ -41,7 +41,7 @@ _TOLD = 3  # maximum number of displayed findings
 
 @dataclass(frozen=True, slots=True)
 class ProvedJob:
-    """Program of the queue, proved with the offsets at the time of the proof.
+    """Result of the proof of a queued program, with the offsets at the time of the proof.
 
     ``tools_at_last_start`` contains the tools at the last start of the program. ``last_start_utc`` is the
     UTC time of that start, or an empty string if the program has never run.
@@ -56,7 +56,7 @@ class ProvedJob:
 class JobTool:
     """Tool that a job needs.
 
-    ``required_actions`` lists the actions that the operator must perform, as text.
+    ``required_actions`` are the actions that the operator must perform for this tool, as display text.
     """
 
     tool: SetupTool
@@ -66,7 +66,7 @@ class JobTool:
 def list_job_tools(
     job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_to_make: int
 ) -> tuple[JobTool, ...]:
-    """Return the tools of a job in the order of the gang plate.
+    """Return the tools of a job in the order of their positions on the gang plate.
 
     ``parts_to_make`` is the number of parts that the tool life must cover.
     """
@@ -77,9 +77,9 @@ def list_job_tools(
 
 
 def count_open_items(job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
-    """Return the number of open items that the operator must resolve before the job can start.
+    """Return the number of items that the operator must resolve before the job can start.
 
-    Open items are required tool actions and errors of the proof.
+    These items are required tool actions and errors of the proof.
     """
     return (
         sum(len(each.required_actions) for each in list_job_tools(job, tool_lives, parts_to_make))
@@ -88,7 +88,7 @@ def count_open_items(job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_t
 
 
 def select_findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
-    """Return the most important findings of the proof, errors before warnings."""
+    """Return the first errors and warnings of the proof, errors first."""
     worth = [each for each in sheet.diagnostics if each.severity is not Severity.NOTE]
     return tuple(sorted(worth, key=lambda each: (each.severity is not Severity.ERROR, each.line))[:_TOLD])
 
@@ -124,7 +124,7 @@ def _parts_left(life: ToolLife, seconds: float) -> int | None:
 
 
 def _list_tip_actions(tool: SetupTool, job: ProvedJob) -> Iterator[str]:
-    """Yield a note if the tip of a tool has changed since the last start of the program."""
+    """Yield a required action if the tip of a tool has changed since the last start of the program."""
     then, now = job.tools_at_last_start.get(tool.tool_number), tool.tool_offset
     if then is None or now is None:
         return
@@ -151,7 +151,7 @@ def _tip(quadrant: int) -> str:
 
 
 def make_tool_label(number: int) -> str:
-    """Return the name of a tool or edge, such as ``T3`` or ``T1D2``."""
+    """Return the label of a tool or cutting edge, such as ``T3`` or ``T1D2``."""
     return format_edge_name(number)
 
 
@@ -199,7 +199,7 @@ MAX_PROOFS = 20
 
 @dataclass(slots=True)
 class JobProofs:
-    """Proofs of jobs, by program and offsets.
+    """Cache of job proofs by program and state of the offset tables.
 
     ``request_proofs`` and ``find_proof`` never block.
     """
@@ -210,7 +210,7 @@ class JobProofs:
     _asked: tuple[str, int] | None = None
 
     def request_proofs(self, program_names: Sequence[str], offset_revision: int) -> None:
-        """Request proofs in the order of ``programs``, and cancel a running proof that is not needed.
+        """Request proofs in the order of ``program_names``, and cancel a running proof that is not needed.
 
         ``offset_revision`` identifies the state of the offset tables. This method is called once per frame.
         """
@@ -249,7 +249,7 @@ JOBS_KEY = "Shift+F6"  # name of the key in app.screen.window.key_table
 
 @dataclass(slots=True)
 class JobWatch:
-    """Watch of the job queue.
+    """Monitor of the job queue, which tracks the active job and requests proofs of waiting jobs.
 
     ``observe`` must be called once per frame. Only the operator loads and starts jobs.
     """
@@ -271,7 +271,7 @@ class JobWatch:
 
     @property
     def active_job(self) -> JobRow | None:
-        """Return the job for which finished parts are counted, or None if no job is active."""
+        """Return the job for which completed parts are counted, or None if no job is active."""
         return next((row for row in self.jobs if row.is_active), None)
 
     def is_active_and_loaded(self, job: JobRow) -> bool:
@@ -283,7 +283,10 @@ class JobWatch:
 
     @property
     def next_job(self) -> JobRow | None:
-        """Return the first unfinished job other than the active job, or None if there is no such job."""
+        """Return the first waiting job in the queue, or None if no job is waiting.
+
+        The active job and jobs whose parts have all been made are not waiting.
+        """
         return next((row for row in self.jobs if not row.is_done and not row.is_active), None)
 
     @property
@@ -339,7 +342,7 @@ class JobWatch:
         self._loading = job, path, loads
 
     def _begin(self, loaded: LoadedProgram) -> None:
-        """Start the job after its program is loaded.
+        """Make the job active after its program is loaded.
 
         The operator can still cancel loading when asked about an interrupted job.
         """
@@ -362,9 +365,9 @@ class JobWatch:
     # --- messages ------------------------------------------------------------------------------------
 
     def _report_finished(self, job: JobRow | None) -> None:
-        """Report a finished job once, when its part count is reached.
+        """Report a job once, when its required number of parts has been made.
 
-        Jobs that were finished before TurnDesk started are shown only in the notice.
+        Jobs that were complete before TurnDesk started are shown only in the notice.
         """
         if not self.parts_watch.parts_book.load_count:
             return
@@ -410,7 +413,10 @@ class JobWatch:
         )
 
     def make_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice for the Automatic page about finished and next jobs, or None."""
+        """Return the notice for the Automatic page that the job is done and which job is next.
+
+        The result is None unless the active job is done and no program runs or is interrupted.
+        """
         job = self.active_job
         if (
             job is None
@@ -431,4 +437,4 @@ class JobWatch:
 
 
 def _nothing() -> None:
-    """Do nothing, because the queue shows each change after it is stored."""
+    """Do nothing after a change is stored, because the queue shows the change anyway."""

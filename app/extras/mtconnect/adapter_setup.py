@@ -26,7 +26,7 @@ from drivers.wakeups import RealClock
 def start_adapter(
     machine: Machine, read_snapshot: Callable[[], Snapshot], report_error: Callable[[str], None]
 ) -> Callable[[], None] | None:
-    """Start to report the machine state to MTConnect agents, and return a function that stops this.
+    """Start reporting the machine state to MTConnect agents, and return a function that stops it.
 
     If the port cannot be opened, the error is reported and the machine runs without the adapter. Returns
     None if the adapter is not enabled or cannot run.
@@ -50,10 +50,10 @@ def start_headless_adapter(
     *,
     is_real_time: bool,
 ) -> Callable[[], None] | None:
-    """Start to report a run without a screen, and return a function that stops reporting.
+    """Start the MTConnect adapter for a run without a screen, and return a function that stops it.
 
     A run that is faster than real time is not reported, because the reports would include parts that were
-    not made. Returns None if nothing is reported.
+    not made. Returns None if the adapter is not started.
     """
 
     def tell(why: str) -> None:
@@ -83,9 +83,9 @@ def check_adapter(machine: Machine, table: MtconnectTable) -> None:
 def make_adapter(
     machine: Machine, table: MtconnectTable, read_snapshot: Callable[[], Snapshot]
 ) -> MtconnectAdapter:
-    """Return an adapter that uses the real-time clock.
+    """Return an MTConnect adapter that uses the real-time clock.
 
-    The adapter reads all its data from snapshots.
+    The adapter gets all its data from snapshots of the machine state.
     """
     device = make_device(machine, table.device)
     reader = MachineReader(machine, time.monotonic)

@@ -49,8 +49,8 @@ class MtconnectExtra(OptionalFeature):
     ) -> CloseFunction | None:
         """Start the adapter for a run without a screen, and return the function that stops the adapter.
 
-        The result is None if the machine file has no [mtconnect] table or the adapter cannot run. A run
-        that is faster than real time is not reported, and ``report_reason`` receives the reason.
+        The result is None if the machine file has no [mtconnect] table or if the adapter does not start. A
+        run that is faster than real time is not reported, and ``report_reason`` receives the reason.
         """
         if _TABLE not in machine.hardware.tables:
             return None

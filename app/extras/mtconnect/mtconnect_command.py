@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def check_mtconnect(machine: Machine, results: CheckResults) -> None:
-    """Add a row that shows whether agents can connect and whether the device model is valid."""
+    """Add a check row that shows whether agents can connect and whether the device model is valid."""
     from app.compose.backends.backend_entry import CheckRow
     from app.extras.mtconnect.adapter_setup import check_adapter
     from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable

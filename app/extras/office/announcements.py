@@ -30,14 +30,14 @@ class Announcement:
     status: StatusDocument
 
     def make_json(self) -> bytes:
-        """Return JSON with the keys of the status, plus the kind and the text of the event."""
+        """Return the announcement as JSON: the machine status, and the kind and text of the event."""
         return json.dumps({"event": self.kind, "text": self.text, **self.status}).encode()
 
 
 def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterator[Announcement]:
-    """Yield the events that happened between two statuses.
+    """Yield the events that happened between two machine statuses.
 
-    If there is no previous status, no events are found.
+    If there is no previous status, no events are yielded.
     """
     state, was = str(current["state"]), previous.get("state")
     if was is None:
@@ -78,7 +78,7 @@ def _changed(was: str, state: str, now: StatusDocument) -> Iterator[Announcement
 
 
 class AnnouncementReceiver(Protocol):
-    """Interface of a receiver of announcements.
+    """Interface of a receiver, which forwards announcements to another system.
 
     No method waits for a response of the other system.
     """
@@ -94,7 +94,10 @@ class AnnouncementReceiver(Protocol):
 
 
 class Announcer:
-    """Announcer that polls the status in a separate thread, twice per second."""
+    """Announcer that polls the machine status twice per second, and sends changes to receivers.
+
+    The status is polled in a separate thread.
+    """
 
     def __init__(
         self, read_status: Callable[[], StatusDocument], receivers: Sequence[AnnouncementReceiver]
@@ -104,10 +107,7 @@ class Announcer:
         self._thread = RepeatingThread("announcer", self.poll, POLL_INTERVAL_S)
 
     def start(self) -> None:
-        """Start the thread.
-
-        This method may be called only once.
-        """
+        """Start polling. This method may be called only once."""
         self._thread.start()
 
     def close(self) -> None:

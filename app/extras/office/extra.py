@@ -1,4 +1,4 @@
-"""Registration of the optional feature with the office status page and announcements by MQTT and webhook."""
+"""Registration of the optional feature with the office status page and announcements."""
 
 from __future__ import annotations
 

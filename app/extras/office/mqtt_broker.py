@@ -1,6 +1,6 @@
-"""MQTT receiver of announcements.
+"""MQTT receiver, which publishes the status and the announcements to a broker.
 
-The topics are TOPIC/state, TOPIC/event and TOPIC/available, which the last will sets to offline.
+The topics are TOPIC/state, TOPIC/event and TOPIC/available. The last will sets TOPIC/available to offline.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ _log = logging.getLogger(__name__)
 
 
 class _Client(mqtt.Client):
-    """Paho client that reports the reason if a connection fails."""
+    """Paho MQTT client that reports why a connection has failed."""
 
     on_failed: Callable[[Exception], None]
 
     def reconnect(self) -> MQTTErrorCode:
-        """Reconnect to the broker.
+        """Reconnect to the broker, and report the reason if this fails.
 
         Paho's thread calls this method. The thread continues only if the error is an OSError.
         """
@@ -58,7 +58,7 @@ class _Client(mqtt.Client):
 
 
 class MqttReceiver:
-    """Receiver that publishes to an MQTT broker.
+    """Receiver that publishes the status and the announcements to an MQTT broker.
 
     Paho's thread reconnects when the broker is available again.
     """
@@ -104,8 +104,8 @@ class MqttReceiver:
         """Publish the offline status and disconnect.
 
         The status must be published because the broker sends the last will only after a broken connection.
-        If the broker does not respond, the connection remains open. The broker then publishes the last will
-        after this process has ended. The thread of paho ends with the process.
+        If the broker does not respond, the connection remains open until this process ends, and the broker
+        then publishes the last will. The thread of paho ends with the process.
         """
         if not self._client.is_connected():
             self._client.disconnect()

@@ -1,4 +1,4 @@
-"""Check of the status page and the MQTT broker for rows of ``turndesk machine check``."""
+"""Check of the status page and the MQTT broker for ``turndesk machine check``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BROKER_PATIENCE = 2.0  # seconds
 
 
 def check_office(machine: Machine, results: CheckResults) -> None:
-    """Add rows that show whether the status page can be opened and whether the MQTT broker responds."""
+    """Add check rows that show whether the status page can be opened and the MQTT broker responds."""
     page, announce_table = (
         machine.hardware.find_driver_table(StatusPageTable),
         machine.hardware.find_driver_table(AnnounceTable),

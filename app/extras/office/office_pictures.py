@@ -1,4 +1,4 @@
-"""Pictures of the office page: following errors around an alarm as SVG, and an image as PNG."""
+"""Pictures of the office page: an SVG of the following errors around an alarm, and PNG encoding."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _curves(record: ScopeRecord) -> dict[str, FloatArray]:
 def _curve(at: FloatArray, height: FloatArray, ink: str) -> str:
     """Return the SVG element of a curve.
 
-    The curve contains the minimum and maximum of each column, so no peak is lost.
+    The curve is reduced to the minimum and maximum of each short section, so no peak is lost.
     """
     known = np.isfinite(height)
     at, height = at[known], height[known]
@@ -87,7 +87,7 @@ _BITS, _RGBA = 8, 6  # bits per sample; the color type
 
 
 def encode_png(pixels: bytes, width: int, height: int) -> bytes:
-    """Return the PNG file of an image.
+    """Return an image as the bytes of a PNG file.
 
     Pixels have 32 bits: alpha, red, green and blue, from the highest bits to the lowest. The first row is
     the top row.

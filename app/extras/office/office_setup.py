@@ -42,9 +42,10 @@ MAX_LISTED_STOPS = 6  # number of latest stops
 
 @dataclass(frozen=True, slots=True)
 class StatusSource:
-    """Source of the status. Any thread can read the status.
+    """Source of the machine status for the status page and the announcements.
 
-    ``calculate_time_left`` returns seconds, or inf while the machine is stopped.
+    Any thread can read the status. ``calculate_time_left`` returns seconds, or inf while the machine is
+    stopped.
     """
 
     machine_name: str
@@ -55,7 +56,7 @@ class StatusSource:
     get_current_utc: Callable[[], datetime]
 
     def read_status(self) -> StatusDocument:
-        """Return the values for status.json and the status page, by key.
+        """Return the values for status.json and the status page, by JSON key.
 
         Times are in seconds. None means that a value is not known.
         """
@@ -100,7 +101,7 @@ _NOTHING_KNOWN: StatusDocument = {
 
 
 def _words(snapshot: Snapshot) -> str:
-    """Return the reason why the machine is stopped, with the wording of the screen."""
+    """Return the reason why the machine is stopped, with the same wording as on the screen."""
     if snapshot.alarms:
         return Message("{alarms}: {cause}", alarms=snapshot.alarms[0].text, cause=snapshot.alarms[0].cause)
     if snapshot.message:
@@ -222,7 +223,7 @@ def _page(
 
 @dataclass(slots=True)
 class PartPicture:
-    """PNG image of the part of the loaded program.
+    """PNG image of the part that the loaded program makes.
 
     The part is drawn once per program, and only while no program runs.
     """
@@ -233,16 +234,16 @@ class PartPicture:
     _drawn: tuple[str, bytes] = ("", b"")
 
     def update(self) -> None:
-        """Draw the part if the program is new and no program runs.
+        """Draw the part if the program has changed and no program runs.
 
-        One thread calls this method repeatedly.
+        This method is called repeatedly by one thread.
         """
         job = self.get_job()
         if job is not None and job.digest != self._drawn[0] and self.is_idle():
             self._drawn = job.digest, self._png(job)
 
     def get_png(self) -> bytes:
-        """Return the PNG, or empty bytes if the part has not been drawn yet."""
+        """Return the PNG image, or empty bytes if the part has not been drawn yet."""
         job, (digest, png) = self.get_job(), self._drawn
         return png if job is not None and job.digest == digest else b""
 
@@ -255,7 +256,7 @@ class PartPicture:
 
 @dataclass(slots=True)
 class AlarmPicture:
-    """Drawing of the latest alarm record of the scope.
+    """SVG chart of the latest scope record that an alarm triggered.
 
     ``folder`` is None if no records are stored.
     """
@@ -273,7 +274,7 @@ class AlarmPicture:
             self._drawn = names[-1].name, _drawing(names[-1])
 
     def get_svg(self) -> bytes:
-        """Return the SVG, or empty bytes if there is no readable record."""
+        """Return the SVG chart, or empty bytes if there is no readable alarm record."""
         return self._drawn[1]
 
 

@@ -1,4 +1,4 @@
-"""Status of other machines, which run TurnDesk or an MTConnect agent.
+"""Status of other machines on the status page. They run TurnDesk or an MTConnect agent.
 
 The status is read only while a browser views the page.
 """
@@ -34,7 +34,7 @@ _ASK = make_timed_opener(ProxyHandler({}))  # machines of one shop are accessed 
 
 
 def make_status_address(address: str) -> str:
-    """Return the address of the status document for the address of a TurnDesk page.
+    """Return the address of ``status.json`` for the address of a TurnDesk status page.
 
     The token remains in the query of the address.
     """
@@ -43,7 +43,7 @@ def make_status_address(address: str) -> str:
 
 
 class MachineResponse(NamedTuple):
-    """Part of a response that the page shows.
+    """Values from another machine's response that the status page shows.
 
     ``error_text`` is the reason why the machine is stopped, or the reason why no status is available.
     """
@@ -70,9 +70,9 @@ def read_status(
 ) -> OtherMachine:
     """Send a request to another machine and return its status.
 
-    ``request_address`` is the requested address, and ``address`` identifies the machine.
-    ``convert_response`` converts the response and raises ValueError for invalid data. ``max_bytes`` limits
-    the number of bytes that are read. An error is returned as ``error_text`` of the result.
+    ``address`` identifies the machine, and ``request_address`` is the address of the request.
+    ``convert_response`` converts the response and raises ValueError for invalid data. At most ``max_bytes``
+    bytes are read. An error is returned as ``error_text`` of the result.
     """
     name = _name(address)
     try:
@@ -101,7 +101,7 @@ _FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"}
 
 
 def _fits(key: str, value: object) -> bool:
-    """Return whether a received value has a valid type and size for the page.
+    """Return whether a received value has a valid type and size for the status page.
 
     The value is checked because data from another system are not trusted.
     """
@@ -110,10 +110,10 @@ def _fits(key: str, value: object) -> bool:
 
 
 class OtherMachines:
-    """Status of other machines.
+    """Reader of the status of other machines, with one thread per machine.
 
-    One thread per machine reads the status as long as ``read_states`` is called. A machine with a slow
-    response or no response does not delay the others. An outdated status is not shown.
+    The threads read as long as ``read_states`` is called. A machine with a slow response or no response
+    does not delay the others. An outdated status is not shown.
     """
 
     def __init__(
@@ -153,7 +153,7 @@ class OtherMachines:
         return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
     def close(self) -> None:
-        """Stop the threads after their pending requests, without waiting for the threads to end."""
+        """Stop the threads after their pending requests, but do not wait for that."""
         self._closing.set()
         self._looked.set()
 
@@ -173,13 +173,13 @@ class OtherMachines:
 
 
 def _name(address: str) -> str:
-    """Return the address without user, password and token."""
+    """Return an address without user name, password and token, for display."""
     parts = urlsplit(address)
     return parts.netloc.rpartition("@")[2] + parts.path.rstrip("/")
 
 
 def _if_fresh(desk: OtherMachine, age: float) -> OtherMachine:
-    """Return the status, or a message if the status is older than ``STALE_AFTER_S``."""
+    """Return the status, or a status with an error text if it is older than ``STALE_AFTER_S``."""
     if age <= STALE_AFTER_S:
         return desk
     return OtherMachine(desk.address, error_text=tr(Message("no response for {age} s", age=round(age))))
@@ -197,7 +197,7 @@ _LONGEST = 15  # digits of a number
 
 
 def make_current_address(address: str) -> str:
-    """Return the address at which an agent provides the current state of a device.
+    """Return the address at which an MTConnect agent provides the current state of a device.
 
     ``address`` includes the path of the device.
     """
@@ -206,7 +206,7 @@ def make_current_address(address: str) -> str:
 
 
 def read_agent_status(address: str) -> OtherMachine:
-    """Read the status of a machine from its agent, with a timeout of 2 s."""
+    """Read the status of a machine from its MTConnect agent, with a timeout of 2 s."""
     return read_status(address, make_current_address(address), _MOST_OF_AGENT, parse_streams)
 
 
@@ -234,7 +234,10 @@ def parse_streams(data: bytes) -> MachineResponse:
 
 
 def _state(device: Element, *, faulty: bool) -> str:
-    """Return the state of a device, in the terms of TurnDesk if possible."""
+    """Return the state of a device, such as E-STOP or ALARM.
+
+    A state that has no name in TurnDesk is returned in the words of MTConnect.
+    """
     if "TRIGGERED" in _values(device, "EmergencyStop"):
         return "E-STOP"
     if faulty:
@@ -259,7 +262,7 @@ def _whole(text: str | None) -> int | None:
 
 
 def _named(inside: Element, name: str) -> Iterator[Element]:
-    """Yield the elements that have a given name, in any version of the namespace."""
+    """Yield the XML elements with a given name, in any version of the namespace."""
     return (each for each in inside.iter() if each.tag.rpartition("}")[2] == name)
 
 

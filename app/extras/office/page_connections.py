@@ -22,11 +22,11 @@ _NO_HTTP = b"?\r\n\r\n"  # data that waitress rejects as a bad request
 
 
 class BrowserConnection(HTTPChannel):
-    """Connection of a browser.
+    """Connection of a browser to the status page.
 
-    ``last_activity_s`` is the time of the connection or of the last response. When a new connection exceeds
-    the maximum number, the oldest connection without a request in progress is closed. Incomplete requests
-    therefore cannot block other browsers.
+    When a new connection exceeds the maximum number, the oldest connection without a request in progress is
+    closed. Incomplete requests therefore cannot block other browsers. ``last_activity_s`` is the time of
+    the connection or of the last response.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class BrowserConnection(HTTPChannel):
             return bool(super().received(_NO_HTTP))
 
     def service(self) -> None:
-        """Send the response and restart the time limit."""
+        """Send the response and restart the time limit for the next request."""
         super().service()
         self.last_activity_s = self._clock()
 

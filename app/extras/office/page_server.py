@@ -27,7 +27,7 @@ CLOSE_TIMEOUT_S = 2.0  # seconds that closing waits for its threads
 
 
 class StatusPageServer:
-    """Server that responds to browsers until it is closed."""
+    """Server that sends the status page to browsers until it is closed."""
 
     def __init__(
         self,
@@ -69,10 +69,7 @@ class StatusPageServer:
         self._thread = threading.Thread(target=self._serve, name="status-page", daemon=True)
 
     def start(self) -> None:
-        """Start the thread.
-
-        This method may be called only once.
-        """
+        """Start the server thread. This method may be called only once."""
         self._thread.start()
 
     def close(self) -> None:

@@ -1,8 +1,8 @@
 """Status page of TurnDesk and other machines for an office computer or a phone.
 
-The page only displays values. It is a WSGI application with the addresses ``/`` (the page), ``/now`` (the
-part of the page that changes), ``status.json``, ``part.png`` and ``alarm.svg``. The page uses the language
-of the screen. ``status.json`` is the same in every language.
+The page only displays values, in the language of the screen. It is a WSGI application with these addresses:
+``/`` (the page), ``/now`` (the part of the page that changes), ``status.json``, ``part.png`` and
+``alarm.svg``. ``status.json`` is the same in every language.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ class OtherMachine:
 class StatusPage:
     """Status page as a WSGI application.
 
-    ``read_part_png`` returns a PNG of the part, and ``read_alarm_svg`` returns an SVG of the last alarm.
-    Both return empty bytes if there is no picture.
+    ``read_part_png`` returns a PNG image of the part, and ``read_alarm_svg`` returns an SVG chart of the
+    last alarm. Both return empty bytes if there is no picture.
     """
 
     machine_name: str
@@ -94,7 +94,7 @@ class StatusPage:
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
     def make_page(self) -> tuple[str, bytes]:
-        """Return the content type and the content of the whole page."""
+        """Return the content type and the HTML of the whole page."""
         frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
             title=escape(self.machine_name),
@@ -114,7 +114,7 @@ class StatusPage:
         return "text/html; charset=utf-8", page.encode()
 
     def make_changing_content(self) -> tuple[str, bytes]:
-        """Return the content type and the content of the changing part of the page."""
+        """Return the content type and the HTML of the part of the page that the script refreshes."""
         return "text/html; charset=utf-8", self._now().encode()
 
     def get_style_sheet(self) -> tuple[str, bytes]:
@@ -137,10 +137,7 @@ class StatusPage:
         return "image/png", self.read_part_png()
 
     def get_alarm_svg(self) -> tuple[str, bytes]:
-        """Return the content type and the content of the chart for the last alarm.
-
-        The chart shows the following errors before the alarm.
-        """
+        """Return the content type and the chart of the following errors before the last alarm."""
         return "image/svg+xml", self.read_alarm_svg()
 
     def _now(self) -> str:
@@ -165,7 +162,7 @@ _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
 
 
 def _find_token(environ: WSGIEnvironment) -> str:
-    """Return the token of a request from its address, its bearer header or its cookie."""
+    """Return the access token of a request from its address, its bearer header or its cookie."""
     query = parse_qs(environ.get("QUERY_STRING", "")).get("token", [""])[0]
     bearer = environ.get("HTTP_AUTHORIZATION", "").removeprefix("Bearer ")
     try:
@@ -192,7 +189,10 @@ def _mark(picture: bytes) -> str:
 
 
 def _picture(name: str, address: str, picture: bytes, words: str) -> str:
-    """Return the HTML figure with a picture and its caption. The figure is hidden without a picture."""
+    """Return the HTML figure with a picture and its caption.
+
+    The figure is hidden if there is no picture.
+    """
     mark = _mark(picture)
     source = f'src="{address}?{mark}"' if mark else ""
     hidden = "" if mark else " hidden"
@@ -217,7 +217,7 @@ def _alarm(alarm: Mapping[str, Any]) -> str:
 
 
 def _head(status: Mapping[str, Any], error_text: str = "") -> str:
-    """Return the HTML heading with the machine state and the reason for that state."""
+    """Return the HTML heading with the machine state, and the reason for a stop if there is one."""
     state = str(status.get("state") or status.get("execution") or "?")
     why = error_text or str(status.get("stop") or status.get("waiting_for") or "")
     said = f'<p class="why">{escape(tr(why))}</p>' if why else ""
@@ -227,7 +227,8 @@ def _head(status: Mapping[str, Any], error_text: str = "") -> str:
 def _local(at: object, *, short: bool = False) -> str:
     """Return an ISO 8601 time as local time, or any other text unchanged.
 
-    If ``short`` is True, the date is omitted for a time today, and the seconds are omitted for other times.
+    If ``short`` is True, a time today is shown without the date, and any other time is shown without
+    seconds.
     """
     try:
         here = datetime.fromisoformat(str(at)).astimezone()

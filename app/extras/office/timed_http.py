@@ -1,4 +1,4 @@
-"""HTTP requests with a time limit for the whole exchange, and texts for failed connections."""
+"""HTTP requests with a time limit for the whole exchange, and error texts for failed connections."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ Clock = Callable[[], float]
 class _TimedReader(io.RawIOBase):
     """Reader of a socket with a time limit.
 
-    The ``left`` parameter is a function that returns the remaining seconds. Reading raises TimeoutError
-    after the time limit.
+    ``left`` is a function that returns the remaining seconds. Reading raises TimeoutError after the time
+    limit.
     """
 
     def __init__(self, raw: io.RawIOBase, sock: socket.socket, left: Callable[[], float]) -> None:
@@ -42,7 +42,7 @@ class _TimedReader(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any, /) -> int | None:
-        """Read some bytes, and wait no longer than the remaining time."""
+        """Read some bytes into the buffer, and wait no longer than the remaining time."""
         if (left := self._left()) <= 0.0:
             raise TimeoutError("timed out")
         self._socket.settimeout(left)
@@ -55,9 +55,9 @@ class _TimedReader(io.RawIOBase):
 
 
 class _TimedResponse(HTTPResponse):
-    """HTTP response that must be read within a time limit.
+    """HTTP response that must be received within a time limit.
 
-    The ``left`` parameter is a function that returns the remaining seconds.
+    ``left`` is a function that returns the remaining seconds.
     """
 
     def __init__(self, sock: socket.socket, *args: Any, left: Callable[[], float], **more: Any) -> None:
@@ -67,7 +67,7 @@ class _TimedResponse(HTTPResponse):
 
 
 def _timed(kind: Callable[..., HTTPConnection], clock: Clock, host: str, **more: Any) -> HTTPConnection:
-    """Return a connection with a time limit for the whole exchange. The time starts now."""
+    """Return a connection with a time limit for the whole exchange. The time limit starts now."""
     connection, end = kind(host, **more), clock() + more["timeout"]
     connection.response_class = partial(_TimedResponse, left=lambda: end - clock())  # type: ignore[assignment]
     return connection
@@ -79,11 +79,11 @@ class _TimedHandler(HTTPHandler, HTTPSHandler):
         self._clock = clock
 
     def http_open(self, req: Request) -> HTTPResponse:
-        """Open a connection without TLS."""
+        """Open an HTTP connection without TLS."""
         return self.do_open(partial(_timed, HTTPConnection, self._clock), req)
 
     def https_open(self, req: Request) -> HTTPResponse:
-        """Open a connection with TLS and verify the certificate."""
+        """Open an HTTPS connection and verify the certificate."""
         return self.do_open(partial(_timed, HTTPSConnection, self._clock), req)
 
 
@@ -131,7 +131,7 @@ def find_cause(error: Exception) -> str:
 
 
 def extract_host(address: str) -> str:
-    """Return the scheme, host and port of an address. Other parts can contain a password or token."""
+    """Return the scheme, host and port of an address, without user name, password, path and token."""
     parts = urlsplit(address)
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
@@ -142,7 +142,7 @@ def make_one_line(text: str) -> str:
 
 
 class DeliveryErrorLog:
-    """Log of failed deliveries.
+    """Log of failed deliveries to another system.
 
     After a cause is logged, it is not logged again until a delivery succeeds.
     """

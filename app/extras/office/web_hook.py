@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 
 
 class WebhookReceiver:
-    """Webhook that posts each announcement as JSON.
+    """Receiver that posts each announcement as JSON to a webhook address.
 
     A separate thread posts the announcements in order. After a failed connection or a server error, the
     thread posts again after ``retry_time_s`` seconds. An announcement that is rejected (4xx) or redirected
@@ -56,7 +56,7 @@ class WebhookReceiver:
         self._there.set()
 
     def close(self) -> None:
-        """Stop the thread after its current post, and return without waiting for that."""
+        """Stop the thread after its current post, but do not wait for that."""
         self._closing.set()
         self._there.set()
 
@@ -75,7 +75,7 @@ class WebhookReceiver:
                 return
 
     def _settled(self, announcement: Announcement) -> bool:
-        """Post an announcement, and return False if the post must be repeated."""
+        """Post an announcement, and return whether it needs no further attempt."""
         try:
             self._post(self._address, announcement.make_json())
         except (URLError, HTTPException, OSError, ValueError) as error:
@@ -86,13 +86,13 @@ class WebhookReceiver:
 
 
 class _Stay(HTTPRedirectHandler):
-    """Handler that does not follow redirections.
+    """Handler that does not follow HTTP redirects.
 
-    To follow a redirection, urllib would send a GET request without the data.
+    To follow a redirect, urllib would send a GET request without the data.
     """
 
     def redirect_request(self, *_request: object, **_more: object) -> None:
-        """Return None, so that a redirection counts as a rejection."""
+        """Return None, so that a redirect counts as a rejection."""
 
 
 def post_json(address: str, data: bytes, clock: Clock = time.monotonic) -> None:

@@ -1,4 +1,4 @@
-"""Registration of the optional feature with the pendant."""
+"""Registration of the optional feature for a USB pendant."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class PendantExtra(OptionalFeature):
         return remove_pendant(machine)
 
     def add_ports(self, machine: Machine, connected: ConnectedMachine) -> ConnectedMachine:
-        """Return the connected machine with its pendant.
+        """Return the connected machine with the ports of its pendant added.
 
         If the machine file has no [pendant] table, the machine is returned unchanged.
         """

@@ -1,4 +1,4 @@
-"""Setup of the pendant of a machine file, which TurnDesk reads in addition to the machine ports."""
+"""Setup of the pendant, which TurnDesk reads in addition to the inputs of the machine."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DeviceFinder = Callable[[PendantModel, Mapping[str, PendantControl]], Sequence[E
 def remove_pendant(machine: Machine) -> Machine:
     """Return the machine without the inputs and the handwheel of the pendant.
 
-    The backend uses only the remaining inputs.
+    The machine backend uses only the remaining inputs.
     """
     inputs = {name: each for name, each in machine.inputs.items() if not _at_pendant(each.terminal)}
     pots = {
@@ -46,7 +46,7 @@ def remove_pendant(machine: Machine) -> Machine:
 def open_devices(
     model: PendantModel, required_controls: Mapping[str, PendantControl]
 ) -> Sequence[EventSource]:
-    """Open the nodes of the matching device and return them.
+    """Open the matching input device and return its nodes.
 
     Raises DriverError, with the remedy, if the device cannot be opened.
     """
@@ -64,9 +64,9 @@ def open_devices(
 def add_pendant(
     machine: Machine, connected: ConnectedMachine, find_devices: DeviceFinder | None = None
 ) -> ConnectedMachine:
-    """Return the machine with the pendant that its machine file configures, if there is one.
+    """Return the connected machine with its pendant, or unchanged if no pendant is configured.
 
-    If the pendant is missing, the fault is reported and the search for the pendant continues.
+    If the pendant is not plugged in, the fault is reported and the search for the pendant continues.
     """
     model = machine.hardware.find_driver_table(PendantModel)
     if model is None:

@@ -1,4 +1,4 @@
-"""Control charts and Cpk of features; trends of cycle time, load, wear, stops and availability."""
+"""Control charts and Cpk of features; trends of cycle time, load, tool wear, stops, availability."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _MOST_BARS = 8
 
 
 class TrendsSection(QualitySection):
-    """Section with one row per trend, and the chart of the selected trend below the rows."""
+    """Section of MEASURED PARTS with one row per trend, and the chart of the selected trend."""
 
     name = "TRENDS"
     use = "cycle times, stops, availability"
@@ -93,7 +93,7 @@ class TrendsSection(QualitySection):
 
     @property
     def shift_hours(self) -> tuple[int, int]:
-        """Return the first and the last hour of the shift in local time.
+        """Return the hours at which the shift starts and ends, in local time.
 
         The hours are loaded only once.
         """
@@ -260,7 +260,7 @@ class TrendsSection(QualitySection):
         )
 
     def _wear_plots(self) -> tuple[Plot, ...]:
-        """Return the wear charts. Wear of tools in X is a diameter.
+        """Return the charts of the wear offsets in X and Z. The X wear of tools is a diameter.
 
         Each correction applies until the next correction.
         """
@@ -337,7 +337,7 @@ class TrendsSection(QualitySection):
         return True
 
     def accept_entry(self, text: str) -> bool:
-        """Set the first and last hour of the shift, and return whether they were accepted.
+        """Set the start and end hour of the shift, and return whether they were accepted.
 
         Raises EntryError if the text is not a valid pair of hours.
         """
@@ -357,7 +357,7 @@ class TrendsSection(QualitySection):
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt, or the reason why data are not stored."""
+        """Return the prompt that explains the keys, or the reason why production data are not stored."""
         return self.watch.parts_book.lock_reason or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
@@ -369,7 +369,7 @@ CHART_READING_COUNT = 100  # number of latest readings in a chart
 
 
 class ChartsSection(QualitySection):
-    """Section with one row per feature, and the charts of the selected feature below the rows."""
+    """Section of MEASURED PARTS with one row per feature, and the charts of the selected feature."""
 
     name = "CONTROL CHARTS"
     use = "limits, Cpk, drift"
@@ -394,7 +394,7 @@ class ChartsSection(QualitySection):
         return False
 
     def handle_key(self, key: str) -> bool:
-        """Move the selection with the arrow keys and return whether the key was used."""
+        """Select a feature with the arrow keys, and return whether the key was used."""
         return self.move_selection(key)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
@@ -443,7 +443,7 @@ class ChartsSection(QualitySection):
         return self.parts_data.select_readings(row.id)[-CHART_READING_COUNT:]
 
     def _drift(self, row: FeatureRow, values: list[float]) -> str:
-        """Return the text of the latest rule violation in the last ten points, or an empty string."""
+        """Return a text about the latest rule violation in the last ten points, or an empty string."""
         try:
             chart = make_charts(values, row.sample).location
         except QualityError:
@@ -454,7 +454,7 @@ class ChartsSection(QualitySection):
         return tr(late[-1].text) if late else ""
 
     def make_chart(self) -> ChartDrawing:
-        """Return the charts of location and spread of the selected feature.
+        """Return the control charts for location and spread of the selected feature.
 
         The charts are cached until the data change.
         """
@@ -483,7 +483,7 @@ class ChartsSection(QualitySection):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt that explains the lines in the chart."""
+        """Return the prompt that explains the lines in the chart, or the reason why no chart is available."""
         return self.find_missing_precondition() or (
             "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )

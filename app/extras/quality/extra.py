@@ -56,7 +56,7 @@ class QualityExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Attach the measured parts and the sample plan to TurnDesk if production data are available."""
+        """Attach the measured parts and the sampling plan to TurnDesk if production data are available."""
         from app.extras.quality.quality_setup import attach_quality
 
         attach_quality(desk, machine)
@@ -64,7 +64,10 @@ class QualityExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return MEASURED PARTS (after SCOPE in the list) and the shift report (after JOBS)."""
+        """Return the MEASURED PARTS function and the shift report function.
+
+        In the F10 list, MEASURED PARTS follows SCOPE, and the shift report follows JOBS.
+        """
         from app.desk.data_folder import find_data_folder
         from app.extras.quality.quality_setup import MeasuredPartsFunction
         from app.extras.quality.shift_function import ShiftReportFunction
@@ -74,7 +77,10 @@ class QualityExtra(OptionalFeature):
         return ((parts, "SCOPE"), (report, "JOBS"))
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs for parts and shifts, documented after ``offsets history --json``."""
+        """Return the JSON outputs for parts and shifts.
+
+        The reference lists them after ``offsets history --json``.
+        """
         from app.extras.quality.quality_json_keys import OUTPUTS
 
         return OUTPUTS

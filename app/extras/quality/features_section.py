@@ -1,4 +1,4 @@
-"""Features of a program's parts: name, nominal size, tolerance, offset to correct, and sampling."""
+"""Section for the features of a part, with name, size, tolerance, offset to correct and sampling."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": 
 
 @dataclass(slots=True)
 class FeatureDraft:
-    """Feature that is being edited.
+    """Unsaved values of a feature that is being edited.
 
     ``feature_id`` is 0 for a new feature.
     """
@@ -80,7 +80,7 @@ class FeatureDraft:
         return self.field_names[self.field_index]
 
     def get_field_text(self, field: str, value_mode: ValueMode) -> str:
-        """Return the value of a field as text."""
+        """Return the value of a field as display text."""
         feature = self.feature
         if field == "NAME":
             return feature.name
@@ -141,17 +141,17 @@ class FeaturesSection(QualitySection):
 
     @property
     def field_names(self) -> tuple[str, ...]:
-        """Return the names of the fields of a feature, in the language of the machine."""
+        """Return the names of the fields of a feature, which depend on the programming language."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
         return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.program_language])
 
     @property
     def row_count(self) -> int:
-        """Return the number of fields while a feature is edited, or else the number of features."""
+        """Return the number of fields while a feature is edited, and otherwise the number of features."""
         return len(self.draft.field_names) if self.draft is not None else len(self.parts_data.features)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the fields while a feature is edited, or else the table of the features."""
+        """Return the table of fields while a feature is edited, and otherwise the table of features."""
         if self.draft is not None:
             return self._fields(self.draft)
         self.limit_selection()
@@ -208,7 +208,7 @@ class FeaturesSection(QualitySection):
         )  # fmt: skip
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the list or of the feature that is being edited."""
+        """Return the function keys for the feature that is being edited, or for the feature list."""
         if self.draft is not None:
             return {"F6": FunctionKey("SAVE", self.save_feature)}
         return {
@@ -229,7 +229,7 @@ class FeaturesSection(QualitySection):
         return len(key) == 1 and (draft.selected_field == "NAME" or key in EXPRESSION_CHARACTERS)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key for the feature that is being edited, or for the list."""
+        """Handle a key for the feature that is being edited, or for the feature list."""
         draft = self.draft
         if draft is None:
             return self.move_selection(key) or (key == "Enter" and self._opened())
@@ -279,7 +279,7 @@ class FeaturesSection(QualitySection):
             self.submit_entry()
 
     def execute_row(self) -> bool:
-        """Open the selected feature and return True."""
+        """Start editing the selected feature, and return True."""
         return self._opened()
 
     def add_feature(self) -> None:
@@ -366,7 +366,7 @@ class FeaturesSection(QualitySection):
         )
 
     def handle_escape(self) -> bool:
-        """Cancel the entry or discard the edited feature, and return whether there was one."""
+        """Cancel the entry or discard the edited feature. Return False if neither was open."""
         if super().handle_escape():
             return True
         open_one, self.draft = self.draft is not None, None

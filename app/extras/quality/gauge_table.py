@@ -9,7 +9,7 @@ from core.table_schema import DriverDeclaration, DriverTable
 
 @make_key_table
 class GaugeModel:
-    """Settings of the serial port of the gauge.
+    """Settings of the serial port of a gauge.
 
     ``unit`` applies to received lines that contain no unit.
     """

@@ -30,7 +30,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the stored data.
+    """Print the stored data of one program or of all programs.
 
     Raises CommandError if the requested program has no data, or if the store cannot be read.
     """
@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _names(store: Store, wanted: str | None) -> list[str]:
-    """Return the names of the programs with stored data, or only the requested program."""
+    """Return the requested program name, or the names of all programs with stored data."""
     from core.store.production import measured_parts, part_cycles
 
     known = {row.program for row in store.runs.read_records()}
@@ -115,7 +115,7 @@ def _program(store: Store, name: str) -> dict[str, object]:
 
 
 def _capability(data: PartsData, number: int) -> dict[str, object] | None:
-    """Return Cp, Cpk, Pp and Ppk of all readings, or None if there are too few readings."""
+    """Return Cp, Cpk, Pp and Ppk of a feature, or None if there are too few readings."""
     from dataclasses import asdict
 
     from app.extras.quality.parts_data import make_feature

@@ -32,7 +32,7 @@ _DAYS = timedelta(days=2)
 
 @dataclass(frozen=True, slots=True)
 class PartsData:
-    """Data of one program, with the oldest rows first.
+    """Stored data of the parts of one program. In all tables, the oldest rows are first.
 
     ``last_corrections`` contains the number of the latest change of each offset axis.
     """
@@ -49,9 +49,9 @@ class PartsData:
 
     @property
     def complete_cycles(self) -> tuple[CycleRow, ...]:
-        """Return the complete cycles that have a representative time.
+        """Return the complete cycles with a representative cycle time.
 
-        Cycles that were finished by a restart are excluded.
+        A cycle that was finished by a restart has no such time and is excluded.
         """
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
@@ -60,7 +60,7 @@ class PartsData:
         return tuple(row for row in self.readings if row.feature == feature_id)
 
     def select_readings_since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
-        """Return the readings of parts started after the last change of the feature's offset.
+        """Return the readings of parts that were started after the feature's offset was last changed.
 
         A part with an unknown start time is included only if the offset was never changed.
         """
@@ -110,8 +110,8 @@ def make_feature_row(feature: MeasuredFeature, program: str, feature_id: int) ->
 def read_parts_data(store: Store, program: str, max_rows: int = MAX_ROWS) -> PartsData:
     """Read the stored data of a program.
 
-    The result contains the latest ``max_rows`` rows of each type, or all rows if ``max_rows`` is -1. The
-    call can take a long time. Raises StoreError if the data cannot be read.
+    The result contains the latest ``max_rows`` rows of each type, or all rows if ``max_rows`` is -1.
+    Reading can take a long time. Raises StoreError if the data cannot be read.
     """
     with store.read() as connection:
         return PartsData(
@@ -153,7 +153,7 @@ def make_readings_csv(data: PartsData) -> str:
 
 
 def make_csv_rows(data: PartsData) -> Iterator[tuple[object, ...]]:
-    """Yield the cells of each reading in the order of ``CSV_COLUMNS``."""
+    """Yield the CSV cells of each reading in the order of ``CSV_COLUMNS``."""
     features = {row.id: row for row in data.features}
     for each in data.readings:
         feature, per = make_feature(features[each.feature]), _PER[each.unit]

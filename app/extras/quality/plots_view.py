@@ -29,9 +29,9 @@ _PLOTS = 2  # usual number of plots in a drawing
 
 
 class PlotsPane(QWidget):
-    """Pane with the plots of one drawing.
+    """Pane that shows the plots of one chart.
 
-    The plots are drawn again after a change of the drawing, the size or the theme.
+    The plots are drawn again after a change of the chart, the size or the theme.
     """
 
     accessible_name = "CHART"
@@ -48,11 +48,11 @@ class PlotsPane(QWidget):
         self._u = 0.0
 
     def prepare_next_plot(self) -> bool:
-        """Create one more plot in advance, and return whether all plots exist."""
+        """Create one more plot in advance, and return whether all plots have been created."""
         return self._chart.prepare_plots(_PLOTS)
 
     def show_drawing(self, drawing: ChartDrawing) -> None:
-        """Show a drawing if it has changed."""
+        """Show a chart, unless it is already shown in the current size and theme."""
         look = self.theme
         if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.unit_px):
             return
@@ -82,11 +82,11 @@ class PlotsPane(QWidget):
             self.show_drawing(self._shown)
 
     def showEvent(self, _event: QShowEvent) -> None:
-        """Draw the plots again, because plots that were drawn while hidden have no layout."""
+        """Request a new drawing, because plots that were drawn while hidden have no layout."""
         self._shown = None
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Fill the widget and draw the plots again after a change of size."""
+        """Resize the chart to the pane, and draw the plots again."""
         self._lay_out()
         self.apply_theme()
 
@@ -141,7 +141,7 @@ class PlotsPane(QWidget):
         drawn.add_item(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
     def _range(self, drawn: chart.ChartPlot, plot: Plot, across: tuple[float, float]) -> None:
-        """Set the range so that all points and levels are visible below the title.
+        """Set the range of a plot so that all points and levels are visible below the title.
 
         All plots have the same horizontal range.
         """
@@ -154,7 +154,7 @@ class PlotsPane(QWidget):
         drawn.vb.setXRange(across[0] - side, across[1] + side, padding=0)
 
     def _title(self, drawn: chart.ChartPlot, words: str) -> None:
-        """Draw the title in the upper left corner.
+        """Draw the title of a plot in the upper left corner.
 
         The title has a background, so that limit lines do not cross the text.
         """
@@ -168,7 +168,10 @@ class PlotsPane(QWidget):
 
 
 class BarsPane(QWidget):
-    """Pane with named horizontal bars, longest bar first, or with a text if there is nothing to draw."""
+    """Pane with labeled horizontal bars, the longest bar first.
+
+    If there are no bars, the pane shows a text.
+    """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)

@@ -1,4 +1,4 @@
-"""Setup of measured parts and trends, and of their row in the list of special functions."""
+"""Setup of measured parts and trends, and of the MEASURED PARTS row in the F10 list."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MEASURED_PARTS_PAGE = "MEASURED PARTS"  # name of the page in app.screen.page_ta
 
 
 class MeasuredPartsFunction(PageFunction):
-    """Special function that shows the numbers of features and readings, and the due measurements."""
+    """Special function that shows the numbers of features and readings, and the measurements due."""
 
     name = "MEASURED PARTS"
     use = "features, readings, charts, trends"
@@ -27,7 +27,7 @@ class MeasuredPartsFunction(PageFunction):
     key_hint = "Press Enter to open the page, or press W in the main menu."
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
-        """Return rows with the numbers of features and readings, and with the due measurements."""
+        """Return rows with the numbers of features and readings, and with the measurements that are due."""
         watch = self.desk.page_registry.find_model(PartsWatch)
         if watch is None or watch.parts_book.lock_reason:
             return (
@@ -59,7 +59,7 @@ def attach_quality(desk: Desk, machine: Machine) -> None:
 
 
 def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
-    """Return the sections of the page.
+    """Return the sections of the MEASURED PARTS page.
 
     The sections are imported at the first call, so that TurnDesk starts faster.
     """
@@ -72,7 +72,7 @@ SectionFactory = Callable[[], Sequence[SpecialFunction]]
 
 
 class QualityFunctions(SpecialFunctionList):
-    """Sections of the page for measured parts.
+    """List of the sections of the MEASURED PARTS page.
 
     Readings of a gauge are used only while the readings section is displayed.
     """
@@ -86,7 +86,7 @@ class QualityFunctions(SpecialFunctionList):
 
     @property
     def functions(self) -> Sequence[SpecialFunction]:
-        """Return the sections of the page.
+        """Return the sections of the MEASURED PARTS page.
 
         They are created at the first access, so that TurnDesk starts faster.
         """
@@ -99,7 +99,7 @@ class QualityFunctions(SpecialFunctionList):
         """Ignore the value, because the sections are created by the getter."""
 
     def process_results(self) -> None:
-        """Read the gauge once per frame.
+        """Process received gauge readings. This method is called once per frame.
 
         A reading belongs to the feature that is displayed when the reading arrives.
         """

@@ -1,4 +1,4 @@
-"""Page MEASURED PARTS (W), with the sections on the left and the open section on the right.
+"""Page MEASURED PARTS (W), with the section list on the left and the open section on the right.
 
 The chart is below the open section.
 """
@@ -32,7 +32,7 @@ def _pane_class() -> type[PlotsPane]:
 
 
 class MeasuredPartsPage(SpecialPage):
-    """Page of measured parts.
+    """Screen page for measured parts.
 
     The page works like the special functions page, but also has a chart that is loaded at its first use.
     """
@@ -48,7 +48,7 @@ class MeasuredPartsPage(SpecialPage):
         self._asked = False  # whether the chart was requested
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Update the table and the chart."""
+        """Update the table and the chart of the open section."""
         super().refresh(snapshot, status, loaded)
         shown = self.model.shown_function
         share = shown.chart_share if isinstance(shown, QualitySection) else 0.0

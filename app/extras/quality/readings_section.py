@@ -1,4 +1,4 @@
-"""Readings of parts, typed or received from a gauge, and the wear correction that they require."""
+"""Section for readings, typed or received from a gauge, and for the wear correction they require."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MM_PER_UNIT = {"mm": 1.0, "in": 25.4}
 
 @dataclass(frozen=True, slots=True)
 class NewReading:
-    """Reading that is to be stored."""
+    """Reading that has not been stored yet."""
 
     feature: FeatureRow
     part_number: int
@@ -51,7 +51,7 @@ class NewReading:
 
 
 class ReadingsSection(QualitySection):
-    """Section for the entry of readings, with one row per feature.
+    """Section for entering readings, with one row per feature.
 
     A typed size belongs to the selected feature and the current part.
     """
@@ -196,9 +196,9 @@ class ReadingsSection(QualitySection):
         return self._offer(NewReading(feature, self.part_number, value, mode.name, "typed"))
 
     def _offer(self, reading: NewReading) -> bool:
-        """Store a reading. If the size is implausible, first ask for confirmation.
+        """Store a reading, after confirmation if its size is implausible.
 
-        Raises EntryError for a size of 0 or less.
+        Raises EntryError if the size is 0 or less.
         """
         row, feature = reading.feature, make_feature(reading.feature)
         if reading.size_mm <= 0.0:
@@ -294,7 +294,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
 
     def process_wire_input(self, *, is_displayed: bool) -> None:
-        """Store received gauge readings for the selected feature while the section is displayed.
+        """Store received gauge readings for the selected feature if the section is displayed.
 
         This method is called once per frame.
         """
@@ -322,15 +322,15 @@ class ReadingsSection(QualitySection):
             self.desk.show_refusal(str(error))
 
     def close(self) -> None:
-        """Close the gauge."""
+        """Stop receiving readings from the gauge."""
         self.gauge.close()
 
     # --- correction ----------------------------------------------------------------------------------
 
     def propose_correction(self) -> None:
-        """Propose a correction from the readings of the selected feature (F8).
+        """Propose a wear correction from the readings of the selected feature (F8).
 
-        Y applies the proposed correction.
+        The operator applies the proposed correction with Y.
         """
         feature = self.selected_feature
         if feature is None:
@@ -364,7 +364,7 @@ class ReadingsSection(QualitySection):
         return settled
 
     def _correct(self, feature: FeatureRow) -> None:
-        """Calculate the correction again from the current data, and apply it."""
+        """Recalculate the correction from the current data, and apply it."""
         if not self._settled():
             return
         try:
@@ -384,9 +384,9 @@ class ReadingsSection(QualitySection):
         self.desk.show_success(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.text)))
 
     def undo_correction(self) -> None:
-        """Ask whether to undo the last correction (F4).
+        """Undo the last correction after confirmation (F4).
 
-        The correction can be undone only if it is the latest change.
+        This is possible only if the correction is the latest change of the offset table.
         """
         why = self._undo_barred()
         if not why and self._last is not None:

@@ -1,4 +1,4 @@
-"""Sample plan: the features and parts to measure, and whether the next part must wait."""
+"""Sampling plan: which features of which parts to measure, and whether the next part must wait."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.store.store_errors import StoreError
 
 
 def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
-    """Return the number of the part to measure for each due feature.
+    """Return, for each feature that is due, the number of the part to measure.
 
     A feature is due if neither its latest planned part nor a later part has a reading.
     """
@@ -27,7 +27,10 @@ def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
 
 
 def make_due_notice(due_parts: dict[str, int]) -> str:
-    """Return the prompt text that names the features to measure, or an empty string."""
+    """Return the prompt text that names the part and the features to measure.
+
+    The result is an empty string if no measurement is due.
+    """
     part, names = _newest(due_parts)
     return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if due_parts else ""
 
@@ -43,14 +46,14 @@ def find_block_reason(due_parts: dict[str, int]) -> str:
 
 
 def _newest(due_parts: dict[str, int]) -> tuple[int, str]:
-    """Return the number of the latest part to measure and the names of the features due on that part."""
+    """Return the number of the latest part to measure, and the names of its due features."""
     part = max(due_parts.values(), default=0)
     return part, ", ".join(name for name, planned in due_parts.items() if planned == part)
 
 
 @dataclass(slots=True)
 class SamplePlan:
-    """Sample plan of the loaded program. It can make the next part wait for required measurements."""
+    """Sampling plan of the loaded program. It can block the next part until measurements are entered."""
 
     desk: Desk
     parts_watch: PartsWatch
@@ -60,9 +63,9 @@ class SamplePlan:
     _waits: tuple[str, bool] = ("", False)  # program, and whether its parts wait for measurements
 
     def find_block_reason(self, snapshot: Snapshot) -> str:
-        """Return the reason why the next part must not start, or an empty string.
+        """Return the reason why the next part must wait for measurements, or an empty string.
 
-        A part in progress counts as made.
+        The part in progress counts as made.
         """
         if not self.waits_for_measurements:
             return ""
@@ -70,11 +73,11 @@ class SamplePlan:
         return find_block_reason(self._planned(made))
 
     def find_reminder(self) -> str:
-        """Return the prompt text that names the features to measure, or an empty string."""
+        """Return the prompt text that names the features to measure, or an empty string if none is due."""
         return make_due_notice(self._planned(self.desk.program_runs.part_counter.part_count))
 
     def _planned(self, made: int) -> dict[str, int]:
-        """Return the measurements that are due for a number of parts made.
+        """Return the measurements that are due after a number of parts were made.
 
         The result is cached until the data change.
         """
@@ -97,9 +100,10 @@ class SamplePlan:
         return self._waits[1]
 
     def toggle_waiting(self) -> None:
-        """Turn waiting for required measurements on or off, without waiting for the disk.
+        """Turn waiting for required measurements on or off for the loaded program.
 
-        Raises StoreError if the setting cannot be queued for saving. A later write error is not raised.
+        The setting is saved in the background. Raises StoreError if it cannot be queued for saving. A later
+        write error is not raised.
         """
         on, program = not self.waits_for_measurements, self.parts_watch.program_name
         self._waits = program, on

@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PlotCurve:
-    """Curve in a plot over part numbers.
+    """Curve in a plot whose horizontal axis is the part number.
 
     ``color_number`` selects the color. ``has_dots`` draws a dot at each point. ``has_steps`` draws the
     curve as steps.
@@ -42,7 +42,7 @@ class PlotCurve:
 class PlotLevel:
     """Horizontal line in a plot.
 
-    ``kind`` is centre, limit (a control limit) or tolerance.
+    ``kind`` is centre (the center line), limit (a control limit) or tolerance.
     """
 
     value: float
@@ -54,7 +54,7 @@ class PlotLevel:
 class Plot:
     """Plot with curves or bars.
 
-    ``violation_points`` are the points that violate a rule of control charts.
+    ``violation_points`` are the points that violate a control-chart rule.
     """
 
     title: str = ""
@@ -72,9 +72,9 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class ChartDrawing:
-    """Drawing with plots that are arranged vertically.
+    """Chart with plots that are arranged vertically.
 
-    Drawings with equal ``drawing_key`` are considered equal and are not drawn again.
+    Charts with equal ``drawing_key`` are considered equal and are not drawn again.
     """
 
     plots: tuple[Plot, ...] = ()
@@ -94,7 +94,7 @@ def make_control_plots(
     names: tuple[str, str],
     unit_mm: float,
 ) -> tuple[Plot, ...]:
-    """Return the plots of location and spread over the part numbers.
+    """Return the control plots of location and spread over the part numbers.
 
     Lengths are in units of ``unit_mm`` mm. Each point is at the number of the last part of its sample. The
     upper plot shows size limits only for samples of one part, because the limits do not apply to averages.
@@ -117,9 +117,10 @@ def make_correction_plot(
     names: tuple[str, str],
     unit_mm: float,
 ) -> Plot:
-    """Return the plot of sizes by part number, with the mean and the size after a correction.
+    """Return the plot of measured sizes by part number.
 
-    Lengths are in units of ``unit_mm`` mm. Repeated readings of a part are drawn next to each other.
+    The plot also shows the mean and the expected size after a correction. Lengths are in units of
+    ``unit_mm`` mm. If a part was measured repeatedly, the points are drawn next to each other.
     """
     parts = np.asarray([part for part, _ in readings], dtype=np.float64)
     if (np.diff(parts) <= 0.0).any():
@@ -168,7 +169,7 @@ NO_FEATURE_MESSAGE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
 class QualitySection(NumericFunction):
-    """Base class of the sections, with the parts book, loaded program, unit and selected feature."""
+    """Base class of the MEASURED PARTS sections, with stored data, program, unit and feature."""
 
     chart_share: float = 0.0  # ratio of the height for the chart below the table
 
@@ -190,13 +191,13 @@ class QualitySection(NumericFunction):
     def is_mill(self) -> bool:
         """Return whether the machine is a mill.
 
-        On a mill, DL and DR replace wear corrections.
+        On a mill, the tool oversizes DL and DR are used instead of wear offsets.
         """
         return self.desk.machine.program_language == "klartext"
 
     @property
     def control_unit(self) -> ValueMode:
-        """Return the control's unit of length, which applies to all entries and displayed values."""
+        """Return the unit of length of the control, which applies to all entries and displayed values."""
         return ValueMode(self.desk.read_snapshot().modal.metric, is_diameter=True)
 
     @property
@@ -217,11 +218,11 @@ class QualitySection(NumericFunction):
         return self.move_selection(key) or super().handle_key(key)
 
     def limit_selection(self) -> None:
-        """Limit the selection to the rows of the table."""
+        """Move the selection to the last row if the selected row no longer exists."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
 
     def find_missing_precondition(self) -> str:
-        """Return the reason why this section cannot be used, or an empty string."""
+        """Return the reason why this section cannot be used, such as no program, or an empty string."""
         if not self.program_name:
             return NO_PROGRAM_MESSAGE
         return self.watch.parts_book.lock_reason or ("" if self.parts_data.features else NO_FEATURE_MESSAGE)

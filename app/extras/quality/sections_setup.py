@@ -24,7 +24,7 @@ from core.machine.machine_model import Machine
 def make_sections(
     desk: Desk, machine: Machine, watch: PartsWatch, sample_plan: SamplePlan
 ) -> Sequence[SpecialFunction]:
-    """Return the sections in the order of the page.
+    """Return the sections of the MEASURED PARTS page in display order.
 
     The section for tool life exists only on a lathe.
     """

@@ -1,4 +1,4 @@
-"""Gauge on a serial port.
+"""Gauge that is connected to a serial port.
 
 A thread receives readings in Digimatic format or as plain numbers.
 """
@@ -32,7 +32,7 @@ _ERRORS = {
 
 
 class GaugeError(CodedError, ValueError):
-    """Error if a received line is not a reading."""
+    """Error raised if a received line does not contain a reading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +47,9 @@ class GaugeReading:
 
 
 def parse_reading(line: str) -> GaugeReading:
-    """Return the reading in a received line.
+    """Return the gauge reading in a received line.
 
-    Raises GaugeError if the line is not a reading.
+    Raises GaugeError if the line does not contain a reading.
     """
     text = line.strip()
     if text in _ERRORS:
@@ -64,13 +64,13 @@ def parse_reading(line: str) -> GaugeReading:
 
 
 class LineSplitter:
-    """Splitter that splits received bytes into lines at CR or LF."""
+    """Buffer that splits received bytes into lines at CR or LF."""
 
     def __init__(self) -> None:
         self._text = ""
 
     def split_lines(self, data: bytes) -> list[str]:
-        """Return the lines that are now complete.
+        """Add received bytes, and return the lines that are complete with these bytes.
 
         An incomplete line is buffered. An incomplete line that is too long is returned.
         """
@@ -95,7 +95,7 @@ class Gauge(Protocol):
 
     @property
     def name(self) -> str:
-        """Return the name of the gauge in the machine file. This name is stored with the readings."""
+        """Return the name of the gauge from the machine file, which is stored with the readings."""
         ...
 
     @property
@@ -105,13 +105,13 @@ class Gauge(Protocol):
 
     @property
     def status_text(self) -> str:
-        """Return a text about the reception: whether it is on, and the number or age of the readings."""
+        """Return the reception status as text: whether it is on, and the number or age of the readings."""
         ...
 
     def toggle_receiving(self) -> str:
         """Start or stop receiving data.
 
-        Returns the reason if this is not possible, or else an empty string.
+        Returns the reason if receiving is not possible, or else an empty string.
         """
         ...
 
@@ -125,7 +125,7 @@ class Gauge(Protocol):
 
 
 class NoGauge:
-    """Placeholder for the gauge of a machine without a gauge in its machine file."""
+    """Implementation of ``Gauge`` for a machine without a gauge in its machine file."""
 
     is_receiving = False
     name = ""
@@ -141,7 +141,7 @@ class NoGauge:
         return tr("NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …")
 
     def fetch_readings(self) -> Sequence[GaugeReading | str]:
-        """Return no readings."""
+        """Return an empty tuple because no gauge is connected."""
         return ()
 
     def close(self) -> None:
@@ -176,7 +176,7 @@ class SerialGauge:
 
     @property
     def name(self) -> str:
-        """Return the name of the gauge in the machine file."""
+        """Return the name of the gauge from the machine file."""
         return self._model.name
 
     @property
@@ -186,7 +186,7 @@ class SerialGauge:
 
     @property
     def status_text(self) -> str:
-        """Return a text about the reception: whether it is on, and whether readings arrive."""
+        """Return the reception status as text: whether it is on, and whether readings arrive."""
         if not self.is_receiving:
             return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last

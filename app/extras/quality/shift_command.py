@@ -46,7 +46,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the report.
+    """Write the shift report.
 
     Raises CommandError if the options are invalid or the report cannot be written.
     """
@@ -135,7 +135,7 @@ def _text(found: ShiftResults) -> str:
 
 
 def _make_json(results: ShiftResults) -> dict[str, object]:
-    """Return the JSON object of the report.
+    """Return the shift report as a JSON object.
 
     Lengths are in mm, durations are in seconds and times are in UTC. X of offsets is a radius.
     """

@@ -1,6 +1,6 @@
 """Shift report in the list of special functions (F10).
 
-The function shows the results of a shift, selects the shift, and saves the report.
+The operator selects a shift, sees its results and saves the report.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class ShiftReportFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Return the number of listed save locations, or 0 while the report is shown."""
+        """Return the number of listed save locations, or 0 while the results are shown."""
         return len(self.save_locations)
 
     def _store(self) -> Store | None:
@@ -63,7 +63,7 @@ class ShiftReportFunction(SpecialFunction):
         return watch.parts_book.store if watch is not None else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the main results, or the table of save locations while it is open."""
+        """Return the table of the main results, or the list of save locations while that list is open."""
         self._make()
         if self.save_locations:
             return self._sheet_of_places()
@@ -134,9 +134,9 @@ class ShiftReportFunction(SpecialFunction):
         return shut
 
     def reload_locations(self) -> None:
-        """Start to list the save locations.
+        """Start listing the locations to which the report can be saved.
 
-        The result arrives in a later frame.
+        The list appears in a later frame.
         """
         self.desk.clear_prompt_line()
         if self.results is None:
@@ -185,7 +185,7 @@ def _rows(results: ShiftResults) -> list[tuple[str, str]]:
 
 
 def _calculate(store: Store, desk: Desk, back: int) -> ShiftResults:
-    """Calculate the results on the worker.
+    """Calculate the results of a shift on the worker.
 
     Raises StoreError if the data cannot be read.
     """

@@ -207,7 +207,7 @@ def _change(row: OffsetChange, *, metric: bool) -> tuple[str, ...]:
 
 
 def _side(row: object, *, metric: bool) -> str:
-    """Return the values of one offset row as text."""
+    """Return the values of one offset table row as text."""
     if row is None:
         return tr("not set")
     if isinstance(row, ToolRow):

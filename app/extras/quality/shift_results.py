@@ -1,4 +1,4 @@
-"""Results of a shift, calculated from stored data, and the start and end of a shift.
+"""Results of a shift that are calculated from stored data, and the period of the shift.
 
 The results use the same stored rows as the trends and ``turndesk parts``, so all counts agree.
 """
@@ -40,9 +40,10 @@ _TIME_FORMATS = ("%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M", "%Y-%m-%d")
 
 
 class Shift(NamedTuple):
-    """Period of a shift from ``start_s`` to ``end_s``, in seconds of UTC.
+    """Period of a shift from ``start_s`` to ``end_s``, in seconds since the epoch (UTC).
 
-    A change of the local clock during the shift makes the period longer or shorter.
+    If the local clock changes during the shift, for example for daylight saving time, the period is longer
+    or shorter.
     """
 
     start_s: float
@@ -65,11 +66,11 @@ class Shift(NamedTuple):
 
 
 class ShiftTimesError(CodedError, ValueError):
-    """Error for an invalid start or end time of a report."""
+    """Error raised if the start or end time of a report is invalid."""
 
 
 def get_shift_hours(stored: object) -> tuple[int, int]:
-    """Return the stored first and last hour of a shift, or the default hours if none are stored."""
+    """Return the stored start and end hour of the shift, or the default hours if none are stored."""
     match stored:
         case [int(first), int(last)] if 0 <= first < 24 and 0 <= last <= 24:
             return first, last
@@ -78,10 +79,10 @@ def get_shift_hours(stored: object) -> tuple[int, int]:
 
 
 def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> Shift:
-    """Return the shift that is ``shifts_back`` shifts before the current or last shift.
+    """Return the shift that is ``shifts_back`` shifts before the current or latest shift.
 
-    The start and the end are hours of the local clock. A night shift is one hour longer if the clock is set
-    back during the night.
+    ``hours`` are the start and end hour on the local clock. A night shift is one hour longer if the clock
+    is set back during the night.
     """
     wall = now.astimezone().replace(tzinfo=None)
     begins = wall.replace(hour=hours[0], minute=0, second=0, microsecond=0)
@@ -93,9 +94,10 @@ def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> S
 
 
 def parse_local_time(text: str) -> float:
-    """Return a typed local time, such as ``2026-11-23 06:00`` or only the date, in seconds of UTC.
+    """Return a typed local time in seconds since the epoch (UTC).
 
-    Raises ShiftTimesError if the text is not a time.
+    The text is a date and time such as ``2026-11-23 06:00``, or only a date. Raises ShiftTimesError if the
+    text is not a time.
     """
     for form in _TIME_FORMATS:
         try:
@@ -131,7 +133,7 @@ _MIN_CLOCK_STEP_BACK_S = 1.0  # seconds of backward jump from which the clock co
 
 
 class ProgramResults(NamedTuple):
-    """Results of one program.
+    """Results of one program in a shift.
 
     ``part_count`` is the number of counted parts. ``incomplete_cycles`` contains the number of cycles
     without a part for each outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
@@ -147,8 +149,8 @@ class ProgramResults(NamedTuple):
 class ShiftResults:
     """Results of a shift.
 
-    ``evaluated_until_s`` is the end of the shift, or the current time while the shift runs, in seconds of
-    UTC.
+    ``evaluated_until_s`` is the end of the shift, or the current time while the shift is still running, in
+    seconds since the epoch (UTC).
     """
 
     shift: Shift
@@ -168,7 +170,7 @@ class ShiftResults:
 
     @property
     def part_count(self) -> int:
-        """Return the number of parts of all programs."""
+        """Return the number of parts that all programs made."""
         return sum(each.part_count for each in self.program_results)
 
     @property
@@ -178,7 +180,7 @@ class ShiftResults:
 
     @property
     def unrecorded_s(self) -> float:
-        """Return the duration in seconds for which no data are stored.
+        """Return the time in seconds with neither a recorded cycle nor a recorded stop.
 
         During this time, the control was off or no part was started.
         """
@@ -188,14 +190,14 @@ class ShiftResults:
 
 
 def parse_store_time(time_text: str) -> float:
-    """Return a time of the store in seconds of UTC."""
+    """Return a time from the store in seconds since the epoch (UTC)."""
     return datetime.fromisoformat(time_text).timestamp()
 
 
 def make_cycle_span(row: CycleRow | CycleTime, now_s: float) -> TimeSpan | None:
-    """Return the time span of a cycle, or None if the cycle has not ended.
+    """Return the time span of a cycle, or None if the cycle has not ended or starts after ``now_s``.
 
-    The span has the start and the duration of the cycle, but does not extend beyond ``now_s``.
+    The span has the start and the duration of the cycle, but ends at ``now_s`` at the latest.
     """
     start = parse_store_time(row.started)
     if row.ended is None or start > now_s:
@@ -253,9 +255,9 @@ def calculate_shift_results(
 def _make_program_results(
     ended: Sequence[CycleRow], cut_off: Sequence[CycleRow]
 ) -> tuple[ProgramResults, ...]:
-    """Return the results by program.
+    """Return the results of each program.
 
-    A part belongs to the shift in which it was finished.
+    A part belongs to the shift in which its cycle ended.
     """
     found = []
     for name in dict.fromkeys(row.program for row in (*ended, *cut_off)):
@@ -271,16 +273,17 @@ def _make_program_results(
 
 
 def _select_interrupted(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRow]:
-    """Return the cycles that have no stored end.
+    """Return the cycles without a stored end, which were interrupted.
 
-    If ``on`` is True, the shift is running. Its last cycle is omitted, because that cycle may still run.
+    If ``on`` is True, the shift is running. Its last cycle is omitted, because that cycle may still be
+    running.
     """
     known = cycles[:-1] if on else cycles
     return [row for row in known if row.ended is None]
 
 
 def _limit_stops(stops: Iterable[ProductionStop], start: float, end: float) -> list[ProductionStop]:
-    """Return the stops of a period. Stops that extend beyond the period are shortened."""
+    """Return the stops of a period, shortened to the part within the period."""
     clipped = [
         (each.reason, max(each.start_s, start), min(each.start_s + each.duration_s, end)) for each in stops
     ]

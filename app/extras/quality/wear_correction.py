@@ -1,4 +1,4 @@
-"""Wear correction that is proposed for a feature: calculation, effect and application."""
+"""Wear correction that is proposed for a feature: its calculation, preview and application."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def make_proposal(data: PartsData, row: FeatureRow, value_mode: ValueMode) -> Co
 
 @dataclass(frozen=True, slots=True)
 class OffsetCorrection:
-    """Change of one field of an offset, with the values to store and the text for the operator."""
+    """Change of one value in the offset table, with the row to store and the text for the operator."""
 
     offset_kind: OffsetKind
     offset_number: int
@@ -69,7 +69,7 @@ class OffsetCorrection:
 def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueMode) -> OffsetCorrection:
     """Return the proposed correction as a change of the offset table.
 
-    Raises EntryError with the reason if the change is not possible.
+    Raises EntryError with the reason if the offset table cannot be changed.
     """
     feature, book = proposal.feature, desk.offset_book
     why_not = book.lock_reason or find_change_refusal(desk.read_snapshot(), is_correction=True)
@@ -109,7 +109,7 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueM
 def _tool_value(
     name: str, row: object, proposal: CorrectionProposal, mode: ValueMode, number: int
 ) -> FieldValue:
-    """Return the new wear value.
+    """Return the new wear offset of a tool.
 
     The correction is added like an F2 entry in the tool table.
     """
@@ -141,7 +141,7 @@ CHART_READING_COUNT = 25  # number of latest readings in the chart
 
 @dataclass(slots=True)
 class CorrectionPreview:
-    """Preview of a proposed correction while its question is shown.
+    """Preview of a proposed correction while the operator is asked to confirm it.
 
     The worker of the offset pages simulates the part with the old and the new offsets.
     """
@@ -154,7 +154,7 @@ class CorrectionPreview:
 
     @property
     def is_question_open(self) -> bool:
-        """Return whether the question about the correction is still on the prompt line."""
+        """Return whether the question about the correction is still displayed on the prompt line."""
         return bool(self.question) and self.desk.prompt_notice == self.question
 
     def show_proposal(
@@ -164,7 +164,7 @@ class CorrectionPreview:
         change: OffsetCorrection,
         readings: tuple[tuple[int, float], ...],
     ) -> None:
-        """Show a proposal and start the simulation of the part before and after the correction."""
+        """Show a proposed correction, and start simulating the part before and after the correction."""
         again = (question, proposal, readings) == (self.question, self.proposal, self._readings)
         self.question, self.proposal, self._readings = question, proposal, readings
         effect, job = self._effect, self.desk.program_loader.loaded_program.job
@@ -192,7 +192,7 @@ class CorrectionPreview:
     def make_table(self, value_mode: ValueMode) -> TableContent | None:
         """Return the table of diameters and shoulders before and after the correction.
 
-        Returns None if there is no simulated part.
+        Returns None if no simulation result is available.
         """
         effect = self._effect
         if effect is None or effect.is_busy or effect.error_text or effect.compared_part is None:
@@ -200,7 +200,7 @@ class CorrectionPreview:
         return make_part_table(effect.compared_part, value_mode)
 
     def describe_status(self) -> str:
-        """Return the status of the simulation as text."""
+        """Return the status of the simulation as display text."""
         effect = self._effect
         if (
             effect is None

@@ -1,4 +1,4 @@
-"""Option ``prove --scheduler``, which sends work units to workers of a Dask scheduler.
+"""Option ``prove --scheduler``, which distributes proofs to the workers of a Dask scheduler.
 
 The workers must run the same version of TurnDesk. They receive the programs and the machine.
 """
@@ -19,9 +19,9 @@ _AHEAD = 256  # units that the scheduler has at once; workers can join during th
 
 
 class ProofScheduler:
-    """Connection to a scheduler and its workers.
+    """Connection to a Dask scheduler and its workers.
 
-    The constructor raises CommandError if the scheduler cannot be reached.
+    Raises CommandError if the scheduler cannot be reached.
     """
 
     max_units_in_progress = _AHEAD
@@ -63,7 +63,7 @@ class ProofScheduler:
         return executor
 
     def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
-        """Cancel work units that are not proved yet, and disconnect from the scheduler."""
+        """Cancel the remaining work units if the proof is not done, and disconnect from the scheduler."""
         if executor is not None:
             executor.shutdown(wait=is_done)
         self._client.close()

@@ -1,4 +1,4 @@
-"""Registration of the optional feature with the editor's shapes and calculators."""
+"""Registration of the optional feature for shapes and calculators in the program editor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ShapesExtra(OptionalFeature):
-    """Optional feature with the editor's shapes and calculators, and the command ``turndesk shapes``."""
+    """Optional feature with the shapes and calculators of the editor, and ``turndesk shapes``."""
 
     subcommands = {
         "shapes": Subcommand("setup", "make a program from the shapes that a file defines"),
@@ -28,13 +28,16 @@ class ShapesExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Register the model of the shapes, which is created when it is first used."""
+        """Register the shapes model, which is created when it is first used."""
         desk.page_registry.attach_lazily(
             "app.extras.shapes.shapes_model.ShapesModel", partial(_shapes, desk, machine)
         )
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk shapes``, documented after ``store verify --json``."""
+        """Return the JSON outputs of ``turndesk shapes``.
+
+        The reference lists them after ``store verify --json``.
+        """
         from app.extras.shapes.shapes_command import OUTPUTS
 
         return {"store verify --json": OUTPUTS}

@@ -1,6 +1,6 @@
-"""Form of one shape with entries, calculated values and errors.
+"""Form of one shape, with entries, calculated values and errors.
 
-The module also contains the base class of forms that other features add.
+The module also contains the base class for forms that other features add to the list of shapes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _LONGEST = 24
 
 
 class FormCell(NamedTuple):
-    """Displayed field of a form: its label, its value, whether the value was typed, and its error."""
+    """Display data of one form field: its label, its value, whether it was typed, and its error."""
 
     field_word: str
     label: str
@@ -50,11 +50,13 @@ class FormCell(NamedTuple):
 
 @dataclass(slots=True)
 class ShapeForm:
-    """Form of a shape.
+    """Form of a shape, such as a contour or a thread, with the operator's entries.
 
-    ``entered_texts`` contains the typed text by field. ``point_texts`` contains one entry per point, with
-    the typed text by column. ``selected_row`` is the index of the selected row; rows of fields come before
-    rows of points. ``replaced_piece`` is the piece of the program text that was opened in the form.
+    - ``entered_texts`` contains the typed text by field.
+    - ``point_texts`` contains one entry per point, with the typed text by column.
+    - ``selected_row`` is the index of the selected row. Rows of fields come before rows of points.
+    - ``replaced_piece`` contains the existing lines of the shape if the form was opened from the program
+    text.
     """
 
     shape: Shape
@@ -80,12 +82,12 @@ class ShapeForm:
         self.selected_row = self._first()
 
     def apply_settings(self, settings: ProgramSettings) -> None:
-        """Apply other tool data and calculate the form again."""
+        """Apply changed tool data, and recalculate the form."""
         self.settings = settings
         self.calculate()
 
     def _enter_values(self, filled_shape: FilledShape) -> None:
-        """Enter all values of a piece of the program text as if they were typed."""
+        """Enter the values of a shape in the program text as if they were typed."""
         for word, value in filled_shape.values.items():
             self.entered_texts[word] = value if isinstance(value, str) else format_short_number(value, 6)
         for row in filled_shape.contour_points:
@@ -94,7 +96,7 @@ class ShapeForm:
             self.point_texts.append({c: format_short_number(v, 6) for c, v in keep.items()})
 
     def _first(self) -> int:
-        """Return the row of the first field without a value, or else the row of the second point."""
+        """Return the row to select first: the first field without a value, or else the second point."""
         for place, each in enumerate(self.fields):
             if self.filled_shape.values.get(each.word) is None:
                 return place
@@ -168,17 +170,17 @@ class ShapeForm:
 
     @property
     def selected_point(self) -> int:
-        """Return the index of the selected point, counted from 0, or -1 if a field is selected."""
+        """Return the index of the selected contour point, or -1 if a field is selected."""
         return self.selected_row - len(self.fields) if self.selected_row >= len(self.fields) else -1
 
     @property
     def selected_word(self) -> str:
-        """Return the address word of the selected field, or the label of the selected point."""
+        """Return the word that identifies the selected field, or the label of the selected point."""
         here = self.selected_field
         return here.word if here is not None else make_point_label(self.selected_point + 1)
 
     def make_cells(self) -> list[FormCell]:
-        """Return all fields as display cells."""
+        """Return the display data of all fields."""
         return [
             FormCell(
                 each.word,
@@ -201,16 +203,16 @@ class ShapeForm:
         return value if isinstance(value, str) else format_short_number(value, 6)
 
     def get_display_text(self, field: ShapeField) -> str:
-        """Return the text of a field as the operator sees it. A choice is translated."""
+        """Return the text of a field as the operator sees it, with choices translated."""
         said = self.get_value_text(field)
         return translate_choice(field, said) if self.is_translatable(field, said) else said
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a word to translate, and not a name or a size."""
+        """Return whether a choice is a screen text that is translated, and not a name or a size."""
         return choice in field.choices
 
     def get_dimension_text(self, word: str) -> str:
-        """Return the text of a dimension in the sketch, or an empty string."""
+        """Return the text of a dimension in the sketch, or an empty string if it has no value."""
         if word.startswith("#"):
             number = int(word[1:]) - 1
             return word if number < len(self.point_texts) else ""
@@ -251,7 +253,7 @@ class ShapeForm:
         self.selected_column, self.replaces_text = column, True
 
     def select_word(self, word: str) -> None:
-        """Select the field that has a given word, or the point that has a given label."""
+        """Select the field with a given word, or the contour point with a given label."""
         if word.startswith("#"):
             self.select_row(len(self.fields) + int(word[1:]) - 1)
             return
@@ -273,7 +275,7 @@ class ShapeForm:
         return key in EXPRESSION_CHARACTERS
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the key has no function here."""
+        """Handle a key, and return False if the key has no function in the form."""
         moves = {"Up": -1, "Down": 1, "Enter": 1, "Page up": -8, "Page down": 8}
         if key in moves:
             self.select_row(self.selected_row + moves[key])
@@ -312,7 +314,7 @@ class ShapeForm:
     def _pick(self, here: ShapeField, key: str) -> None:
         """Select the next choice that begins with the typed letter.
 
-        Delete restores the proposed choice.
+        Backspace or Delete restores the proposed choice.
         """
         choices, now = self.list_choices(here), self.get_value_text(here)
         if key in {"Back", "Delete"}:
@@ -348,7 +350,7 @@ class ShapeForm:
         self._calculate_at_point(self.selected_point)
 
     def _calculate_at_point(self, point: int) -> None:
-        """Calculate the form again without losing the selected point.
+        """Recalculate the form, and keep the same point selected.
 
         The row of a point can change, because the fields depend on the points.
         """
@@ -395,7 +397,7 @@ It returns None if the form is closed.
 class AddedForm(ABC):
     """Interface of a form that another feature adds to the list of shapes.
 
-    A worker calculates the form. ``key`` is the key that opens the form.
+    ``key`` is the key that opens the form. A worker calculates the form.
     """
 
     key: str
@@ -418,12 +420,12 @@ class AddedForm(ABC):
     def calculate(self, form: ShapeForm, show_form: ShowForm, show_message: Callable[[str], None]) -> None:
         """Calculate the form on a worker.
 
-        ``show_message`` is called with the reason if the form cannot be calculated.
+        ``show_message`` receives the reason if the form cannot be calculated.
         """
 
     @abstractmethod
     def cancel(self, form: ShapeForm) -> None:
-        """Cancel the calculation."""
+        """Cancel the calculation of the form."""
 
     @abstractmethod
     def function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
@@ -446,7 +448,7 @@ class AddedForm(ABC):
 
 
 def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
-    """Return the names of shapes, fields and choices that the translation check must find translated."""
+    """Return the names of shapes, fields and choices for the translation check."""
     shapes = tuple(shapes)
     fields = [field for shape in shapes for field in shape.fields]
     labels = {field.label for field in fields if len(field.label) > 1}
@@ -455,7 +457,7 @@ def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
 
 
 def _list_translatable(field: ShapeField) -> tuple[str, ...]:
-    """Return the choices of a field that are words to translate.
+    """Return those choices of a field that are screen texts to translate.
 
     The names of thread series and classes are the same in all languages.
     """

@@ -1,4 +1,4 @@
-"""Notices of the shapes panel about shapes that were edited by hand, and the prompt of a form."""
+"""Notices about shapes whose program lines were edited by hand, and the key prompt of a form."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.message import Message
 
 
 def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: Dialect) -> str:
-    """Return a notice if the form comment at a line can no longer be read, or an empty string."""
+    """Return a notice if the form comment of the shape at a line is unreadable, or an empty string."""
     found = find_damaged_comment(program_lines, line, dialect)
     if found is None or line >= len(program_lines):
         return ""
@@ -22,7 +22,7 @@ def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: D
 
 
 def describe_manual_edits(piece: ShapePiece) -> str:
-    """Return a notice about changes that were made by hand, or an empty string."""
+    """Return a notice if the lines of a shape were edited by hand, or an empty string."""
     if piece.adopted_fields:
         words = ", ".join(
             each.label for each in piece.filled_shape.fields if each.word in piece.adopted_fields
@@ -35,7 +35,7 @@ def describe_manual_edits(piece: ShapePiece) -> str:
 
 
 def describe_unchanged_shapes(count: int) -> str:
-    """Return the notice about shapes that were not changed, or an empty string if there are none."""
+    """Return the notice about hand-edited shapes that were not changed, or an empty string if none."""
     if count == 1:
         return tr("1 SHAPE EDITED BY HAND WAS NOT CHANGED")
     return tr(Message("{count} SHAPES EDITED BY HAND WERE NOT CHANGED", count=count)) if count else ""

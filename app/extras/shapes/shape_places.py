@@ -1,4 +1,4 @@
-"""Locations of shapes: programs that support shapes, the shape at a line, and the insertion line."""
+"""Positions of shapes in a program: the shape at a line, and the line at which to insert a shape."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ def supports_shapes(name: str) -> bool:
 
 
 def find_piece(pieces: Sequence[ShapePiece], line: int) -> ShapePiece | None:
-    """Return the piece that contains a line (counted from 0), or None if no piece contains the line."""
+    """Return the shape whose lines contain a line (counted from 0), or None if there is none."""
     return next((each for each in pieces if each.first_line <= line < each.next_line), None)
 
 
 def find_insertion_line(
     program_lines: Sequence[str], pieces: Sequence[ShapePiece], line: int, dialect: Dialect
 ) -> int:
-    """Return the line for a new shape.
+    """Return the line at which a new shape is inserted.
 
-    The line is after the piece at the cursor and before the end of the program.
+    The line is after the shape at the cursor and before the end of the program.
     """
     here = find_piece(pieces, line)
     at = here.next_line if here is not None else min(line + 1, len(program_lines))
@@ -42,7 +42,7 @@ def find_insertion_line(
 
 
 def shift_piece(piece: ShapePiece, by: int) -> ShapePiece:
-    """Return the piece moved down by a number of lines."""
+    """Return a shape with its line numbers increased by ``by``."""
     return replace(
         piece,
         first_line=piece.first_line + by,

@@ -25,7 +25,7 @@ ShapeStep = Mapping[str, object]
 
 
 class StepError(Exception):
-    """Error for invalid steps.
+    """Error raised if steps are invalid.
 
     Each part of the message names the step and the key.
     """
@@ -59,7 +59,7 @@ def get_words_by_key(shape: Shape) -> dict[str, str]:
 def generate_program(steps: Sequence[ShapeStep], settings: ProgramSettings) -> GeneratedProgram:
     """Return the program that the forms write for the steps.
 
-    Raises StepError if a step is invalid or the first step is not a head.
+    Raises StepError if a step is invalid, or if the first step is not a program head.
     """
     shapes = [_shape(number, step, settings.dialect) for number, step in enumerate(steps, 1)]
     mistakes = [text for number, step in enumerate(steps, 1) for text in _strange(number, step, shapes)]
@@ -170,7 +170,7 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
 
 
 def _rows(where: str, points: object) -> list[dict[str, str]]:
-    """Return the entries of contour points.
+    """Return the entries of contour points as texts by column.
 
     The keys are x, z, c (chamfer), r (radius) and a (arc). Raises StepError if the points are invalid.
     """

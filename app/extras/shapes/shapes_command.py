@@ -1,4 +1,4 @@
-"""Command ``turndesk shapes FORM.toml --out part.nc``, which writes a program from form steps.
+"""Command ``turndesk shapes FORM.toml --out part.nc``, which generates a program from form steps.
 
 The module also declares the JSON keys of the command.
 """
@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _language(out: str | None, machine: Machine) -> Dialect:
-    """Return the language of the output file name, or else the language of the machine.
+    """Return the language of the program, from the output file name or else from the machine.
 
     Raises CommandError if the language is Klartext.
     """

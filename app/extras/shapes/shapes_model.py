@@ -1,4 +1,4 @@
-"""Model of the editor's shapes, independent of Qt, with the list, the form and the program text."""
+"""Model of the shapes panel, independent of Qt: list of shapes, open form and program text."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ from core.message import Message
 class ShapesModel(PanelModel):
     """Model of the shapes panel.
 
-    ``read_shop_data`` reads machine and tool data from the store on a worker. ``text`` is the program with
-    the lines of the form. ``text_number`` increases with each text to prove. A new shape is inserted before
-    the line ``cursor_line``, counted from 0.
+    - ``read_shop_data`` reads machine and tool data from the store on a worker.
+    - ``text`` is the program with the lines of the form. ``text_number`` increases with each text to prove.
+    - ``cursor_line``, counted from 0, is the line before which a new shape is inserted.
     """
 
     read_shop_data: Callable[[], ShopData] = ShopData
@@ -83,10 +83,10 @@ class ShapesModel(PanelModel):
     # --- opening -------------------------------------------------------------------------------------
 
     def open_for_text(self, name: str, text: str, cursor_line: int, *, lists_helpers: bool = False) -> str:
-        """Open the shapes for a program text.
+        """Open the shapes panel for a program text.
 
         ``cursor_line`` is the cursor line, counted from 1. If ``lists_helpers`` is True, the list contains
-        calculators and templates instead of shapes, and the piece at the cursor is not opened. Returns the
+        calculators and templates instead of shapes, and the shape at the cursor is not opened. Returns the
         reason if opening is not possible, or an empty string.
         """
         if not supports_shapes(name):
@@ -112,17 +112,17 @@ class ShapesModel(PanelModel):
 
     @property
     def lists_shapes(self) -> bool:
-        """Return whether the list contains shapes instead of calculators and templates."""
+        """Return whether the list contains shapes, and not calculators and templates."""
         return all(self.shape_table is not each for each in CALCULATORS_BY_DIALECT.values())
 
     @property
     def form_keys(self) -> tuple[str, ...]:
-        """Return the keys that open the forms of the list."""
+        """Return the keys that open the forms in the list of shapes."""
         return tuple(self.shape_table)
 
     @property
     def listed_pieces(self) -> list[ShapePiece]:
-        """Return the pieces of the program that are listed after the forms."""
+        """Return the existing shapes of the program, which are listed after the forms for new shapes."""
         return self.pieces if self.lists_shapes else []
 
     def _take(self, text: str) -> None:
@@ -152,11 +152,11 @@ class ShapesModel(PanelModel):
         return self.form is None
 
     def select_row(self, row: int) -> None:
-        """Select a shape in the list or a piece of the program."""
+        """Select a row of the list: a form for a new shape, or an existing shape of the program."""
         self.selected_row = max(0, min(row, len(self.shape_table) + len(self.listed_pieces) - 1))
 
     def open_selected(self) -> None:
-        """Open the form of the selected shape or piece."""
+        """Open the form of the selected row, for a new shape or for an existing shape."""
         keys = self.form_keys
         if self.selected_row < len(keys):
             self.open_shape(keys[self.selected_row])
@@ -193,7 +193,7 @@ class ShapesModel(PanelModel):
         self._preview()
 
     def open_file(self, file: Path) -> None:
-        """Open the form that makes a program from this file."""
+        """Open the form that makes a program from a file, such as a drawing."""
         for each in self.added_forms:
             if each.accepts_file(file.name):
                 self.requested_file = file
@@ -208,7 +208,7 @@ class ShapesModel(PanelModel):
         return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: ShapePiece) -> None:
-        """Open the form of a piece, and report changes that were made by hand."""
+        """Open the form of an existing shape, and show a notice if its lines were edited by hand."""
         self.notice, self.pending_action = describe_manual_edits(piece), None
         self.form = ShapeForm(piece.filled_shape.shape, piece.settings, piece)
         self._preview()
@@ -216,7 +216,7 @@ class ShapesModel(PanelModel):
     # --- form ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> dict[int, FunctionKey]:
-        """Return the function keys of the form or the list."""
+        """Return the function keys of the open form, or of the list if no form is open."""
         pad = FunctionKey("KEYPAD", self.toggle_pad)
         if self.form is None:
             return {2: FunctionKey("OPEN", self.open_selected), 9: pad}
@@ -243,7 +243,7 @@ class ShapesModel(PanelModel):
         self.is_pad_visible = not self.is_pad_visible
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if the key has no function here."""
+        """Handle a key, and return False if the key has no function in the form or the list."""
         if self.form is not None:
             return self._typed_in_form(self.form, key)
         if key.upper() in self.shape_table:
@@ -267,7 +267,7 @@ class ShapesModel(PanelModel):
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered in the form, or opens a form of the list."""
+        """Return whether a character can be entered in the open form, or opens a form from the list."""
         if self.form is not None:
             return self.form.accepts_key(key)
         return len(key) == 1 and key.upper() in self.shape_table
@@ -297,7 +297,7 @@ class ShapesModel(PanelModel):
             self._preview()
 
     def select_touched_cell(self, point_index: int, column: int) -> None:
-        """Select the touched cell of a point."""
+        """Select the touched cell in the table of contour points."""
         if self.form is not None:
             self.form.select_row(len(self.form.fields) + point_index, column)
 
@@ -388,7 +388,7 @@ class ShapesModel(PanelModel):
         self.selected_row = 0 if not self.pieces else max(1, self.selected_row)
 
     def delete_piece(self) -> None:
-        """Ask for confirmation, and then delete the piece from the program text (F5)."""
+        """Delete the lines of the shape from the program text (F5), after confirmation."""
         form = self.form
         if form is None or form.replaced_piece is None:
             return
@@ -415,7 +415,7 @@ class ShapesModel(PanelModel):
 
     @property
     def path_line(self) -> int:
-        """Return the line up to which the path is shown, counted from 1.
+        """Return the number of the line up to which the tool path is shown, counted from 1.
 
         This is the last line of the form, or the insertion line if no form is open.
         """
@@ -427,7 +427,7 @@ class ShapesModel(PanelModel):
         ) + len(form.program_lines)
 
     def _preview(self) -> None:
-        """Show the program text with the lines of the form. If the form is incomplete, show the old text."""
+        """Show the program text with the lines of the form, or the old text if the form is incomplete."""
         form = self.form
         if form is None:
             return
@@ -442,7 +442,7 @@ class ShapesModel(PanelModel):
         self._show("\n".join(text) + "\n")
 
     def _show_calculated(self, form: ShapeForm) -> str | None:
-        """Show a calculated form, and return the program text, or None if the form was closed."""
+        """Show a calculated form and return the program text. Return None if the form was closed."""
         if self.form is not form:
             return None
         self._preview()

@@ -1,4 +1,4 @@
-"""Setup of the shapes with the data of the machine and its tools."""
+"""Setup of the shapes panel with the data of the machine and its tools."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData
 
 
 def _travel(axis: Axis | None) -> float:
-    """Return the travel of an axis in mm, or 0 if the machine file does not limit the axis."""
+    """Return the travel of an axis in mm, or 0 if there is no axis or it has no travel limits."""
     return axis.travel[1] - axis.travel[0] if axis is not None and axis.travel else 0.0
 
 

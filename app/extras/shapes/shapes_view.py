@@ -43,7 +43,7 @@ _DRAWN = 12.0  # units: minimum useful height of the drawing
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """Row for a shape, a piece of the program, a field, or a point with its ``point_cells``.
+    """Row of the shapes panel: a shape, a form field, or a contour point with its ``point_cells``.
 
     ``text_tone`` is the color of the value.
     """
@@ -56,7 +56,7 @@ class _Line:
 
 
 class ShapeRowsPanel(RowPanel):
-    """List that always scrolls to its selected row.
+    """List of shapes or form fields that scrolls so that the selected row is always visible.
 
     A touch selects a row or a cell.
     """
@@ -106,7 +106,7 @@ class ShapeRowsPanel(RowPanel):
         self._figure(painter, figure, line.value_text, line.text_tone, marked=marked and self.is_entry_open)
 
     def _label(self, painter: ThemedPainter, box: QRectF, line: _Line, *, marked: bool) -> None:
-        """Draw the label in two lines if it would be too small or truncated in one line."""
+        """Draw the label of a row, in two lines if it does not fit in one line."""
         label = tr(line.label)
         room = box.adjusted(0, 0, -0.6 * self.theme.unit_px, 0)
         cut = label.rfind(" ", 0, 2 + len(label) // 2 + 1)
@@ -130,7 +130,7 @@ class ShapeRowsPanel(RowPanel):
             painter.draw_text_line(box, figure, 2.1, tone, at=ALIGN_RIGHT, raw=True, bold=tone != "soft")
 
     def _cells(self, painter: ThemedPainter, area: QRectF, line: _Line, number: int, *, marked: bool) -> None:
-        """Draw the number and the values of one point."""
+        """Draw the number and the values of one contour point."""
         u = self.theme.unit_px
         first = QRectF(area.x(), area.y(), 2.4 * u, area.height())
         painter.draw_text_line(
@@ -165,7 +165,7 @@ class ShapeLinesPanel(Panel):
     )  # displayed page of remarks that are longer than the panel
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Show the next page of long remarks, or the first page after the last page."""
+        """Show the next page of long remarks, or the first page again after the last page."""
         self._page += 1
         event.accept()
 
@@ -195,7 +195,7 @@ class ShapeLinesPanel(Panel):
             )
 
     def _draw_remarks(self, painter: ThemedPainter, area: QRectF) -> QRectF:
-        """Draw the remarks above the lines and return the remaining area."""
+        """Draw the remarks above the program lines, and return the remaining area."""
         if not self.remarks:
             return area
         painter.setFont(self.theme.make_font(1.8, is_bold=True))
@@ -234,7 +234,7 @@ class ShapeLinesPanel(Panel):
 class ShapesView(EditorPanel):
     """Shapes panel with the rows on the left, and the sketch and the program lines on the right.
 
-    The number pad replaces the program lines while it is shown.
+    While the number pad is shown, it replaces the program lines.
     """
 
     accessible_name = "SHAPES"
@@ -252,7 +252,7 @@ class ShapesView(EditorPanel):
         self._seen: tuple[object, ...] = ()
 
     def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:
-        """Return the key for calculators. If the program supports shapes, the key for shapes comes first."""
+        """Return the header keys that open the calculators and, if the program supports them, the shapes."""
         calculators = HeaderKey(tr("CALCULATOR ⇧F4"), "Calculators")
         return (
             (HeaderKey(tr("SHAPES ⇧F3"), "Shapes"), calculators)
@@ -261,7 +261,7 @@ class ShapesView(EditorPanel):
         )
 
     def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:
-        """Open the shapes or the calculators, depending on the key.
+        """Open the list of shapes, or the list of calculators if ``key_name`` is Calculators.
 
         Returns the reason if opening is not possible, or an empty string.
         """
@@ -370,7 +370,7 @@ class ShapesView(EditorPanel):
             model.select_touched_cell(row - len(form.fields), max(0, column))
 
     def sizeHint(self) -> QSize:
-        """Return an empty size because the page determines the size."""
+        """Return an empty size, because the editor page determines the size of the panel."""
         return QSize()
 
     def lay_out(self) -> None:

@@ -67,7 +67,10 @@ class SharingExtra(OptionalFeature):
         return start_sharing(desk, journal)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk share``, by the command after which they are documented."""
+        """Return the JSON outputs of ``turndesk share``.
+
+        The key is the command after which the reference lists them.
+        """
         from app.extras.sharing.share_command import OUTPUTS, PRECEDING_COMMAND
 
         return {PRECEDING_COMMAND: OUTPUTS}

@@ -22,7 +22,7 @@ _GRAIN = 2_000_000_000  # ns: a file that was just written can change again with
 
 @dataclass(frozen=True, slots=True)
 class ProgramFile:
-    """Program file with the SHA-256 digest of its content."""
+    """Program file in the program folder, with the SHA-256 digest of its content."""
 
     name: str
     path: Path

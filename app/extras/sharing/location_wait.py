@@ -1,4 +1,4 @@
-"""Waiting of a command for the shared location.
+"""Wait of a command for the shared location, which Ctrl+C can interrupt.
 
 A location on a failed network drive may never respond.
 """
@@ -27,11 +27,11 @@ _OPEN = (  # a pipe in its place is reported by its reader
 def wait_for_location(
     location: SharedLocation, run_work: Callable[[], T], report_after_s: float = _TOLD_AFTER
 ) -> T:
-    """Run ``run_work`` and return its result, or raise its exception.
+    """Run ``run_work`` in a thread and return its result, or raise its exception.
 
-    A location that responds slowly is reported on stderr after ``report_after_s`` seconds. The work runs in
-    a separate thread, because Ctrl+C cannot interrupt a blocked system call. A blocked thread ends with the
-    process.
+    If the location responds slowly, this is reported on stderr after ``report_after_s`` seconds. A separate
+    thread is necessary because Ctrl+C cannot interrupt a blocked system call. A blocked thread ends with
+    the process.
     """
     if isinstance(location, SharedFolder):
         _wait_for_folder(location, report_after_s)
@@ -43,11 +43,11 @@ def wait_for_location(
 
 
 def _wait_for_folder(location: SharedFolder, told_after: float) -> None:
-    """Wait until a separate process has opened the marker file of the folder.
+    """Wait until a separate process has opened the marker file of the shared folder.
 
     A system call that blocks on a failed FUSE drive survives SIGKILL. In a thread, it would block the whole
-    command; a separate process can be left running. The file is opened because file names can come from a
-    cache. Raises SharingError if the folder does not respond.
+    command, but a separate process can be left running. The file is opened because file names can come from
+    a cache. Raises SharingError if the folder does not respond.
     """
     opening = subprocess.Popen(
         [sys.executable, "-I", "-S", "-c", _OPEN, str(location.marker_path)],

@@ -1,8 +1,8 @@
 """Program sharing between machines, which publishes local versions and reads remote versions.
 
-The store of this machine is authoritative. Every version is stored before it is published. While the
-location is not available, versions wait in the store. Versions of other machines are copied to the program
-folder only on request.
+Every local version is stored in the store of this machine before it is published. While the shared location
+is not available, versions wait in the store. Versions of other machines are copied to the program folder
+only on request.
 """
 
 from __future__ import annotations
@@ -63,21 +63,21 @@ class SharingThread:
         self._thread.start()
 
     def synchronize_now(self) -> None:
-        """Start a synchronization now, and return without waiting until it is finished.
+        """Start a synchronization now, and return without waiting for its end.
 
         This method can be called from any thread.
         """
         self._wake.set()
 
     def get_waiting_time_s(self) -> float:
-        """Return how long the current synchronization has waited for the location, in seconds."""
+        """Return how long the current synchronization has waited for the shared location, in seconds."""
         since = self._since
         return self._now() - since if since >= 0.0 else 0.0
 
     def close(self) -> None:
         """Stop the thread.
 
-        Unfinished work is repeated after TurnDesk starts again.
+        Work that is not complete is repeated after TurnDesk starts again.
         """
         self._closing.set()
         self._wake.set()
@@ -99,7 +99,7 @@ _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published togethe
 
 
 class VersionCopyError(CodedError):
-    """Error if a version could not be copied.
+    """Error raised if a version could not be copied to the program folder.
 
     The program is then unchanged. The message states the reason.
     """
@@ -107,7 +107,7 @@ class VersionCopyError(CodedError):
 
 @dataclass(frozen=True, slots=True)
 class SharingResult:
-    """Immutable result of a synchronization.
+    """Immutable result of a synchronization with the shared location.
 
     ``error_text`` is the reason if the location could not be used, or else an empty string.
     """
@@ -127,12 +127,12 @@ class SharingResult:
     error_text: str = ""
 
     def find_machines_with(self, version_id: str) -> tuple[str, ...]:
-        """Return the names of the machines that have this version in their program folder."""
+        """Return the names of the machines that have a version in their program folder."""
         return self.machines_by_version.get(version_id, ())
 
 
 class ProgramSharing:
-    """Synchronization of programs with the shared location.
+    """Synchronization of the local programs with the shared location.
 
     The methods can wait for the disk or the network, so only workers may call them.
     """
@@ -204,7 +204,7 @@ class ProgramSharing:
         return found
 
     def _note(self, store: Store, *, is_settled: bool) -> None:
-        """Store the current files as versions. Mark the programs whose files no longer exist."""
+        """Store the current program files as versions, and mark programs whose files no longer exist."""
         files = self._files.read_files(is_settled=is_settled)
         store.write(partial(self._noted, files)).result()
 
@@ -233,7 +233,7 @@ class ProgramSharing:
         shared_versions.set_local_version(connection, make_program_key(file.name), version.id)
 
     def _publish(self, store: Store, found: Found) -> str:
-        """Publish local versions, and return an error message or an empty string."""
+        """Publish the local versions. Return an error message, or an empty string if there is no error."""
         others = [each for each in found.machine_states if each.machine_id != self.machine_id]
         if any(make_program_key(each.machine_name) == make_program_key(self.machine_name) for each in others):
             return str(SharingErrorCause.NAME_TAKEN.make_error(self.location.name, self.machine_name))
@@ -328,11 +328,12 @@ class ProgramSharing:
     def copy_version(self, version: SharedVersion) -> str:
         """Copy a version into the program folder and return the file name.
 
-        The previous text remains stored as a version. If both sides have changed the program, the new
-        version follows both versions, so that other machines detect the resolved conflict. Raises
-        VersionCopyError, SharingError or StoreError if the copy fails. The program is then unchanged,
-        unless the error occurs after the file was replaced: for example, the store may fail to record the
-        new local version. The next synchronization then recognizes the new text.
+        The previous text remains stored as a version. If both machines have changed the program, the copy
+        is stored as the successor of both versions, so that other machines detect the resolved conflict.
+
+        Raises VersionCopyError, SharingError or StoreError if the copy fails. The program is then
+        unchanged, unless the error occurs after the file was replaced: for example, the store may fail to
+        record the new local version. The next synchronization then recognizes the new text.
         """
         text = self.read_text(version)
         with self._lock:
@@ -365,11 +366,12 @@ class ProgramSharing:
             return name
 
     def resolve_with_local(self, program_key: str) -> None:
-        """Resolve a conflict in favor of the local version.
+        """Resolve a version conflict in favor of the local version.
 
-        A version that is only newer on another machine is resolved in the same manner. Raises
-        VersionCopyError if this machine has no version, if it already has all newest versions, or if the
-        text of the local version cannot be read from the store. Raises StoreError if the store fails.
+        If another machine has a newer version but there is no conflict, the local version is made the
+        newest in the same manner. Raises VersionCopyError if this machine has no version, if it already has
+        all newest versions, or if the text of the local version cannot be read from the store. Raises
+        StoreError if the store fails.
         """
         with self._lock:
             store = self._store()
@@ -402,8 +404,8 @@ class ProgramSharing:
     def _free_name(self, version: SharedVersion) -> str:
         """Return the file name to which a version is copied.
 
-        This is the name of a local file that differs only in case, or else the name of the version. Raises
-        VersionCopyError if sharing does not accept a local file with that name.
+        This is the name of an existing local file that differs only in case, or else the name of the
+        version. Raises VersionCopyError if sharing does not accept a local file with that name.
         """
         names = [each for each in self._files.rejected_files if make_program_key(each) == version.program_key]
         if names:

@@ -1,4 +1,7 @@
-"""Model of the SHARED PROGRAMS page, independent of Qt: newer versions, authors and machines."""
+"""Model of the SHARED PROGRAMS page, independent of Qt.
+
+The page shows newer versions on other machines, their authors, and the machines that have them.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +44,7 @@ _PATIENCE = 30.0  # seconds after which a slow location is reported
 
 @dataclass(slots=True)
 class RemoteVersions(VersionHistory):
-    """Newest versions of a program on other machines.
+    """Newest versions of a program on other machines, compared with the local text.
 
     ``changes`` are the differences between the local text and the selected version.
     """
@@ -51,7 +54,7 @@ class RemoteVersions(VersionHistory):
         return "CHANGES IF YOU USE THE SELECTED VERSION"
 
     def words(self) -> str:
-        """Return a text that describes the status of the selected version."""
+        """Return the status of the list of remote versions as display text."""
         if self.error_text:
             return self.error_text
         if not self.rows:
@@ -67,7 +70,7 @@ class RemoteVersions(VersionHistory):
 
 @dataclass(slots=True)
 class RemoteVersionArchive:
-    """Version archive for ``RemoteVersions``.
+    """Archive of the remote versions for ``RemoteVersions``.
 
     It contains the remote versions found by the last synchronization, numbered from 1.
     """
@@ -75,11 +78,11 @@ class RemoteVersionArchive:
     sharing: ProgramSharing
 
     def find_remote_versions(self, program_key: str) -> Sequence[SharedVersion]:
-        """Return the latest versions that are missing on this machine."""
+        """Return the newest versions of a program that are missing on this machine."""
         return self.sharing.last_result.programs.get(program_key, ProgramVersions()).newest_remote_versions
 
     def versions(self, name: str) -> Sequence[VersionRow]:
-        """Return the versions, with their authors and with the machines on which they are."""
+        """Return the remote versions of a program, with their authors and the machines that have them."""
         return [self._row(number, each) for number, each in enumerate(self.find_remote_versions(name), 1)]
 
     def read_version_text(self, name: str, version: int) -> bytes:
@@ -90,7 +93,7 @@ class RemoteVersionArchive:
         return self.sharing.read_text(self.find_remote_versions(name)[version - 1])
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """Store nothing and return 0."""
+        """Store nothing and return 0, because remote versions are read-only."""
         return 0
 
     def _row(self, number: int, version: SharedVersion) -> VersionRow:
@@ -140,7 +143,7 @@ class SharingModel:
 
     @property
     def programs(self) -> tuple[tuple[str, ProgramVersions], ...]:
-        """Return the shared programs with their keys.
+        """Return the shared programs, each with its program key.
 
         Programs that require a decision come first. Programs with the same state are sorted by name.
         """
@@ -154,7 +157,7 @@ class SharingModel:
 
     @property
     def selected_program(self) -> tuple[str, ProgramVersions] | None:
-        """Return the selected program with its key, or None if no program is shared."""
+        """Return the selected program with its program key, or None if no program is shared."""
         programs = self.programs
         return programs[self.selected_row] if self.selected_row < len(programs) else None
 
@@ -190,7 +193,7 @@ class SharingModel:
         )
 
     def make_table(self) -> TableContent:
-        """Return the table of programs.
+        """Return the table of shared programs.
 
         Each row contains the state of the program, and the author, time and machines of its newest version.
         """
@@ -219,7 +222,7 @@ class SharingModel:
         )
 
     def _silence(self) -> str:
-        """Return a message if the location has not responded for a long time, or an empty string."""
+        """Return a message if the shared location has not responded for a long time, or an empty string."""
         seconds = self.get_waiting_time_s()
         if self.sharing is None or seconds < _PATIENCE:
             return ""
@@ -250,7 +253,7 @@ class SharingModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys that apply now."""
+        """Return the function keys of the page. Keys without an effect now are disabled."""
         return {
             "F2": FunctionKey(
                 "USE",
@@ -308,7 +311,7 @@ class SharingModel:
         return here is not None and self.last_result.states_by_program.get(here[0]) == "both"
 
     def keep_local_version(self) -> None:
-        """Ask for confirmation, and then resolve the conflict in favor of the local version."""
+        """Resolve the conflict in favor of the local version, after confirmation."""
         here = self.selected_program
         if here is None or not self._both:
             self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
@@ -344,7 +347,10 @@ class SharingModel:
         self.worker.enqueue_work(work, done, self.desk.show_refusal)
 
     def _find_use_refusal(self, key: str) -> str:
-        """Return the reason why a program in use must not be replaced now, or an empty string."""
+        """Return the reason why a program in use must not be replaced now, or an empty string.
+
+        A program is in use while it is running, also as a subprogram, or while its run is interrupted.
+        """
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         if snapshot.interrupted is not None and make_program_key(snapshot.interrupted.program) == key:
             words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
@@ -401,7 +407,10 @@ class SharingModel:
         self.synchronize_now()
 
     def handle_escape(self) -> bool:
-        """Clear the message, and return False if the page can close."""
+        """Clear the message on the prompt line.
+
+        Return False if there is no message, so the page can close.
+        """
         if not self.desk.prompt_notice:
             return False
         self.desk.clear_prompt_line()
@@ -411,5 +420,5 @@ class SharingModel:
         """Do nothing, because the page has no work to cancel."""
 
     def close(self) -> None:
-        """Stop the worker after pending changes are finished."""
+        """Stop the worker after the pending changes have been processed."""
         self.worker.close()

@@ -1,4 +1,4 @@
-"""Setup of program sharing, with the location from the machine file and the identity of this machine."""
+"""Setup of program sharing: the location from the machine file, and the identity of this machine."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
 
 @dataclass(slots=True)
 class SharingResultHandler:
-    """Handler of synchronization results. It runs on the sharing thread.
+    """Handler of synchronization results, which runs on the sharing thread.
 
     Each message is reported only once.
     """
@@ -135,7 +135,7 @@ class SharingResultHandler:
 
 
 def make_location(table: SharingTable) -> SharedLocation:
-    """Return the shared location without opening it."""
+    """Return the shared location that is configured in the machine file, without opening it."""
     if table.postgresql:
         from core.extras.sharing.shared_database import SharedDatabase
 
@@ -146,7 +146,7 @@ def make_location(table: SharingTable) -> SharedLocation:
 
 
 def read_machine_id(folder: Path) -> str:
-    """Return the unique id of this machine. The id is created and stored at the first call.
+    """Return the unique id of this machine, which is created and stored at the first call.
 
     Raises CommandError if the id cannot be read or stored.
     """

@@ -1,4 +1,4 @@
-"""Page SHARED PROGRAMS (X), with the programs above and the differences of the selected version below."""
+"""Page SHARED PROGRAMS (X), with the programs above and the changes in a version below."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LIST_HEIGHT_RATIO = 0.5  # ratio of the height
 
 
 class SharedProgramsPage(ListPage):
-    """Page that shows the sharing model. The page passes key presses to the model."""
+    """Screen page for shared programs. The page passes key presses to its model."""
 
     NAME = "SHARED PROGRAMS"
     model: SharingModel
@@ -57,13 +57,13 @@ class SharedProgramsPage(ListPage):
         self.model.select_row(row)
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update the list and the comparison."""
+        """Update the list of programs and the comparison of versions."""
         self.model.update()
         self.table.show_table(self.model.make_table())
         self.versions.refresh()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the list above the comparison."""
+        """Arrange the list of programs above the comparison of versions."""
         gap = max(4, round(0.7 * self.theme.unit_px))
         high = round(LIST_HEIGHT_RATIO * (self.height() - gap))
         self.table.setGeometry(0, 0, self.width(), high)

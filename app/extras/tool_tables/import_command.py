@@ -1,4 +1,4 @@
-"""Import of a tool table with a preview and questions.
+"""Import of a tool table, with a preview of the changes and questions to confirm them.
 
 The whole import is one step in the offset history.
 """
@@ -79,7 +79,7 @@ def _tell(saved: tuple[ToolPlan, ...]) -> None:
 
 
 def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
-    """Return the format and the tools of the file.
+    """Return the name of the file format and the tool table in the file.
 
     Raises CommandError if the file is not a valid tool table.
     """
@@ -92,7 +92,7 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 
 
 def _columns(entries: Iterable[str]) -> dict[str, str]:
-    """Return the columns that the option ``--map`` specifies, by field.
+    """Return the file columns that the option ``--map`` assigns to the fields.
 
     Raises CommandError if the option is invalid.
     """
@@ -137,7 +137,7 @@ def _only(text: str) -> frozenset[int]:
 
 
 def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[ToolPlan, ...]:
-    """Ask the user to confirm the plans, and return the confirmed plans.
+    """Ask the user to confirm the planned changes, and return the confirmed plans.
 
     Raises CommandError if there is no terminal for the question.
     """
@@ -182,7 +182,7 @@ def _answer(question: str) -> bool:
 
 
 def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], who: str) -> None:
-    """Save the plans as one step of the offset history.
+    """Save the planned changes as one step of the offset history.
 
     Raises CommandError if a value exceeds the travel of the machine, or if the user does not confirm a
     suspicious change. Raises StoreError if the store rejects the change.
@@ -197,7 +197,7 @@ def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], w
 
 
 def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
-    """Yield one line for each changed field and for each note."""
+    """Yield the lines of the preview, one for each changed field and each note."""
     for plan in plans:
         name = f"T{plan.tool_number}"
         if plan.status is ImportStatus.UNCHANGED:

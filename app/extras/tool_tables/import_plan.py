@@ -1,6 +1,6 @@
 """Comparison of an imported tool table with the stored offsets and tool shapes.
 
-The resulting plan contains only values that differ. The import does not change wear, the master mark or
+The resulting plan contains only values that differ. The import does not change wear, the master tool or
 additional cutting edges.
 """
 
@@ -21,7 +21,7 @@ _NEAR = 1e-6  # mm, the rounding of a file with six decimals
 
 
 class ImportStatus(StrEnum):
-    """Status of an imported tool compared with the stored tool that has the same number."""
+    """Status of an imported tool relative to the stored tool with the same number."""
 
     NEW = "new"
     CHANGED = "changed"
@@ -52,7 +52,7 @@ class ToolPlan:
     notes: tuple[str, ...]
 
     def get_new_values(self, kind: OffsetKind) -> dict[str, FieldValue]:
-        """Return the new values for one offset table, by field."""
+        """Return the new values of the tool for one offset table, by field."""
         return {each.field_name: each.new_value for each in self.field_changes if each.offset_kind is kind}
 
 
@@ -60,7 +60,7 @@ ChangesByTable = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
 def collect_changes(plans: tuple[ToolPlan, ...]) -> ChangesByTable:
-    """Return the new values of all plans, by offset table and tool."""
+    """Return the new values of all plans, by offset table and tool number."""
     kinds = {
         kind: {p.tool_number: v for p in plans if (v := p.get_new_values(kind))}
         for kind in (OffsetKind.TOOL, OffsetKind.SHAPE)
@@ -98,7 +98,7 @@ class StoredTools:
         return ToolPlan(entry.tool_number, entry.position_text, status, changes, (*entry.notes, *notes))
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
-        """Return the offset values that can be stored, and notes about values that cannot be stored."""
+        """Return the offset values of an imported tool, and notes about values that cannot be imported."""
         offset, notes = dict(entry.offset_values), []
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")
@@ -117,7 +117,7 @@ class StoredTools:
         return offset, notes
 
     def find_mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
-        """Yield an error for each contradiction that the plans would cause in the tool shapes."""
+        """Yield an error for each contradiction in the tool shapes that the planned changes would cause."""
         from app.desk.stored_shapes import find_mistakes
 
         for plan in plans:

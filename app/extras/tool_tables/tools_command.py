@@ -74,7 +74,7 @@ def _add_import(actions: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action.
+    """Run the action that the user specified.
 
     Raises CommandError if the action fails.
     """

@@ -1,4 +1,4 @@
-"""Alarms on the screen, with the notice over the path view, and the log of alarms."""
+"""Alarm displays: the notice over the path view, and the log of alarms."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
 
 
 class AlarmNotice(Panel):
-    """A notice with the active alarms (the first one large), or with the message of M00 or M01."""
+    """Notice that shows the active alarms, the first of them large, or the message of M00 or M01."""
 
     message, _go_on = RedrawingAttribute(""), RedrawingAttribute("")
     _alarms: RedrawingAttribute[tuple[Alarm, ...]] = RedrawingAttribute(())
@@ -37,7 +37,7 @@ class AlarmNotice(Panel):
         self.hide()
 
     def show_notice(self, message: str, continue_hint: str, alarms: tuple[Alarm, ...] = ()) -> None:
-        """Show the alarms, or the message if there are no alarms.
+        """Show the alarms or, if there are no alarms, the message of M00 or M01.
 
         Hide the notice if there is neither.
         """
@@ -121,7 +121,7 @@ class AlarmNotice(Panel):
 
 
 class AlarmList(RowPanel):
-    """All alarms, E-stops and stops, newest first, with time, cause and remedy.
+    """Log of all alarms, E-stops and stops, newest first, with time, cause and remedy.
 
     The selected entry remains visible while scrolling, so that a key always opens an entry that the
     operator sees.

@@ -1,4 +1,4 @@
-"""Opening of files that are dropped on the window or passed on by another start of TurnDesk."""
+"""Opening of files that are dropped on the window or passed on by a second instance of TurnDesk."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _DRAGS = frozenset({QEvent.Type.DragEnter, QEvent.Type.DragMove, QEvent.Type.Dro
 class FileOpening(QObject):
     """Event filter that loads a dropped file as the program, on the Automatic page.
 
-    The same rules apply as for a program of the list. A file is not loaded while a program runs. If it
-    would replace an interrupted job, the operator must first confirm. A page with unsaved changes stays
-    open.
+    The rules are the same as for a program that is selected in the program list. A file is not loaded while
+    a program runs. If it would replace an interrupted job, the operator must first confirm. A page with
+    unsaved changes stays open.
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -47,7 +47,7 @@ class FileOpening(QObject):
         return True
 
     def open_files(self, files: list[Path]) -> None:
-        """Open the file if the list contains exactly one, or show why no file can be opened."""
+        """Open the file if ``files`` contains exactly one, or show why no file can be opened."""
         frame = self._window.frame
         if frame is None or not files:
             return
@@ -60,7 +60,7 @@ class FileOpening(QObject):
         self._window.refresh()
 
     def open_file(self, path: Path) -> None:
-        """Open the program that another start of TurnDesk passes on, and bring the window to the front."""
+        """Open a program that a second instance of TurnDesk passes on, and raise the window to the front."""
         window = self._window
         window.setWindowState(window.windowState() & ~Qt.WindowState.WindowMinimized)
         window.raise_()

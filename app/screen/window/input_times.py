@@ -1,4 +1,4 @@
-"""Times of key presses and frames, which are used to detect late presses."""
+"""Times of key presses and frames, used to detect key presses that were processed too late."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MAX_CLOCK_DRIFT = 1e-3  # Maximum drift between two clocks, as a fraction of th
 
 
 class InputTimes:
-    """Times of input events on the screen's clock, and stalls of the screen.
+    """Times of input events, and periods in which the screen did not respond (stalls).
 
     ``clock`` is monotonic, in seconds.
     """
@@ -69,14 +69,14 @@ class InputTimes:
         return min(now, time_ms / 1000 + offset)
 
     def was_delayed(self, time_ms: int, event_source: str = "") -> bool:
-        """Return whether an event waited during a stall of the screen, or before it reached the screen."""
+        """Return whether an event was delayed by a stall of the screen, or before it reached the screen."""
         if not time_ms:
             return False
         at = self.find_event_time(time_ms, event_source)
         return at <= self._behind or not self.is_screen_seen or self.clock() - at > STALL_TIME_S
 
     def record_dropped_answer(self, time_ms: int, event_source: str = "") -> None:
-        """Record that an answer was dropped, so that the presses that follow are dropped, too."""
+        """Record that an answer was dropped, so that the presses that follow are also dropped."""
         self._dropped = max(self._dropped, self.find_event_time(time_ms, event_source))
 
     def follows_dropped_answer(self, time_ms: int, event_source: str = "") -> bool:
@@ -86,6 +86,6 @@ class InputTimes:
         return same_stall or at - self._dropped < PAUSE_TIME_S
 
     def find_delay(self, time_ms: int, event_source: str = "") -> float:
-        """Return in seconds how long a press waited, or how long the stall lasted in which it waited."""
+        """Return the delay of a press in seconds, or the duration of the stall that delayed it."""
         at = self.find_event_time(time_ms, event_source)
         return self.stall_duration_s if at <= self._behind else self.clock() - at

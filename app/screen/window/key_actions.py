@@ -1,4 +1,4 @@
-"""Functions of the main window's keys that control the machine or answer a question."""
+"""Key actions of the main window that control the machine or answer a question."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.screen.window.key_table import NO_KEY, YES_KEY
 
 
 def make_key_actions(desk: Desk) -> dict[str, Callable[[], None]]:
-    """Return the functions of the keys by their names."""
+    """Return the actions of the keys by key name."""
     return {
         "S": partial(desk.toggle_switch, "single_block"),
         "O": partial(desk.toggle_switch, "optional_stop"),

@@ -108,7 +108,7 @@ REPEATED_WHEN_TYPED = frozenset({"Back", "Up", "Down", "Left", "Right", "Page up
 
 
 def find_typed_text(event: QKeyEvent) -> str:
-    """Return a key as text input.
+    """Return the text input of a key event.
 
     This is one character, the name of an editing key, or an empty string for any other key.
     """

@@ -1,12 +1,13 @@
-"""Event filter for all keys and touches, which handles stop keys and late presses.
+"""Event filter for all keys and touches, which handles stop keys and delayed presses.
 
-Pause starts feed hold and Scroll Lock is the E-stop, with any modifier, lock and keyboard layout. H, Space
-and E do the same if no caret is visible. Esc starts feed hold while the machine moves, unless the page uses
-Esc. The filter tracks which other keys are really down. A repeat is not a press. A key that was pressed
-while another window had the keyboard focus is ignored until it is released. A press that waited during a
-stall of the screen is executed in order but starts nothing (``app.desk.late_presses``). If an answer is
-dropped for this reason, the presses that follow without a pause are also dropped, because they relied on
-the answer.
+- Pause starts feed hold and Scroll Lock is the E-stop, with any modifier, lock and keyboard layout.
+- H, Space and E do the same if no caret is visible.
+- Esc starts feed hold while the machine moves, unless the page uses Esc.
+- A key that was pressed while another window had the keyboard focus is ignored until it is released. A
+  repeat is not a press.
+- A press that was delayed by a stall of the screen is processed in order but starts nothing
+  (``app.desk.late_presses``). If an answer is dropped for this reason, the presses that follow without a
+  pause are also dropped, because they relied on the answer.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ _KEY_EVENTS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 
 
 class StopFunction(Protocol):
-    """A function that stops the machine.
+    """Function that stops the machine in response to a key.
 
     ``press`` is the number of the key press.
     """
@@ -71,14 +72,14 @@ class KeyboardTarget(Protocol):
     """Interface through which the keyboard filter uses the main window."""
 
     def start_feed_hold(self, source: str = "", press: int = 0) -> None:
-        """Start feed hold on any page, and in any field or question.
+        """Start feed hold, regardless of the open page, input field or question.
 
         ``source`` names the key in the log. ``press`` is the number of the key press.
         """
         ...
 
     def press_estop(self, press: int = 0) -> None:
-        """Press the E-stop on any page, and in any field or question.
+        """Press the E-stop, regardless of the open page, input field or question.
 
         ``press`` is the number of the key press.
         """
@@ -105,15 +106,15 @@ class KeyboardTarget(Protocol):
         ...
 
     def set_late(self, *, is_late: bool) -> None:
-        """Set whether the current event waited during a stall and must not start anything."""
+        """Set whether the current event was delayed by a stall and must not start anything."""
         ...
 
     def has_screen_changed(self, time_s: float) -> bool:
-        """Return whether the screen has changed since a time in seconds."""
+        """Return whether the screen has changed after a time in seconds."""
         ...
 
     def report_dropped(self, action: StartingAction) -> None:
-        """Report a press that waited during a stall and is not executed."""
+        """Report a press that is not executed because a stall delayed it."""
         ...
 
     def is_stop_control_at(self, event: QInputEvent) -> bool:
@@ -144,10 +145,7 @@ def find_key_code(event: QKeyEvent) -> int:
 
 
 class KeyboardFilter(QObject):
-    """The event filter on the windows of the application.
-
-    See the docstring of the module.
-    """
+    """Event filter on the windows of the application, with the rules in the docstring of the module."""
 
     def __init__(self, target: KeyboardTarget, input_times: InputTimes) -> None:
         super().__init__()
@@ -185,7 +183,7 @@ class KeyboardFilter(QObject):
 
     @property
     def delay_s(self) -> float:
-        """Return the time in seconds that the current event waited, or the duration of the stall."""
+        """Return the delay of the current event, or the duration of the stall, in seconds."""
         return self.input_times.find_delay(self._stamp, self._whose)
 
     @property
@@ -222,7 +220,7 @@ class KeyboardFilter(QObject):
     def update(self) -> None:
         """Process stops of the key watcher and key releases that were lost.
 
-        This is called once a frame. The X server reports which keys are really down.
+        This is called once a frame. The X server reports which keys are physically down.
         """
         self._stamp = 0
         windows = QGuiApplication.topLevelWindows()
@@ -243,7 +241,7 @@ class KeyboardFilter(QObject):
                 self._send(QKeyEvent(QEvent.Type.KeyRelease, key, Qt.KeyboardModifier.NoModifier))
 
     def is_button_held(self) -> bool:
-        """Return whether a mouse button is really still down."""
+        """Return whether a mouse button is physically still down."""
         if self._server is None:
             return QApplication.mouseButtons() is not Qt.MouseButton.NoButton
         return self._server.has_button_down()
@@ -267,7 +265,7 @@ class KeyboardFilter(QObject):
         return pressed and self._handle_screen_press(event)
 
     def _read_event_time(self, event: QInputEvent) -> None:
-        """Record the time of an event, and whether it is late."""
+        """Record the time of an event, and whether a stall delayed it."""
         self.input_times.record_input()
         self._stamp, self._whose = event.timestamp(), _find_clock(event)
         self._late = self.input_times.was_delayed(self._stamp, self._whose)
@@ -318,7 +316,7 @@ class KeyboardFilter(QObject):
     def _is_repeat_overtaken(self, code: int) -> bool:
         """Return whether a press is older than the X server's report that its key is up.
 
-        Such a press is a delayed repeat.
+        Such a press is a repeat that arrived late.
         """
         said = self._known_up.get(code)
         if said is None or not self._stamp:
@@ -425,9 +423,9 @@ class KeyboardFilter(QObject):
         return event.key() in _EDITING_KEYS and _find_focus_field() is not None
 
     def _send_repeat(self, event: QKeyEvent) -> bool:
-        """Send a key as a repeat.
+        """Pass a key on as a repeat.
 
-        In a standard field, only editing keys repeat.
+        In a standard text field, only editing keys repeat.
         """
         field = _find_focus_field()
         if field is not None and not (
@@ -476,5 +474,5 @@ def _find_focus_field() -> QWidget | None:
 
 
 def _inserts_break(field: QWidget, event: QKeyEvent) -> bool:
-    """Return whether the key inserts a line break or tab in a field with several lines."""
+    """Return whether the key inserts a line break or tab in a multi-line text field."""
     return isinstance(field, QPlainTextEdit) and event.key() in {Key.Key_Return, Key.Key_Enter, Key.Key_Tab}

@@ -47,9 +47,9 @@ IDLE_DELAY_S = 2.0  # Seconds.
 
 
 class MainWindow(QWidget):
-    """The main window, with one page at a time.
+    """Main window, which shows one page at a time.
 
-    Without a model, it shows that TurnDesk is starting.
+    Before the model exists, it shows that TurnDesk is starting.
     """
 
     machine_changed = Signal()  # The machine has changed. Any thread may emit this signal.
@@ -164,7 +164,7 @@ class MainWindow(QWidget):
                 self._apply_settings(self.frame)
 
     def _check_held_inputs(self, frame: WindowFrame) -> None:
-        """Check which keys and buttons are really down for this page, and handle lost releases."""
+        """Check which keys and buttons are physically down, and handle releases that were lost."""
         if self._page != frame.current_page.NAME:
             self._page = frame.current_page.NAME
             self.keyboard_filter.ignore_pressed_keys()
@@ -230,10 +230,9 @@ class MainWindow(QWidget):
         show_in_suitable_size(self, screen, is_kiosk=self.is_kiosk)
 
     def _handle_escape(self) -> None:
-        """Handle Esc.
+        """Handle Esc with the first of these actions that is possible.
 
-        Esc goes back one step on the page. If there is no step, it closes a question or starts feed hold.
-        Otherwise it opens the Automatic page.
+        Go back one step on the page, close a question, start feed hold, or open the Automatic page.
         """
         frame = self.frame
         if frame is not None and not (frame.handle_escape() or frame.desk.handle_escape()):
@@ -251,7 +250,7 @@ class MainWindow(QWidget):
     # --- functions for the keyboard ------------------------------------------------------------------
 
     def start_feed_hold(self, source: str = "", press: int = 0) -> None:
-        """Start feed hold on any page, and in any field or question.
+        """Start feed hold, regardless of the open page, input field or question.
 
         ``source`` names the key in the log.
         """
@@ -261,7 +260,7 @@ class MainWindow(QWidget):
             self.refresh()
 
     def press_estop(self, press: int = 0) -> None:
-        """Press the E-stop on any page, and in any field or question."""
+        """Press the E-stop, regardless of the open page, input field or question."""
         if self.frame is not None:
             self.frame.current_page.stop_held_actions()
             self.frame.desk.station_keys.press_estop(press)
@@ -289,7 +288,7 @@ class MainWindow(QWidget):
         return self.frame is not None and self.frame.has_text_field()
 
     def note_activity(self) -> None:
-        """Record that the signed-in user pressed a key or touched the screen."""
+        """Record that the signed-in user has pressed a key or touched the screen."""
         if self.frame is not None:
             self.frame.desk.user_access.note_activity()
 
@@ -298,20 +297,20 @@ class MainWindow(QWidget):
         return self.frame is not None and self.frame.accepts_text(key)
 
     def set_late(self, *, is_late: bool) -> None:
-        """Set whether the current event waited during a stall and therefore must not start anything."""
+        """Set whether the current event was delayed by a stall and must not start anything."""
         if self.frame is not None:
             self.frame.desk.window_state.late_presses.is_late = is_late
 
     def has_screen_changed(self, time_s: float) -> bool:
-        """Return whether the screen has changed since this time.
+        """Return whether the screen has changed after this time.
 
-        A touch at that time was meant for the previous screen.
+        An earlier touch was meant for the previous screen content.
         """
         seen = [face for since, face in self._faces if since <= time_s]
         return bool(seen) and self.frame is not None and seen[-1] != self.frame.screen_context
 
     def report_dropped(self, action: StartingAction) -> None:
-        """Report a press that waited during a stall and is not executed."""
+        """Report a press that is not executed because a stall delayed it."""
         if self.frame is not None:
             self.frame.desk.window_state.late_presses.report_dropped(action)
 
@@ -430,7 +429,7 @@ class MainWindow(QWidget):
         self.close()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Refuse to close while a program is running, in kiosk mode, or if the page prevents closing."""
+        """Close the window, except in kiosk mode, while a program runs, or if the page prevents closing."""
         frame = self.frame
         if self.is_kiosk and frame is not None and not self._meant:
             frame.desk.say(tr("KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK"))

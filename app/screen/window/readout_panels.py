@@ -32,9 +32,9 @@ FULL_SIZE_ROW_HEIGHT = 6.3  # Units of row height that numbers of full size need
 
 
 class PositionPanel(Panel):
-    """The position display.
+    """Position display.
 
-    X has a filled Ø or a hollow R, so that the operator cannot confuse them.
+    X has a filled Ø (diameter) or a hollow R (radius), so that the operator cannot confuse the two.
     """
 
     position_readout: RedrawingAttribute[PositionReadout | None] = RedrawingAttribute(
@@ -47,7 +47,10 @@ class PositionPanel(Panel):
         return self.position_readout.main_kind.value if self.position_readout else ""
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw one row per axis, with the kind of readout, the unit and the X label in the title."""
+        """Draw one row per axis.
+
+        The title contains the kind of readout, the unit and the symbol of X (Ø or R).
+        """
         view = self.position_readout
         if view is None:
             self.frame(painter, "POSITION")
@@ -99,7 +102,7 @@ class PositionPanel(Panel):
             )
 
     def _find_row_share(self, row: QRectF) -> float:
-        """Return the scale of the numbers.
+        """Return the text scale of the position values.
 
         A mill with five axes has less space per row than a lathe.
         """
@@ -121,9 +124,9 @@ def draw_x_symbol(painter: ThemedPainter, box: QRectF, symbol: str, size: float,
 
 
 class ReadoutPanel(Panel):
-    """A panel that draws one immutable value.
+    """Panel that draws the values of one immutable object.
 
-    Setting an equal value does not redraw the panel.
+    If an equal object is set, the panel is not redrawn.
     """
 
     value: RedrawingAttribute[object] = RedrawingAttribute(None)
@@ -159,10 +162,7 @@ class ReadoutPanel(Panel):
         painter.draw_text_line(rect, text, size, "text", at=flags, role=role)
 
     def draw_override(self, painter: ThemedPainter, rect: QRectF, fraction: float, maximum: float) -> None:
-        """Draw an override as a bar with its percentage.
-
-        A value other than 100 % is highlighted.
-        """
+        """Draw an override as a bar with its percentage, highlighted if it is not 100 %."""
         u = self.theme.unit_px
         plain = abs(fraction - 1.0) < 0.005
         figure = QRectF(rect.right() - 9 * u, rect.y(), 9 * u, rect.height())
@@ -221,7 +221,7 @@ class SpindlePanel(ReadoutPanel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the spindle speeds in rpm, the direction, the surface speed, the override and the switch.
 
-        If the spindle state is unknown, the panel shows this instead.
+        If the spindle state is unknown, draw a warning instead.
         """
         view = self.value
         if not isinstance(view, SpindleReadout):
@@ -319,8 +319,8 @@ HIGH_PANEL_HEIGHT = 9.0  # Units: a higher panel has room for large positions.
 class ReadoutRow(Panel):
     """Display of all readouts of one snapshot.
 
-    X has a filled Ø or a hollow R. A low panel shows the readouts in one row. A high panel shows large
-    positions above the other readouts.
+    X has a filled Ø (diameter) or a hollow R (radius). A low panel shows the readouts in one row. A high
+    panel shows large positions above the other readouts.
     """
 
     status: MachineStatus | None = None

@@ -1,4 +1,4 @@
-"""Row below the readouts that shows what a running program does."""
+"""Row below the readouts that shows the progress of a running program."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _COMMENT_WIDTH, _BLOCK_WIDTH = 0.38, 0.24  # Fractions of the width. Parts and t
 
 
 class RunRow(Panel):
-    """One row with comment, block, parts and times, where the Automatic page has its comment."""
+    """Row with comment, block, parts and times, at the position of the Automatic page's comment line."""
 
     background_color = "panel"
     comment_text, block_text, message_text = (
@@ -63,7 +63,7 @@ class RunRow(Panel):
         )
 
     def _draw_alarm(self, painter: ThemedPainter) -> None:
-        """Draw the alarm over the whole row, large enough to read from the machine."""
+        """Draw the alarm over the whole row, large enough to read from a position at the machine."""
         look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), self._tone)
         sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
@@ -91,7 +91,7 @@ class RunRow(Panel):
 
 
 def describe_stop(status: MachineStatus) -> str:
-    """Return the number and text of the first alarm, the E-stop, or an unrequested feed hold."""
+    """Return the text of the first alarm, the E-stop, or a feed hold that was not requested."""
     first = status.alarms[0] if status.alarms else status.stop_cause
     if first is None:
         return ""

@@ -1,4 +1,4 @@
-"""Passing of a program from a second start of TurnDesk to the screen that is already running.
+"""Transfer of a program from a second instance of TurnDesk to the running instance.
 
 The running screen listens on a local socket that belongs to its data folder. Only processes of the same
 user can connect to the socket. A request is one line with the absolute path of a program. The reply is one
@@ -24,9 +24,9 @@ _MOST_PATH = 100  # bytes of a socket's path that every system accepts
 
 
 def find_socket_name() -> str:
-    """Return the name of the data folder's socket.
+    """Return the name of the local socket of the data folder.
 
-    This is its path, or a short name if the path is too long.
+    This is the socket's path, or a short name if the path is too long.
     """
     path = os.fsencode(find_data_folder() / "screen.sock")
     if os.name == "posix" and len(path) <= _MOST_PATH:
@@ -35,10 +35,7 @@ def find_socket_name() -> str:
 
 
 def hand_over_program(program_path: str) -> bool:
-    """Ask the running screen to open a program.
-
-    Return False if no screen is running.
-    """
+    """Ask the running screen to open a program, and return False if no screen is running."""
     path = Path(program_path).absolute()
     if not path.is_file():
         return False
@@ -53,7 +50,7 @@ def hand_over_program(program_path: str) -> bool:
 
 
 class RunningScreen(QObject):
-    """Receiver of the programs that another start of TurnDesk passes on.
+    """Receiver of the programs that a second instance of TurnDesk passes on.
 
     ``open_file`` is called with each path.
     """

@@ -23,7 +23,7 @@ DESIGN_HEIGHT = 71.6  # Height in units for which the rows are designed. A talle
 
 
 class StationDock(TouchPanel):
-    """Operator station with E-stop, spindle switch, two pots, feed hold and the start buttons."""
+    """On-screen operator station: E-stop, spindle switch, override pots, feed hold and start."""
 
     title = "OPERATOR STATION"
     _shown: RedrawingAttribute[object] = RedrawingAttribute(())
@@ -54,7 +54,7 @@ class StationDock(TouchPanel):
         )
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Turn the pot under the pointer by one step."""
+        """Turn the override pot under the pointer by one step."""
         steps = 1 if event.angleDelta().y() > 0 else -1
         if self._feed_box().contains(event.position()):
             self._desk.station_keys.step_override(steps)
@@ -134,7 +134,7 @@ class StationDock(TouchPanel):
     def _end_twist(self) -> None:
         """Release the E-stop if a single touch pressed and released the twist field.
 
-        A hand that hits the plate touches both fields, which releases nothing.
+        A hand that hits the button touches both fields and therefore releases nothing.
         """
         if self._twisting and not self.touch_count:
             self._desk.station_controls.estop(is_pressed=False)
@@ -236,9 +236,9 @@ class StationDock(TouchPanel):
 
     @property
     def _is_latching(self) -> bool:
-        """Return whether the palm buttons work with a single touch.
+        """Return whether the palm buttons latch, so that one touch at a time can operate them.
 
-        They do if this is selected with F10 7 and all axes are simulated.
+        They latch if this is selected with F10 7 and all axes are simulated.
         """
         return self._desk.settings_store.current_settings.latched and self._desk.machine.allows_one_hand
 

@@ -1,4 +1,4 @@
-"""Keys typed in the main window: they answer a question, go to the page, or are rejected."""
+"""Handling of keys that answer a question, enter text on the page, or are rejected."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from core.message import Message
 
 
 class TypedKeys:
-    """Keys that a question or the current page uses, before their own function is executed."""
+    """Handler of keys that a question or the current page uses, before the key actions are executed."""
 
     def __init__(
         self,
@@ -35,9 +35,9 @@ class TypedKeys:
         self._rejected_text = ""  # Message about the last character that an input field rejected.
 
     def is_used_elsewhere(self, frame: WindowFrame, name: str) -> bool:
-        """Return whether the key works only on the Automatic page while another page is open.
+        """Return whether a key works only on the Automatic page and another page is open.
 
-        Show a message if so.
+        If so, show a message.
         """
         if (
             name not in AUTOMATIC_KEYS
@@ -52,7 +52,7 @@ class TypedKeys:
     def handle_answer(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key answered a question.
 
-        Yes is accepted only from a single key with all other keys released.
+        The answer yes is accepted only while all other keys are released.
         """
         typed = {find_letter(event), find_typed_text(event)} - {""}
         if not frame.desk.confirm_key or not typed & {frame.desk.confirm_key, "N"}:
@@ -64,10 +64,9 @@ class TypedKeys:
         return True
 
     def is_withheld(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether an input field rejects the character.
+        """Return whether an input field rejects the character, which then has no other function.
 
-        The key then has no other function. Ctrl+H, Ctrl+Space and Ctrl+E also do not stop the machine in an
-        input field.
+        In an input field, Ctrl+H, Ctrl+Space and Ctrl+E do not stop the machine.
         """
         text = event.text()
         if not text.isprintable() or not text or not frame.has_text_field():

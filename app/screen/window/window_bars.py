@@ -1,4 +1,4 @@
-"""The rows across the window: title, lamps, notices, prompt line, comment and function keys."""
+"""Horizontal bars of the window: title, lamps, notices, prompt line, comment and function keys."""
 
 from __future__ import annotations
 
@@ -101,10 +101,10 @@ class TitleLine(Panel):
 
 
 class PromptLine(Panel):
-    """Three areas above the function keys: message and question in one row, and the state below them.
+    """Prompt line with a message and a question in one row, and the machine state below them.
 
-    Each area has one subject, and no area covers another. If there are both a message and a question, each
-    uses half of the row. The question has two targets, which are always at the right end.
+    If there are both a message and a question, each uses half of the row. No text covers another. The
+    question has two touch targets (yes and no), which are always at the right end.
     """
 
     state_text, reason_text, question_text, message_text, confirm_key = (
@@ -221,7 +221,7 @@ class PromptLine(Panel):
     def _draw_answer_keys(self, painter: ThemedPainter, area: QRectF) -> float:
         """Draw the targets for yes and no at the right end.
 
-        Return the x coordinate at which the text must end.
+        Return the x coordinate at which the question must end.
         """
         u = self.theme.unit_px
         left = area.right() - 2 * ANSWER_KEY_WIDTH * u
@@ -234,7 +234,7 @@ class PromptLine(Panel):
 
 
 class CommentLine(Panel):
-    """The last comment of the program, in the lower left corner."""
+    """Display of the program's last comment, in the lower left corner."""
 
     title = "COMMENT"
     text = RedrawingAttribute("")
@@ -290,9 +290,9 @@ class FunctionKeyBar(Panel):
 
 
 class LampStrip(Panel):
-    """A row of lamps.
+    """Row of indicator lamps.
 
-    A lit lamp is filled and a dark lamp is hollow, so that they can be distinguished without color.
+    A lit lamp is filled and an unlit lamp is hollow, so that they can be distinguished without color.
     """
 
     accessible_name = "LAMPS"
@@ -352,7 +352,7 @@ _THREE_LINE_HEIGHT = 6.0  # Units: height of a row with room for three lines.
 
 
 class NoticeRows(Panel):
-    """Rows with notices, each filled with the color of its tone, with touch keys."""
+    """Rows with notices and touch keys, each filled with the color for the kind of notice."""
 
     notice_rows: RedrawingAttribute[tuple[NoticeRow, ...]] = RedrawingAttribute(())
 

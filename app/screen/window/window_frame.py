@@ -210,7 +210,7 @@ class WindowFrame(QWidget):
         self.alarm_list.raise_()
 
     def handle_escape(self) -> bool:
-        """Close the alarm log or a part of the page; return False if nothing was open."""
+        """Close the alarm log or a part of the page, and return False if neither was open."""
         if self.alarm_list.isVisible():
             self.alarm_list.hide()
             return True
@@ -287,7 +287,7 @@ class WindowFrame(QWidget):
 
     @property
     def _has_dock_changed(self) -> bool:
-        """Return whether the operator has shown or hidden the station dock since the last layout."""
+        """Return whether the operator station was shown or hidden since the last layout."""
         return (
             self.station_dock is not None
             and self._docked is not self.desk.settings_store.current_settings.dock
@@ -306,9 +306,9 @@ class WindowFrame(QWidget):
             part.setVisible(large)
 
     def _is_manual_motion(self, snapshot: Snapshot) -> bool:
-        """Return whether the axes were jogged or homed in the last seconds.
+        """Return whether the axes were jogged or homed in the last few seconds.
 
-        Touch targets must then not move.
+        The touch targets must then stay at their positions.
         """
         now = self.desk.station_controls.clock()
         if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
@@ -375,7 +375,7 @@ class WindowFrame(QWidget):
                 panel.update()
 
     def _is_dead(self, key: str) -> bool:
-        """Return whether the key of a lamp has no function on this page.
+        """Return whether the key of a lamp has no function on the current page.
 
         Touching the lamp has the same function on every page.
         """
@@ -383,7 +383,7 @@ class WindowFrame(QWidget):
         return elsewhere or self.has_text_field() or self.accepts_text(key)
 
     def accepts_text(self, key: str) -> bool:
-        """Return whether this character goes to an input field of the page or to a standard field."""
+        """Return whether a character goes to an input field of the page or to a standard text field."""
         return self.current_page.accepts_key(key) or self._stock_field()
 
     def has_text_field(self) -> bool:
@@ -451,7 +451,7 @@ class WindowFrame(QWidget):
     ) -> tuple[NoticeRow, ...]:
         """Return the notices that remain until the operator acts.
 
-        ``here`` is set if the Automatic page is open, where the keys of the notices work.
+        ``here`` is True while the Automatic page, on which the keys of the notices work, is open.
         """
         desk, rows = self.desk, []
         unheard = make_unknown_notice(snapshot)

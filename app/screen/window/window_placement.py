@@ -1,4 +1,4 @@
-"""The size and place of the window on its screen."""
+"""Size and position of the window on the screen."""
 
 from __future__ import annotations
 

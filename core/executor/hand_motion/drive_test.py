@@ -1,11 +1,9 @@
-"""Drive test: one axis performs a step, a ramp or a sine while the lease of the test is renewed.
+"""Drive test: one axis performs a step, a ramp or a sine while the test's lease is renewed.
 
-The queued setpoints always end with the stop that follows an expired lease, as in a jog. The test starts
-only if the full excursion is within the travel limits. The test does not change any drive parameter.
-
-A setpoint cannot jump, so a step is a move with the full acceleration of the axis over the first half and
-full braking over the second half. A sine is s/2·(1 - cos ωt). It starts at rest and stays on one side of
-the start position.
+As in a jog, the queued setpoints always end with the stop that follows an expired lease. The test starts
+only if its full travel is within the travel limits, and it changes no drive parameters. A step is a move
+with full acceleration over the first half and full braking over the second half. A sine is s/2·(1 - cos
+ωt): it starts at rest and stays on one side of the start position.
 """
 
 from __future__ import annotations
@@ -42,7 +40,7 @@ TICK_SAMPLE_RATE_HZ = 100.0  # samples per second if the driver has no samples
 
 
 class Shape(StrEnum):
-    """Shape of the setpoints of a test over time."""
+    """Waveform of the setpoints in a drive test."""
 
     STEP = "step"
     RAMP = "ramp"
@@ -51,7 +49,10 @@ class Shape(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AxisTestLimits:
-    """Limits of the axis in a test: speed in mm/s, acceleration in mm/s², and sample rate in Hz."""
+    """Limits for the drive test of an axis.
+
+    The speed is in mm/s, the acceleration in mm/s², and the sample rate in Hz.
+    """
 
     max_speed_mm_s: float
     max_acceleration_mm_s2: float
@@ -65,7 +66,7 @@ class AxisTestLimits:
 
 @dataclass(frozen=True, slots=True)
 class DriveTestMotion:
-    """The motion of a drive test.
+    """The parameters of the motion in a drive test.
 
     ``travel_mm`` is the signed travel in mm; for a sine it is the peak-to-peak travel. ``speed`` is the
     speed of a ramp in mm/s. ``frequencies_hz`` are the frequencies of the sines in Hz.
@@ -78,7 +79,7 @@ class DriveTestMotion:
     frequencies_hz: tuple[float, ...] = ()
 
     def find_refusal(self, limits: AxisTestLimits) -> str:
-        """Return why the values are not permitted for a test, or an empty string."""
+        """Return why the test parameters exceed the limits, or an empty string if they are permitted."""
         longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_STEP_TRAVEL_MM
         if not 0.0 < abs(self.travel_mm) <= longest + _ROUNDING_TOLERANCE:
             return Message(
@@ -139,11 +140,11 @@ class DriveTestMotion:
         ]
 
     def _make_sine(self, frequency: float, limits: AxisTestLimits) -> list[Ramp]:
-        """Return the ramps of one sine.
+        """Return the ramps that approximate a sine of one frequency.
 
-        The velocity is exact at the ends of each ramp and linear between them. The amplitude is smaller
-        than requested by the fraction (ω dt)²/12: 2 % for the fastest sine and 0.2 % for the others. The
-        axis returns exactly to its start position.
+        The velocity is exact at the ends of each ramp and linear between them. The amplitude is too small
+        by the fraction (ω dt)²/12: 2 % for the fastest sine and 0.2 % for the others. The axis returns
+        exactly to its start position.
         """
         count = max(_MIN_SINE_PIECES, min(_MAX_SINE_PIECES, int(1.0 / (frequency * _MIN_RAMP_S))))
         waves = max(_WAVES, math.ceil(_LASTS * frequency))
@@ -176,7 +177,7 @@ def compute_position_range(ramps: list[Ramp]) -> tuple[float, float]:
 
 
 def slice_ramps(ramps: list[Ramp], start_s: float, end_s: float) -> list[Ramp]:
-    """Return the section of the ramps between two times, in seconds from the start of the ramps."""
+    """Return the part of the ramps between two times, which are in seconds from their start."""
     found, at = [], 0.0
     for dt, v, a in ramps:
         first, last = max(start_s - at, 0.0), min(end_s - at, dt)
@@ -200,12 +201,12 @@ def make_braking_ramp(ramps: list[Ramp], max_acceleration: float) -> list[Ramp]:
 
 
 def find_unsupported_reason(ports: MachinePorts) -> str:
-    """Return why this machine cannot run drive tests, or an empty string."""
+    """Return why this machine cannot run drive tests, or an empty string if it can."""
     return NO_SETPOINTS_REASON if ports.blocks is not None else ports.untraced
 
 
 class DriveTester:
-    """Runner of the executor's drive tests, one at a time."""
+    """Executor component that runs drive tests, one at a time."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context, self._jogger = context, jogger
@@ -299,9 +300,9 @@ class DriveTester:
         return begins
 
     def renew_lease(self, lease_s: float) -> None:
-        """Renew the lease of the test.
+        """Renew the lease of the running test.
 
-        A test that is braking or finished is not extended. Raises DriverError if the setpoints are
+        A test that is braking or completed is not extended. Raises DriverError if the setpoints are
         rejected.
         """
         jogger = self._jogger

@@ -1,8 +1,8 @@
-"""Handwheel that moves the selected axis by one step per click.
+"""Handwheel, which moves the selected axis by one step per click.
 
-An axis moves only while the lease is renewed and no condition prevents motion. The axis follows the
-handwheel with a delay of 0.1 s. The queue never contains more than the distance of this delay and the
-braking distance, so clicks faster than the axis can follow are dropped. If the control ends the motion, the
+The axis moves only while the sender renews the lease and no condition prevents motion. It follows the
+handwheel with a delay of 0.1 s. The queue never exceeds the distance of this delay plus the braking
+distance. Clicks that the axis is too slow to follow are ignored. If the control ends the motion, the
 handwheel must be selected again.
 """
 
@@ -35,7 +35,7 @@ _ROUNDING = 1e-9
 
 
 class ClickCounter:
-    """Converter of encoder counts to clicks.
+    """Converter of encoder counts to handwheel clicks.
 
     ``per`` is the number of counts per click; a negative number reverses the direction.
     """
@@ -169,7 +169,7 @@ class Handwheel:
         return ""
 
     def _find_end_reason(self, state: MachineState, axis: str) -> str:
-        """Return why the handwheel must be disabled in this tick, or an empty string."""
+        """Return why the handwheel must be disabled in this tick, or an empty string if it stays enabled."""
         context, signals, inputs = self._context, self._context.station_signals, self._context.inputs
         reasons = (
             (
@@ -218,7 +218,7 @@ class Handwheel:
         )
 
     def _limit_target(self, index: int, wanted: float) -> float:
-        """Limit a target to the travel limits. Clicks beyond a limit are dropped."""
+        """Limit a target to the travel limits. Clicks past a travel limit are ignored."""
         axis = self._context.machine.axes[index]
         if axis.travel is None or not self._context.axis_sample.homed[index]:
             return wanted

@@ -1,4 +1,4 @@
-"""Line along which a jog moves: one axis, or X, Y and Z together along an axis of a tilted plane (3D-ROT)."""
+"""Line along which a jog moves: a single axis, or X, Y and Z together in a tilted plane (3D-ROT)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,11 @@ def get_distance_to_limit(axis: Axis, position: float, direction: float) -> floa
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JogLine:
-    """A line of motion, with the share of each axis in the distance; a single axis has the share 1."""
+    """A straight line of motion in the space of all axes.
+
+    ``axis_shares`` contains the distance of each axis per unit of distance along the line. A single axis
+    has the share 1.
+    """
 
     axes: Sequence[Axis]
     axis_shares: FloatArray
@@ -60,7 +64,7 @@ class JogLine:
         )
 
     def iter_moving_axes(self) -> Iterator[tuple[int, Axis, float]]:
-        """Yield the index, the axis and the share of each axis that moves."""
+        """Yield the index, the axis and the share of the line's distance for each axis that moves."""
         yield from (
             (place, axis, share)
             for place, (axis, share) in enumerate(zip(self.axes, self.axis_shares.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""Jog: manual motion of one axis while the jog's lease is renewed, or by one step of a given length.
+"""Manual motion of one axis: a jog while its lease is renewed, or a step of a given length.
 
 The queued setpoints always end with the stop that follows an expired lease. They consist of ramps, which
 are phases of constant acceleration; the last ramp ends at rest. A controller with its own planner uses its
@@ -53,7 +53,7 @@ class Jogger:
 
     @property
     def axis_name(self) -> str:
-        """Return the name of the moving axis, or an empty string."""
+        """Return the name of the moving axis, or an empty string if no axis moves."""
         return self._context.machine.axes[self._axis].name if self._axis >= 0 else ""
 
     def find_jog_refusal(
@@ -125,7 +125,7 @@ class Jogger:
         return self.find_spinning_reason(name) or self.request_c_axis(name)
 
     def find_spinning_reason(self, name: str) -> str:
-        """Return why C cannot move because the spindle is turning, or an empty string.
+        """Return why C cannot move because the spindle is turning, or an empty string if C can move.
 
         This applies only if the spindle is the C axis.
         """
@@ -200,7 +200,7 @@ class Jogger:
     def run_drive_test(self, name: str, make_ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
         """Start or continue a drive test; return False if no motion of the test remains.
 
-        Raises DriverError.
+        Raises DriverError if the driver rejects the setpoints.
         """
         index = self._context.ports.axes.axes.index(name)
         plays = self._splice_axis(index, make_ramps)
@@ -209,9 +209,9 @@ class Jogger:
         return plays
 
     def set_test_queued(self, is_queued: bool) -> None:
-        """Store whether the setpoints of the whole drive test are queued.
+        """Store whether the complete drive test has been queued.
 
-        If the test is not completely queued, its end is logged as a premature stop.
+        If it is stopped before that, its end is logged as a premature stop.
         """
         self._short = not is_queued
 
@@ -272,7 +272,7 @@ class Jogger:
             self.stop()
 
     def finish_if_at_rest(self) -> bool:
-        """Return whether the jog is at rest; if so, finish and log it."""
+        """Return whether the jog has come to rest. If so, finish and log it."""
         axes = self._context.ports.axes
         horizon = axes.horizon()
         if not is_queue_finished(horizon, axes.now()):
@@ -310,8 +310,8 @@ class Jogger:
     def _splice(self, line: JogLine, ramps: Callable[[float, FloatArray, FloatArray], list[Ramp]]) -> bool:
         """Queue the ramps that ``ramps`` returns for (start time, positions, velocities).
 
-        If a splice was too late, it is retried with a later start. Returns False if there are no ramps.
-        Raises DriverError if the setpoints are rejected.
+        If the driver receives a splice too late, a later start time is tried. Returns False if there are no
+        ramps. Raises DriverError if the setpoints are rejected.
         """
         axes = self._context.ports.axes
         for margin in _MARGINS:
@@ -368,8 +368,8 @@ class _PendingJog(NamedTuple):
 class BlockJogger(Jogger):
     """A jogger that uses the controller's jog function and refuses the same requests as ``Jogger``.
 
-    The controller accepts a jog only after the previous jog has ended. If a key is pressed before this end,
-    the new jog starts afterwards, and only if the key is still pressed.
+    The controller accepts a jog only after the previous one has ended. A jog requested before that starts
+    afterwards, but only if its key is still pressed.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:

@@ -1,4 +1,4 @@
-"""Homing of the axes in order, and touch-off of a tool against a tool setter or probe.
+"""Homing of all axes in sequence, and touch-off of a tool on a tool setter or probe.
 
 The axis stops when the key is released, as in a jog. The touch-off reports the position of the second touch
 with its uncertainty. This module does not change any offset.
@@ -24,7 +24,11 @@ _SETTLING_TIME_S = 1.0  # s that the axes may take to stop before the next axis 
 
 
 class TouchOff:
-    """Touch-off sequence. ``phase`` is the current phase or None; ``last_result`` is the last result."""
+    """Touch-off sequence of one tool on the tool setter.
+
+    ``phase`` is the active phase, or None if no touch-off runs. ``last_result`` is the result of the last
+    touch-off.
+    """
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context = context
@@ -45,7 +49,10 @@ class TouchOff:
         self._failed = ""  # the failure to report when the axis is back
 
     def handle_request(self, command: TouchOffTool, state: MachineState, handwheel_axis: str) -> bool:
-        """Start or renew a touch-off; return whether it is new. Raises DriverError if a driver fails."""
+        """Start a touch-off or renew its lease; return whether it was started.
+
+        Raises DriverError if a driver fails.
+        """
         if command.press == self._ended:
             return False  # the key is still pressed, but its touch-off has ended
         if self.phase is None:
@@ -62,17 +69,20 @@ class TouchOff:
         return False
 
     def cancel_touch_off(self, reason: str) -> None:
-        """Cancel the touch-off for the given reason and stop the axis. Raises DriverError."""
+        """Cancel the touch-off for the given reason and stop the axis.
+
+        Raises DriverError if a driver fails.
+        """
         if self.phase is None:
             return
         self._jogger.stop()
         self._over(reason)
 
     def check_state(self, state: MachineState) -> bool:
-        """Check the machine state and the setter input; return True if a jog runs into the tool setter.
+        """Check the machine state and the setter input; return True if a jog touches the tool setter.
 
         The function is called once per tick. A touch-off ends if the machine leaves the jog state. A jog
-        that hits the setter must stop; the next jog can move away from the setter.
+        that touches the setter must stop; the next jog can move away from it.
         """
         before, self._was_made = self._was_made, self._made
         if self.phase is not None and state is not MachineState.JOG:
@@ -143,7 +153,7 @@ class TouchOff:
         return found or self._find_abort_reason(command) or self._find_travel_refusal(command)
 
     def _find_abort_reason(self, command: TouchOffTool | None = None) -> str:
-        """Return why the touch-off must end, or an empty string.
+        """Return why the touch-off must be canceled, or an empty string if it can continue.
 
         ``command`` is a touch-off that has not started yet.
         """
@@ -169,7 +179,7 @@ class TouchOff:
         return next((why for so, why in reasons if so), "")
 
     def _find_travel_refusal(self, command: TouchOffTool) -> str:
-        """Return why the search would exceed the travel limits, or an empty string.
+        """Return why the search move would exceed the travel limits, or an empty string if it would not.
 
         The full search distance must be available.
         """
@@ -215,7 +225,7 @@ class TouchOff:
         self._move_to_target(self._here)
 
     def _move_to_target(self, position: float) -> bool:
-        """Renew the motion to the target; return whether the axis has settled there at rest."""
+        """Continue the motion to the target; return whether the axis is at rest at the target."""
         context, model, command = self._context, self._model, self._command
         assert model is not None
         axis = context.machine.find_axis(command.axis)
@@ -326,7 +336,10 @@ class Homing:
         self._found_at = 0.0  # time at which the last axis was homed, s
 
     def start_homing(self, name: str) -> str:
-        """Start homing of one axis, or of all axes; return why this is refused, or an empty string."""
+        """Home one axis, or all axes if ``name`` is empty.
+
+        Returns the reason if homing is refused, otherwise an empty string.
+        """
         axes = self._context.machine.axes
         if name and name not in {axis.name for axis in axes}:
             return Message("this machine has no axis {name} to home", name=name)

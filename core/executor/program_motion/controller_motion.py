@@ -1,8 +1,8 @@
-"""Motion by a controller with its own planner, to which as few blocks as possible are sent ahead.
+"""Motion by a controller with its own planner, which receives blocks just before it needs them.
 
-The controller executes all blocks that it has received even if the host fails. A long block is therefore
-sent in parts of a fraction of a second. The parts are on the same line or circle, so the controller does
-not slow down between them.
+The controller executes all blocks that it has received even if TurnDesk fails. Long blocks are therefore
+sent in parts, each lasting a fraction of a second. The parts are on the same line or circle, so the
+controller does not slow down between them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _POSITION_TOLERANCE_MM = 0.01  # mm; the controller reports thousandths
 
 
 class BlockPart(NamedTuple):
-    """A part of a block as a controller operation, with its block and its shortest duration in seconds."""
+    """A part of a block, as a controller operation with its minimum duration in seconds."""
 
     operation: BlockOperation
     block: Block
@@ -63,9 +63,9 @@ class SpindleSpeed(NamedTuple):
 def split_block(
     block: Block, spindle_speed: SpindleSpeed, find_max_speed: Callable[[Block], float] = lambda _: math.inf
 ) -> Iterator[BlockPart]:
-    """Yield the parts of one moving block.
+    """Yield the parts of a block that moves axes.
 
-    The speed is limited to the result of ``find_max_speed``, in mm/s. Raises AlarmError if the block has no
+    ``find_max_speed`` returns the speed limit of a block in mm/s. Raises AlarmError if the block has no
     feed rate or moves axes other than X and Z.
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
@@ -87,7 +87,7 @@ def _limit_operation_speed(
 ) -> BlockOperation:
     """Return the operation with its speed limited to ``fastest``.
 
-    The limits of the controller itself may be higher.
+    The controller's own speed limits may be higher.
     """
     if isinstance(op, RapidOperation):
         return op._replace(rapid_rate=min(op.rapid_rate, fastest))
@@ -191,10 +191,10 @@ class _SurfaceSpeed(NamedTuple):
 
 
 class ControllerMotion:
-    """Motion along a path section, executed by sending blocks to the controller.
+    """Motion along a path section, executed by sending its blocks to the controller.
 
-    It is used on the executor's thread only. Single block takes effect at the end of the last block that
-    has been sent to the controller, at most ``BlockController.max_lead_s`` seconds later.
+    Only the executor's thread uses it. Single block stops at the end of the last block that was sent to the
+    controller, at most ``BlockController.max_lead_s`` seconds later.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -226,7 +226,7 @@ class ControllerMotion:
 
     @property
     def has_section(self) -> bool:
-        """Return whether there is a path section."""
+        """Return whether a path section is active."""
         return self._active
 
     @property
@@ -236,7 +236,7 @@ class ControllerMotion:
 
     @property
     def current_block(self) -> Block | None:
-        """Return the block being executed, or None."""
+        """Return the block being executed, or None if there is none."""
         self._poll_controller()
         return self._shown
 
@@ -256,12 +256,12 @@ class ControllerMotion:
 
     @property
     def last_block(self) -> Block | None:
-        """Return the block being executed, which is the last block at the end of the path section."""
+        """Return the block being executed, which at the end of the path section is its last block."""
         return self.current_block
 
     @property
     def starvation_time_s(self) -> float:
-        """Return minus infinity if the control was inactive too long, otherwise infinity."""
+        """Return minus infinity if the executor paused too long to send blocks, otherwise infinity."""
         return -math.inf if self._dry else math.inf
 
     # --- requests -----------------------------------------------------------------------------------------
@@ -276,7 +276,7 @@ class ControllerMotion:
         self._hand_over()
 
     def resume(self, last_executed_block: Block | None) -> None:  # noqa: ARG002  it always continues where it rests
-        """Resume from rest within the path section, by releasing the hold or sending the next block."""
+        """Resume from rest within the path section: end the feed hold, or send the next block."""
         self._last, self._dry, self._seen = None, False, self._context.now
         if not self._still:
             self._sink.resume()
@@ -305,7 +305,7 @@ class ControllerMotion:
             self._hand_over()
 
     def hold_on_path(self) -> None:
-        """Stop on the path, but finish a thread pass first."""
+        """Stop on the path (feed hold). A threading pass is completed first."""
         if not self._thread:
             self._sink.hold_on_path()
 
@@ -358,7 +358,7 @@ class ControllerMotion:
         self._seconds, self._still, self._dry, self._laid, self._speed = 0.0, False, False, None, None
 
     def _poll_controller(self) -> BlockState:
-        """Return the state of the controller, and remove the blocks that the controller has finished."""
+        """Return the state of the controller, and remove the blocks that it has completed."""
         state = self._sink.state()
         while self._sent and self._sent[0].ticket_number <= state.last_done_ticket:
             done = self._sent.popleft().block_part
@@ -375,9 +375,9 @@ class ControllerMotion:
         return not state.is_in_feed_hold and (bool(self._sent) or not state.is_at_rest)
 
     def _detect_absence(self) -> None:
-        """Detect that the control was inactive for longer than the motion sent ahead lasted.
+        """Detect that the executor paused for longer than the motion that it had sent ahead.
 
-        The motion then does not resume automatically.
+        In this case, the motion does not resume automatically.
         """
         away, self._seen = self._context.now - self._seen, self._context.now
         self._dry = self._dry or (away > _MAX_ABSENCE_S and bool(self._pieces or self._waiting))
@@ -415,10 +415,10 @@ class ControllerMotion:
         return min(self._context.spindle.max_rpm, reach)
 
     def _prepare_css(self, block: Block) -> bool:
-        """Return whether the spindle can follow the radius in this block.
+        """Return whether the spindle can maintain constant surface speed in this block.
 
-        If the speed steps of a spindle depend on its last S word, the spindle is set up at rest for each
-        surface speed. The spindle must then be at speed before any axis moves.
+        If the speed steps of a spindle depend on its last S word, the spindle is prepared at rest for each
+        surface speed. It must then reach its speed before any axis moves.
         """
         surface = _SurfaceSpeed.from_block(block)
         if surface is None or surface == self._laid or math.isinf(self._sink.css_max_rpm):
@@ -451,8 +451,8 @@ class ControllerMotion:
     def _max_block_speed(self, block: Block) -> float:
         """Return the highest speed of a block in mm/s.
 
-        On a line, each axis has its own limit, as in the motion planner. On an arc, the limit is that of
-        the slower axis and of its acceleration.
+        On a line, each axis has its own limit, as in the motion planner. On an arc, both the speed and the
+        acceleration limits of the slower axis apply.
         """
         if block.kind is not BlockKind.ARC:
             return self._sink.get_max_line_speed(block.x - block.x0, block.z - block.z0)
@@ -468,10 +468,10 @@ class ControllerMotion:
         )
 
     def _may_send(self, piece: BlockPart) -> bool:
-        """Return whether this part may be sent now.
+        """Return whether this part may be sent to the controller now.
 
-        Single block limits the number of parts, and so does the time for which the controller could
-        continue without the host.
+        Single block limits the number of parts sent. Another limit is the time for which the controller
+        could continue without TurnDesk.
         """
         if self._still or self._dry or not self._single(piece.block):
             return False

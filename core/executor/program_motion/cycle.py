@@ -1,7 +1,7 @@
 """One cycle: a run of a program, block by block, with single block and feed hold on the path.
 
 A feed hold is requested by the operator, or is caused by a lost spindle, an open guard, an output in the
-wrong state or an empty setpoint queue. The axes stop on their path; in a thread they stop after its
+wrong state or an empty setpoint queue. The axes stop on their path, but in a thread only after its
 pull-out. Before the axes resume, the cycle waits for the spindle.
 """
 
@@ -50,7 +50,7 @@ _SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindlePositioning, ProgramEnd)
 
 
 class HoldController:
-    """Controller that stops and resumes the motion of a cycle. It is used on the executor's thread only."""
+    """Control of feed hold and resume in a cycle. It is used on the executor's thread only."""
 
     def __init__(self, context: MachineContext, motion: PathMotion, standstill: StandstillSequencer) -> None:
         self._context = context
@@ -79,14 +79,14 @@ class HoldController:
 
     @property
     def wait_label(self) -> str:
-        """Return the text of the condition that the resume is waiting for, or an empty string."""
+        """Return the screen text for the condition that delays the resume, or an empty string."""
         return self._spin_up.make_label() if self._spin_up is not None else ""
 
     def stop_motion(self, reason: str = "", source: str = "", code: AlarmCode | None = None) -> MachineState:
         """Stop the motion and return the new state of the machine.
 
-        ``reason`` is a text of the alarm catalog, or a detail for ``code``. If a button was pressed,
-        ``reason`` is empty and ``source`` names the button.
+        ``reason`` is a text of the alarm catalog, or a detail of the alarm ``code``. If a button was
+        pressed, ``reason`` is empty and ``source`` names the button.
         """
         self.hold_reason, self._since = reason, self._context.now
         self._context.show_stop(*(find_hold_code(reason, source) if code is None else (code, reason.lower())))
@@ -102,7 +102,7 @@ class HoldController:
         self._context.show_stop(code, detail)
 
     def start_retract(self, block: Block) -> None:
-        """Stop in a thread that has lost spindle synchronization, so that X can be retracted."""
+        """Stop in a thread that has lost spindle synchronization, and prepare the retract of X."""
         self._context.log_text("thread", "spindle speed lost during threading")
         self._motion.start_retract(block)
         self._retracting = True
@@ -122,7 +122,7 @@ class HoldController:
         return not self._retracting
 
     def resume(self, last_executed_block: Block | None, *, starts_spindle: bool) -> None:
-        """Resume after Cycle Start as soon as a requested spindle is at speed.
+        """Resume after Cycle Start, once a requested spindle is at speed.
 
         ``last_executed_block`` is the last block executed in single block, or None.
         """
@@ -198,7 +198,7 @@ class Cycle:
 
     @property
     def wait_label(self) -> str:
-        """Return the text of the condition that the cycle is waiting for, or an empty string."""
+        """Return the screen text for the condition that the cycle waits for, or an empty string."""
         if self._state is MachineState.HOLD:
             return self._hold.hold_reason
         if self._later is not None:
@@ -250,12 +250,12 @@ class Cycle:
 
     @property
     def _is_tapping(self) -> bool:
-        """Return whether a tap is in its hole; it can leave the hole only while the spindle turns."""
+        """Return whether a tap is in its hole. It can leave the hole only while the spindle turns."""
         block = self.current_block
         return block is not None and (block.in_hole or (block.follows_spindle and self._motion.is_moving))
 
     def _start_pending_hold(self) -> bool:
-        """Start a pending hold when the tap has left its hole; return whether the hold has started."""
+        """Start a pending feed hold once the tap has left its hole; return whether it has started."""
         if self._later is None or self._is_tapping:
             return False
         begin, self._later = self._later, None
@@ -270,7 +270,7 @@ class Cycle:
             self._change(MachineState.STOPPING)
 
     def wait_for_next_cycle(self, label: str) -> None:
-        """Wait after the end of the program until another cycle replaces this cycle."""
+        """Show ``label`` and wait, after the end of the program, until the next cycle replaces this one."""
         self._still.wait_for_next_cycle(label)
 
     def stop_canceled_cycle(self) -> None:
@@ -288,9 +288,9 @@ class Cycle:
         )
 
     def resume(self, *, starts_spindle: bool = False) -> None:
-        """Resume after a hold, single block, M00 or M01.
+        """Resume after a feed hold, single block, M00 or M01.
 
-        If the start turns the spindle on, the cycle waits for the spindle first.
+        If Cycle Start turns the spindle on, the cycle first waits until the spindle is at speed.
         """
         stopped, self._later = self._state, None
         self.message = ""
@@ -303,11 +303,14 @@ class Cycle:
     # --- actions in every tick ----------------------------------------------------------------------------
 
     def update_current_block(self) -> None:
-        """Show the block at the current position, even if the axes passed blocks between two ticks."""
+        """Show the block at the current position, including blocks that were passed between two ticks."""
         self._show_block_at_rest(self._motion.current_block)
 
     def advance_one_tick(self) -> None:
-        """Refill the queue and act once; raises AlarmError, MotionError or DriverError on failure."""
+        """Refill the queue and advance the cycle by one tick.
+
+        Raises AlarmError, MotionError or DriverError on failure.
+        """
         playing = self._motion.current_block if self._motion.is_moving else None
         if playing is not None:
             self._show(playing)
@@ -413,7 +416,10 @@ class Cycle:
         return True
 
     def _check_spindle(self, block: Block) -> None:
-        """Hold the cycle if a feed per revolution has lost the spindle; retract from a thread at once."""
+        """Check the spindle in a block with feed per revolution.
+
+        If its speed is lost, retract from a thread immediately, or hold the cycle in any other block.
+        """
         spindle = self._context.spindle
         if (
             not needs_spindle_at_speed(block)
@@ -433,7 +439,7 @@ class Cycle:
             self.start_feed_hold(spindle.slow_reason or "SPINDLE BELOW HALF COMMANDED SPEED")
 
     def _show_block_at_rest(self, block: Block | None) -> None:
-        """Show the last block reached at rest, because blocks without motion have been executed too."""
+        """Show the last block reached at rest, which may be an executed block without motion."""
         if block is not None and (self.current_block is None or block.n > self.current_block.n):
             self._show(block)
 

@@ -1,7 +1,7 @@
 """Path section: its blocks, its path with speeds, and the plans that fill the setpoint queue.
 
-Only about one second of a plan is queued, followed by a braking tail. The axes therefore stop on the path
-if the queue is not extended.
+Only about one second of a plan is queued, followed by braking to rest (the braking tail). If the queue is
+not extended, the axes therefore stop on the path.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _SPLICE_DELAY_S = 0.02  # s added to the splice time when a plan came too late
 
 
 class SectionProgress(Enum):
-    """The progress of the current path section."""
+    """Progress of the motion along the current path section."""
 
     DONE = "no move is active, or all moves of the path are finished"
     MOVING = "moving"
@@ -58,7 +58,7 @@ class PathSection:
     def append_blocks(self, blocks: Iterable[Block], reached_distance: float = -np.inf) -> None:
         """Append blocks to the path section.
 
-        ``reached_distance`` is described in ``PathBuilder.add_blocks``.
+        ``reached_distance`` has the same meaning as in ``PathBuilder.add_blocks``.
         """
         new = list(blocks)
         self._builder.add_blocks(new, reached_distance)
@@ -67,7 +67,7 @@ class PathSection:
             self._blocks[block.n] = block
 
     def find_block(self, number: int) -> Block | None:
-        """Return the block with this number, or None."""
+        """Return the block with the given number, or None if it is not in the path section."""
         return self._blocks.get(number)
 
     def list_following_blocks(self, block_number: int) -> list[Block]:
@@ -81,12 +81,12 @@ class PathSection:
 
     @property
     def end_distance(self) -> float:
-        """Return the distance along the path at the end of the path."""
+        """Return the distance along the path at which the path ends."""
         return float(self._builder.build_path().joint_distances[-1])
 
     @property
     def last_block(self) -> Block | None:
-        """Return the block with the highest number, or None."""
+        """Return the block with the highest number, or None if the path section has no blocks."""
         return self._blocks[max(self._blocks)] if self._blocks else None
 
     def get_block_end_distance(self, number: int) -> float:
@@ -106,9 +106,9 @@ class PathSection:
     def scale_path(self, overrides: OverrideFactors, last_block_number: int | None) -> MotionPath:
         """Return the path with its speeds scaled by the overrides.
 
-        After block ``last_block_number`` the speeds are 0, so that a plan stops there. The limits do not
-        depend on the overrides. A new plan that starts during motion therefore meets the limits of the plan
-        that it replaces.
+        After block ``last_block_number`` the speeds are 0, so that a plan stops there. Acceleration and
+        other limits do not depend on the overrides. A plan that replaces another one during motion
+        therefore starts within its limits.
         """
         path = self._builder.build_path()
         if last_block_number is None and overrides == (1.0, 1.0, 1.0):
@@ -151,9 +151,9 @@ class PathSection:
 
 
 class QueuedPlan(NamedTuple):
-    """A plan in the queue, which is executed from the time ``start_time_s`` on.
+    """A plan in the setpoint queue, executed from the time ``start_time_s`` on.
 
-    ``time_origin_s`` is the time at which the plan's own time is zero.
+    ``time_origin_s`` is the time that corresponds to zero in the plan's own time.
     """
 
     start_time_s: float
@@ -186,7 +186,7 @@ class QueuedPlans:
         return self._tracks[-1] if self._tracks else None
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
-        """Return the plan that is executed at ``time_s``, or the first plan before its start."""
+        """Return the plan executed at ``time_s``, or the first plan if ``time_s`` is before its start."""
         for track in reversed(self._tracks):
             if track.start_time_s <= time_s:
                 return track
@@ -200,7 +200,10 @@ class QueuedPlans:
 
 
 class PlanQueue:
-    """Setpoint queue with the rest of the current plan. It is used on the executor's thread only."""
+    """Setpoint queue, with the part of the current plan that is not queued yet.
+
+    Only the executor's thread uses it.
+    """
 
     def __init__(self, axes: AxisSink, lateness: TickLateness) -> None:
         self._axes = axes
@@ -218,7 +221,7 @@ class PlanQueue:
 
     @property
     def starvation_time_s(self) -> float:
-        """Return the start time of the braking tail if the queue is not extended.
+        """Return the time at which braking starts if the queue is not extended.
 
         The result is inf if the whole plan is queued.
         """
@@ -226,15 +229,15 @@ class PlanQueue:
 
     @property
     def last_plan(self) -> QueuedPlan | None:
-        """Return the last plan in the queue, or None."""
+        """Return the last plan in the queue, or None if the queue is empty."""
         return self._tracks.last_plan
 
     def get_earliest_splice_time(self, now: float) -> float:
-        """Return the earliest time from which a plan that is started at ``now`` can change the queue."""
+        """Return the earliest time at which a plan can change the queue if planning starts at ``now``."""
         return now + self._axes.commit + 1.5 * self._cost
 
     def get_latest_splice_time(self, now: float) -> float:
-        """Return the splice time of a plan that succeeds only on the last attempt."""
+        """Return the splice time of the last attempt, if all earlier attempts fail."""
         return self.get_earliest_splice_time(now) + _MAX_ATTEMPTS * _SPLICE_DELAY_S
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
@@ -249,9 +252,9 @@ class PlanQueue:
     def splice_plan(self, make_plan: Callable[[float], MotionProfile], *, as_soon_as_possible: bool) -> None:
         """Make a plan that starts at a time that can still be changed, and splice it into the queue.
 
-        If the plan is too late, another attempt is made with a later time. If ``as_soon_as_possible`` is
-        False, the plan starts at the end of the queued motion, or 0.4 s before the end of the current plan
-        if this is earlier. Raises MotionError or DriverError.
+        If the plan is too late, a later time is tried. If ``as_soon_as_possible`` is False, the plan starts
+        at the end of the queued motion, or 0.4 s before the end of the current plan if this is earlier.
+        Raises MotionError if planning fails, or DriverError if the driver rejects the plan.
         """
         for attempt in range(_MAX_ATTEMPTS):
             began = self._axes.now()
@@ -272,7 +275,7 @@ class PlanQueue:
             return
 
     def extend_queue(self, now: float) -> bool:
-        """Extend the queue from the current plan; return False if it is too late to extend the queue."""
+        """Queue more of the current plan; return False if it is too late for this."""
         if (
             self._profile is None
             or self._queued_to - now >= self._lateness.lookahead_s

@@ -1,7 +1,7 @@
 """Motion by setpoints: one path section or thread pass at a time, from rest to rest.
 
-Feed hold, override and single block use the same method: a new plan starts from the current state with the
-current overrides and switches, and is spliced into the queue.
+Feed hold, override changes and single block use the same method. A new plan is made from the current state
+with the current overrides and switches, and is spliced into the queue.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class SetpointMotion:
 
     @property
     def has_section(self) -> bool:
-        """Return whether there is a path section or a thread pass."""
+        """Return whether a path section or a thread pass is active."""
         return self._section is not None or self._pass is not None
 
     @property
@@ -83,7 +83,7 @@ class SetpointMotion:
 
     @property
     def is_complete(self) -> bool:
-        """Return whether no block of the path section remains to be started."""
+        """Return whether every block of the path section has been started."""
         left = self._context.switches.single_block and self._has_steps_left()
         return self._is_fully_queued() and not left
 
@@ -96,7 +96,7 @@ class SetpointMotion:
 
     @property
     def starvation_time_s(self) -> float:
-        """Return the start time of the braking tail if the queue is not extended.
+        """Return the time at which braking starts if the queue is not extended.
 
         The result is inf if all motion is queued.
         """
@@ -107,8 +107,8 @@ class SetpointMotion:
     def start_section(self, blocks: list[Block]) -> None:
         """Start a new path section, or a thread pass that follows the spindle, from rest.
 
-        Raises AlarmError if the spindle does not turn or is not measured before a thread pass, MotionError
-        if a block cannot be planned, and DriverError if a driver fails.
+        Raises AlarmError if a thread pass finds the spindle stopped or its angle not measured. Raises
+        MotionError if a block cannot be planned, and DriverError if a driver fails.
         """
         self._single_from = None
         if blocks[0].kind is BlockKind.THREAD:
@@ -183,7 +183,7 @@ class SetpointMotion:
         return self._pass is not None and not self._pass.is_fully_queued
 
     def start_retract(self, block: Block) -> None:
-        """Stop in a thread that has lost spindle synchronization, so that X can be retracted."""
+        """Stop in a thread that has lost spindle synchronization, and prepare the retract of X."""
         self._retract = ThreadRetract.from_block(block, self._following_blocks(block), self._context.spindle)
         self.stop_at_once()
 
@@ -210,9 +210,9 @@ class SetpointMotion:
         self._section.append_blocks(blocks)
 
     def _begin_thread(self, blocks: list[Block]) -> None:
-        """Start a thread pass, inside the driver if it has a gear, otherwise by setpoints over time.
+        """Start a thread pass, by electronic gearing if the driver supports it, otherwise by setpoints.
 
-        Overrides, holds and single block take effect at the end of the pass.
+        Overrides, feed hold and single block take effect at the end of the pass.
         """
         self._clear()
         gear, angle = self._context.ports.gear, self._context.spindle.angle
@@ -229,7 +229,7 @@ class SetpointMotion:
     def _present_overrides(self) -> OverrideFactors:
         """Return the current overrides.
 
-        A rapid never exceeds its programmed rate. Feed per revolution (G95) follows the spindle override.
+        The rapid override is never greater than 1. Feed per revolution (G95) follows the spindle override.
         """
         feed = self._context.feed_override
         return OverrideFactors(feed, min(feed, 1.0), round(self._context.spindle.override, 2))
@@ -246,7 +246,8 @@ class SetpointMotion:
     def _splice(self, overrides: OverrideFactors, last: int | None, *, soon: bool = True) -> None:
         """Plan from the current state to the end of the path section, or to the end of block ``last``.
 
-        If ``soon`` is True, the plan takes effect as soon as possible, otherwise after the queued motion.
+        If ``soon`` is True, the plan takes effect as soon as possible, otherwise after the motion that is
+        already queued.
         """
         if self._pass is not None:
             self._pass.restart_pass()
@@ -331,7 +332,7 @@ class SetpointMotion:
         )
 
     def _finish_step(self, last: int) -> bool:
-        """Return whether block ``last`` has ended at rest; if so, record it as the current block."""
+        """Return whether block ``last`` has ended at rest; if so, make it the current block."""
         if self._pass is not None:
             return self._pass.is_fully_queued
         assert self._section is not None
@@ -345,9 +346,9 @@ class SetpointMotion:
         return True
 
     def _has_steps_left(self) -> bool:
-        """Return whether blocks remain after the block at which the axes are at rest.
+        """Return whether blocks remain after the block at whose end the axes are at rest.
 
-        Blocks without length count too.
+        Blocks of zero length are included.
         """
         if self._section is None:
             return False

@@ -18,9 +18,9 @@ _MIN_READINGS = 8  # readings
 class SpindleAnglePredictor:
     """Predictor of the spindle angle by a cubic fit to the latest encoder readings.
 
-    Angles are in signed revolutions and times are in seconds. With one reading every 10 ms and 4096 counts
-    per revolution, the angle predicted 45 ms ahead is accurate to 0.25 degree, or to 0.2 degree if the
-    speed varies by 2 % in 2 s.
+    Angles are in signed revolutions and times are in seconds. With 4096 counts per revolution and a reading
+    every 10 ms, the error of a prediction 45 ms ahead is at most 0.25 degree. It is 0.2 degree if the speed
+    varies by 2 % in 2 s.
     """
 
     def __init__(self) -> None:
@@ -49,7 +49,7 @@ class SpindleAnglePredictor:
 
     @property
     def is_predictable(self) -> bool:
-        """Return whether there are enough recent readings for a prediction.
+        """Return whether enough recent readings are available for a prediction.
 
         The result is False immediately after an interruption of the control, and always without an encoder.
         """
@@ -73,9 +73,9 @@ class SpindleAnglePredictor:
         return base + turns + speed * (u - near), speed
 
     def predict_turning_angle(self, time_s: float) -> tuple[float, float]:
-        """Return the result of ``predict_angle`` for a turning spindle.
+        """Return (revolutions, revolutions per second) of a turning spindle at ``time_s``.
 
-        Raises AlarmError if the spindle is stopped or not measured.
+        Raises AlarmError if the spindle is stopped or its angle is not measured.
         """
         state = self.predict_angle(time_s)
         if state is None:
@@ -92,11 +92,11 @@ class SpindleAnglePredictor:
 
 
 def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
-    """Return the coefficients of the least-squares polynomial through ``y`` at ``u``, constant term first.
+    """Return the coefficients of the least-squares polynomial for values ``y`` at points ``u``.
 
-    The method uses polynomials that are orthogonal on these points (Forsythe 1957), each computed from the
-    two previous ones. For 20 readings it takes a tenth of the time of a matrix solver and tolerates
-    readings that are close together.
+    The constant term is first. The method uses polynomials that are orthogonal on these points (Forsythe
+    1957), each computed from the two previous ones. For 20 readings it takes a tenth of the time of a
+    matrix solver, and it tolerates readings that are close together.
     """
     shape = [0.0] * (degree + 1)
     factors, factors_before = [1.0], [0.0]

@@ -56,8 +56,8 @@ class StandstillWait:
     def is_over(self, now: float) -> bool:
         """Return whether the wait is over.
 
-        Raises AlarmError if the time limit has passed. Errors of the condition are also raised: the
-        condition may operate the collet or a drive, and then raises DriverError or AlarmError.
+        Raises AlarmError if the time limit has passed. The condition can operate the collet or a drive, and
+        may then raise DriverError or AlarmError.
         """
         if self.is_condition_met(now - self.start_time_s):
             return True
@@ -78,9 +78,10 @@ def make_position_wait(context: MachineContext) -> StandstillWait:
 
 
 def make_spindle_speed_wait(context: MachineContext, *, is_for_thread: bool = False) -> StandstillWait:
-    """Return a ``StandstillWait`` for the spindle speed and, before a thread, for the encoder.
+    """Return a ``StandstillWait`` for the spindle to reach its speed.
 
-    The wait has no time limit while the operator prevents the spindle from turning.
+    Before a thread, the wait also includes the encoder. It has no time limit while the operator prevents
+    the spindle from turning.
     """
     spindle = context.spindle
     wait = StandstillWait(
@@ -104,10 +105,10 @@ def make_spindle_speed_wait(context: MachineContext, *, is_for_thread: bool = Fa
 
 
 def execute_block_action(block: Block, context: MachineContext) -> StandstillWait | None:
-    """Execute the action of a block; return its ``StandstillWait``, or None if no wait is needed.
+    """Execute the action of a block; return the wait that it requires, or None if it requires none.
 
-    The cycle handles stops and the end of the program. Offsets, shifts and presets are already included in
-    the blocks. Raises AlarmError or DriverError if the action fails.
+    The cycle itself handles stops and the end of the program. Offsets, shifts and presets are already
+    included in the blocks. Raises AlarmError or DriverError if the action fails.
     """
     match block.action:
         case SpindleRun():
@@ -155,7 +156,10 @@ def _start_spindle(block: Block, context: MachineContext) -> None:
 
 
 def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
-    """Return a ``StandstillWait`` until the spindle stops, before a tool or the operator approaches."""
+    """Return a ``StandstillWait`` that ends when the spindle is stopped.
+
+    It ensures that a tool or the operator approaches only a stopped spindle.
+    """
     spindle, limit = context.spindle, context.machine.spindle.timeout
     return StandstillWait(
         lambda: "SPINDLE STOP", lambda _: spindle.is_stopped, context.now, limit, "ignores-stop"
@@ -182,7 +186,7 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
 
 
 def _orient_spindle(context: MachineContext, angle: float, direction: int) -> StandstillWait:
-    """Return a wait until the spindle is stopped and its drive holds it at the angle."""
+    """Return a ``StandstillWait`` that ends when the drive holds the stopped spindle at ``angle``."""
     spindle, model = context.spindle, context.machine.spindle
     if spindle.orientation.angle_deg != angle and start_conditions.find_collet_refusal(context):
         raise AlarmError(
@@ -217,9 +221,10 @@ def _orient_spindle(context: MachineContext, angle: float, direction: int) -> St
 
 
 def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
-    """Open or close the collet and return the wait for this motion.
+    """Open or close the collet and return the ``StandstillWait`` for its motion.
 
-    If the machine file forbids unclamping at speed, opening waits until the spindle has stopped.
+    If the machine file forbids opening the collet while the spindle turns, opening waits until the spindle
+    has stopped.
     """
     waits = not closed and not context.machine.interlocks.unclamp_while_turning
     if waits and context.spindle.is_requested:
@@ -248,7 +253,7 @@ def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
 
 
 class NextAction(Enum):
-    """The next action of a cycle at rest."""
+    """Action that a cycle at rest performs next."""
 
     WAIT = auto()  # nothing, because a wait is active
     DETERMINE_AGAIN = auto()  # ask again, because a wait has started or ended
@@ -263,7 +268,7 @@ class StandstillSequencer:
     """Sequencer that determines the next action of a cycle at rest.
 
     ``has_executed_block`` is True if a block was executed since the last stop. ``in_hole`` returns whether
-    a tap is in its hole, where single block does not stop.
+    a tap is in its hole, in which case single block does not stop.
     """
 
     def __init__(self, context: MachineContext, feed: BlockReadAhead, in_hole: Callable[[], bool]) -> None:
@@ -274,7 +279,7 @@ class StandstillSequencer:
 
     @property
     def wait_label(self) -> str | None:
-        """Return the text of the current wait, or None if there is no wait.
+        """Return the screen text of the current wait, or None if the cycle is not waiting.
 
         The text of a short wait is an empty string.
         """

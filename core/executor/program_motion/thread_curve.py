@@ -1,9 +1,9 @@
-"""Curve of X and Z along a chain of thread blocks as functions of s (spindle revolutions · lead).
+"""Curve of X and Z along a chain of thread blocks, over the parameter s.
 
-In a thread of one block, Z is proportional to s. In a chain, the lead changes between blocks, and with G34
-and G35 also within a block. An axis cannot change its speed at once. Around each joint, both axes therefore
-change to the next lead over several revolutions, enough for half of their acceleration at the commanded
-speed.
+s is the number of spindle revolutions times the lead. In a thread of one block, Z is proportional to s. In
+a chain, the lead changes between blocks, and with G34 and G35 also within a block. An axis cannot change
+its speed at once. At each junction of two blocks, both axes therefore change to the next lead over several
+revolutions, which requires half of their acceleration at the commanded speed.
 """
 
 from __future__ import annotations
@@ -29,9 +29,10 @@ _SAME_POINT_TOLERANCE = 1e-9
 
 
 class ThreadCurve(NamedTuple):
-    """Positions of X and Z in machine coordinates at the knots ``s_mm``, all in mm; the first knot is 0.
+    """Positions of X and Z in machine coordinates at the curve parameters ``s_mm``, all in mm.
 
-    The curve is linear between the knots and continues linearly after the last one.
+    The first ``s_mm`` is 0. The curve is linear between these points and continues linearly after the last
+    one.
     """
 
     s_mm: FloatArray
@@ -83,7 +84,7 @@ def count_spindle_revolutions(block: Block) -> float:
 
 
 def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
-    """Return the curve of a chain of threads; the lead of the first block defines the scale of s."""
+    """Return the curve of a chain of thread blocks; s is scaled by the lead of the first block."""
     first = blocks[0]
     unit = first.feed - 0.5 * first.growth * count_spindle_revolutions(first)
     s, x, z = [0.0], [first.x0 + first.offset_x], [first.z0 + first.offset_z]
@@ -114,7 +115,7 @@ def _chord_points(block: Block) -> list[tuple[float, float]]:
 def _round_joints(
     raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits
 ) -> ThreadCurve:
-    """Return the curve with each joint rounded where the axes cannot follow the sharp joint.
+    """Return the curve with each junction of two blocks rounded where the axes cannot follow it.
 
     ``speed`` is the speed along s, in mm/s.
     """

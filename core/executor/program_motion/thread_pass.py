@@ -1,9 +1,9 @@
-"""Thread pass that follows the measured spindle angle, by repeated planning of setpoints or by a gear.
+"""Thread pass that follows the measured spindle angle, by setpoints or by electronic gearing.
 
 The axis is in step if s = lead · (revolutions - index), where s is the distance along Z from the start of
 the pass and the encoder counts the revolutions. Every pass therefore enters the thread at the same angle at
-any speed. The queue always contains the complete pass with pull-out and stop, based on the predicted
-spindle angle. Each tick corrects the queue from one commit time ahead.
+any speed. With setpoints, the queue always contains the complete pass with pull-out and stop, based on the
+predicted spindle angle. Each tick corrects the queue from one commit time ahead.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _START_ERROR_CODES = {"late", "broken-path"}  # error codes of a driver if the p
 
 
 class SpindlePass:
-    """A thread pass that follows the spindle, with the largest deviation between axis and spindle."""
+    """A thread pass that follows the spindle, and records the largest deviation from it."""
 
     def __init__(
         self,
@@ -77,7 +77,7 @@ class SpindlePass:
         return not self._stopped
 
     def detect_lost_step(self) -> bool:
-        """Return whether axis and spindle deviate too much for a good thread.
+        """Return whether the axis has lost step with the spindle, so that the thread may be bad.
 
         The result is True only once per pass.
         """
@@ -169,7 +169,7 @@ class ThreadPass(SpindlePass):
         return True
 
     def hold_pass(self) -> None:
-        """Cancel a pass that has not started to move. A pass that already moves is finished."""
+        """Cancel the pass if it has not started to move. A pass that already moves is completed."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _BRAKING_DELAY_S)
         if self._stopped or t >= self._begins[0]:
             return
@@ -210,16 +210,19 @@ class ThreadPass(SpindlePass):
         self._leaves, self._ends = leaves, _end(segments)
 
     def _plan_run_up(self, t: float) -> Phases | None:
-        """Return a wait and an acceleration to the thread line as phases, or None if it is too late."""
+        """Return the phases of a wait and an acceleration that bring the axis in step with the spindle.
+
+        The result is None if it is too late to start.
+        """
         starts, v = self._begins = self._find_start()
         if starts < t:
             return None
         return [(starts - t, 0.0), (v / self._ramp, self._ramp)]
 
     def _plan_blend(self, t: float, s: float, v: float) -> Phases | None:
-        """Return two phases that lead to the thread line without reversing, or None.
+        """Return two phases that bring the axis back in step with the spindle without reversing.
 
-        The result is None if there is no room for the phases.
+        The result is None if the remaining distance is too short.
         """
         path, time = self._path, _BLEND
         while time <= _MAX_CORRECTION_S:
@@ -237,7 +240,7 @@ class ThreadPass(SpindlePass):
         return None
 
     def _target(self, t: float) -> tuple[float, float, Phases]:
-        """Return the required s and speed at time ``t``, and the rest of the run-up at this time."""
+        """Return the required s and speed at time ``t``, and the phases that remain of the run-up."""
         starts, v = self._begins
         into = t - starts
         if into * self._ramp < v:
@@ -268,9 +271,9 @@ class ThreadPass(SpindlePass):
         return self._sign * state[0], self._sign * state[1]
 
     def _measure(self, now: float) -> None:
-        """Record the deviation between setpoints and spindle when the axis is at speed.
+        """Record the deviation of the setpoints from the spindle when the axis is at speed.
 
-        The deviation is a multiple of the lead.
+        The deviation is in revolutions.
         """
         s, v = self._demand(now)
         turns, speed = self._spindle_state(now)
@@ -288,12 +291,12 @@ def _end(segments: MotionSegments) -> float:
 
 
 class GearedThreadPass(SpindlePass):
-    """A thread pass that is planned once as a cam, along which the driver's axes follow the spindle.
+    """A thread pass that is planned as a cam, along which the driver's axes follow the spindle.
 
-    The axis is in step if s = lead · revolutions, counted from an index pulse that is selected when the
-    pass starts. Run-up, pull-out and stop are on the cam too. They depend on the spindle speed only because
-    they must stay within the axis limits. ``start_pass`` and ``restart_pass`` raise AlarmError if the
-    spindle does not turn or has no encoder, and DriverError if the moves cannot be queued in time.
+    The axis is in step if s = lead · revolutions, counted from the index pulse that is selected at the
+    start. The cam also contains run-up, pull-out and stop; these depend on the spindle speed only because
+    of the axis limits. ``start_pass`` and ``restart_pass`` raise AlarmError if the spindle does not turn or
+    has no encoder, and DriverError if the moves cannot be queued in time.
     """
 
     def __init__(
@@ -317,7 +320,7 @@ class GearedThreadPass(SpindlePass):
         return self._axes.horizon()
 
     def get_block(self, _now: float) -> Block:
-        """Return the block being executed, regardless of the time."""
+        """Return the block being executed; the given time is not used."""
         geared = self._gear.geared()
         if geared is None:
             return self.blocks[0] if self._stopped else self.blocks[-1]
@@ -352,7 +355,7 @@ class GearedThreadPass(SpindlePass):
             self._replan_for_speed(speed, geared)
 
     def hold_pass(self) -> None:
-        """Cancel a pass that has not started to move. A pass that already moves is finished."""
+        """Cancel the pass if it has not started to move. A pass that already moves is completed."""
         t = self._axes.now() + self._axes.commit + _CHANGE_LEAD_S
         geared = self._gear.geared()
         if self._stopped or geared is None or self._reachable_position(geared, t) >= -self._ramp:
@@ -442,7 +445,7 @@ class GearedThreadPass(SpindlePass):
         self._leaves, self._speed = leaves, speed
 
     def _path_per_revolution(self, speed: float) -> ThreadPath:
-        """Return the path with its limits converted to limits per revolution.
+        """Return the path with its limits converted from seconds to spindle revolutions.
 
         The path ends where it no longer follows the spindle.
         """

@@ -1,4 +1,4 @@
-"""Path of one thread pass: s along Z from the start, X as a function of s, and the exit.
+"""Path of one thread pass: the distance s along Z, X as a function of s, and the exit.
 
 Plans are lists of phases (seconds, acceleration). Units are mm and seconds, X is a radius, and signs are
 those of the machine.
@@ -36,13 +36,13 @@ _INCH = 25.4  # mm
 class ThreadPath(NamedTuple):
     """The path of a thread pass in machine coordinates.
 
-    The thread starts at ``x z`` and has the ``length_mm`` along Z in the direction ``z_direction`` (±1). X
-    changes by ``x_slope`` per unit of s. Then X moves to ``retract_x_mm`` while Z continues in step with
-    the spindle by ``exit_length_mm``. If ``exit_length_mm`` is 0, X moves at ``rapid_speed`` with Z at
-    rest. ``acceleration`` applies along the thread; ``x_acceleration`` and ``z_acceleration`` are the
-    accelerations of the axes. A chain of threads has a ``curve``, whose s is the number of revolutions
-    times ``lead_mm``. ``x_slope`` and ``end_lead`` are then the changes of X and Z per unit of s at the end
-    of the curve.
+    - The thread starts at ``x z`` and has ``length_mm`` along Z in the direction ``z_direction`` (±1). X
+      changes by ``x_slope`` per unit of s.
+    - X then moves to ``retract_x_mm`` while Z continues in step with the spindle by ``exit_length_mm``.
+      If this length is 0, X moves at ``rapid_speed`` with Z at rest.
+    - ``acceleration`` applies along the thread, ``x_acceleration`` and ``z_acceleration`` to the axes.
+    - A chain of threads has a ``curve`` with s = revolutions · ``lead_mm``. ``x_slope`` and ``end_lead``
+      are then the changes of X and Z per unit of s at its end.
     """
 
     x: float
@@ -63,7 +63,7 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def from_blocks(cls, blocks: Sequence[Block], limits: MotionLimits) -> ThreadPath:
-        """Return the path of a pass from its blocks: the thread and its pull-out, if any."""
+        """Return the path of a pass from its blocks, which are the thread and an optional pull-out."""
         first, out = blocks[0], blocks[-1]
         cut = [first, *(block for block in blocks[1:] if block.continues)]
         length = abs(first.z - first.z0)
@@ -91,7 +91,10 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def _from_chain(cls, cut: Sequence[Block], last: Block, limits: MotionLimits) -> ThreadPath:
-        """Return the path of a chain of threads. ``last`` is the pull-out, or without one the last block."""
+        """Return the path of a chain of threads.
+
+        ``last`` is the pull-out, or the last thread block if there is no pull-out.
+        """
         first = cut[0]
         curve, (ax, az) = build_thread_curve(cut, limits), limits.amax[:2]
         _, _, slope, along = curve.evaluate_at(curve.length_mm)
@@ -127,7 +130,7 @@ class ThreadPath(NamedTuple):
         return (z - self.z) * self.z_direction, z_velocity * self.z_direction
 
     def find_full_depth_end(self, speed: float) -> float:
-        """Return the value of s up to which a pass at ``speed`` cuts only the thread itself."""
+        """Return the s up to which a pass at ``speed`` is within the thread, before it exits or brakes."""
         return min(
             self.length_mm, self.length_mm + self.exit_length_mm - 0.5 * speed * speed / self.z_acceleration
         )
@@ -193,7 +196,7 @@ class ThreadPath(NamedTuple):
         return _axis_motion(self.z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
     def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> MotionSegments:
-        """Return the motion of both axes as common phases of constant acceleration."""
+        """Return the motion of both axes, divided into common phases of constant acceleration."""
         joints = np.unique(np.concatenate([x.times_s, z.times_s]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _SHORT_TIME_S])]
         starts, dt = joints[:-1], np.diff(joints)
@@ -218,10 +221,10 @@ def _joints(phases: Phases) -> FloatArray:
 
 
 class _AxisMotion(NamedTuple):
-    """The motion of one axis.
+    """The motion of one axis in n phases of constant acceleration.
 
-    ``times_s``, ``positions`` and ``velocities`` are the times, positions and speeds at n + 1 joints.
-    ``accelerations`` contains the n accelerations between the joints.
+    ``times_s``, ``positions`` and ``velocities`` are the values at the n + 1 ends of the phases.
+    ``accelerations`` contains the acceleration of each phase.
     """
 
     times_s: FloatArray
@@ -230,7 +233,7 @@ class _AxisMotion(NamedTuple):
     accelerations: FloatArray
 
     def append_phases(self, p: float, v: float, phases: Phases) -> _AxisMotion:
-        """Return the motion with phases appended that start from its final position and speed."""
+        """Return the motion extended by phases that start from position ``p`` and speed ``v``."""
         more = _axis_motion(p, v, phases)
         return _AxisMotion(
             np.concatenate([self.times_s[:-1], self.times_s[-1] + more.times_s]),
@@ -252,7 +255,7 @@ def _motion_before(track: _AxisMotion, end: float) -> _AxisMotion:
 
 
 def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tuple[_AxisMotion, _AxisMotion]:
-    """Return the motion of X and Z along a curve for phases of s."""
+    """Return the motions of X and Z along a curve that result from the given phases of s."""
     t, tracks = 0.0, (list[tuple[float, ...]](), list[tuple[float, ...]]())
     for whole, acc in phases:
         for dt in _knot_durations(curve, s, v, whole, acc):
@@ -271,7 +274,7 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
 
 
 def _knot_durations(curve: ThreadCurve, s: float, v: float, duration: float, acc: float) -> list[float]:
-    """Return the durations of the parts of a phase, which is divided at the knots of the curve."""
+    """Return the durations of the parts of a phase, which is divided at the points of the curve."""
     end = s + (v + 0.5 * acc * duration) * duration
     gone = curve.s_mm[(curve.s_mm > s + 1e-9) & (curve.s_mm < end - 1e-9)] - s
     root = np.sqrt(np.maximum(v * v + 2.0 * acc * gone, 0.0))
@@ -342,8 +345,8 @@ class ThreadRetract(NamedTuple):
     """The retract from a thread that has lost spindle synchronization.
 
     The axes stop along the thread, and then X moves. ``retract_x_mm`` is the X of the programmed pull-out
-    in machine coordinates. ``is_cutting`` is True if the tool was still in the thread itself. ``reason`` is
-    the fault of the spindle, for the operator.
+    in machine coordinates. ``is_cutting`` is True if the tool was cutting the thread and not in its
+    pull-out. ``reason`` is the spindle fault, as a text for the operator.
     """
 
     block: Block

@@ -26,9 +26,8 @@ StopStep = tuple[str, Callable[[], None]]
 class SafeStop:
     """The steps of a safe stop.
 
-    ``run_steps`` runs all steps, and ``retry_failed_steps`` repeats failed steps.
-
-    No exception except KeyboardInterrupt is passed to the caller.
+    ``run_steps`` runs all steps, and ``retry_failed_steps`` repeats the steps that failed. No exception
+    except KeyboardInterrupt is passed to the caller.
     """
 
     def __init__(self, context: MachineContext) -> None:
@@ -39,7 +38,7 @@ class SafeStop:
 
     @property
     def failed_steps_text(self) -> str:
-        """Return the names of the steps that failed more than once as text, or an empty string."""
+        """Return the names of the steps that failed repeatedly as text, or an empty string."""
         return ", ".join(name for name, _ in self._failed) if self._tries > 1 else ""
 
     def run_steps(self, reaction: Reaction) -> None:
@@ -63,7 +62,7 @@ class SafeStop:
         self._carry_out(steps)
 
     def retry_failed_steps(self) -> None:
-        """Repeat failed steps ten times per second.
+        """Repeat the failed steps at intervals of 0.1 s.
 
         The function is called once per tick.
         """
@@ -71,7 +70,7 @@ class SafeStop:
             self._carry_out(self._failed)
 
     def retry_last_time(self) -> None:
-        """Repeat failed steps a last time, and switch off the drives if they cannot be braked."""
+        """Repeat the failed steps a last time. Switch off the drives if the axes cannot be braked."""
         if self._failed:
             self._carry_out(self._failed)
         if any(name == _AXES_STEP_NAME for name, _ in self._failed):

@@ -1,12 +1,12 @@
-"""Supervision in every tick: following error, standstill, drives, collet, outputs, driver host.
+"""Supervision in each tick: following error, standstill, drives, collet, outputs and driver host.
 
-A driver host that receives no data stops the spindle and switches off the outputs. A terminal, a module or
-a controller may do the same. If an output changes without a command of the program, the cycle enters feed
-hold, and the part in progress is not counted. No axis feeds while an output differs from its command. If a
-start will turn an output on again, this is announced first.
+A driver host that receives no data stops the spindle and switches off the outputs; a terminal, a module or
+a controller may do the same. If an output changes without a command, the cycle enters feed hold, and the
+part is not counted. No axis feeds while an output differs from its command. If a start will turn an output
+on again, this is announced first.
 
-The drives supervise themselves too, with one window for all speeds. The window in this module is narrower
-and also applies at rest. ``spindle_control`` supervises the spindle.
+The drives also supervise the following error, with one window for all speeds. The window in this module is
+narrower and also applies at rest. ``spindle_control`` supervises the spindle.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _NO_DATA_TIMEOUT_S = 0.25  # s without axis data before a driver must report a f
 
 
 class FollowingErrorWatch:
-    """Supervision of the position of all axes, at rest and in motion, with and without power.
+    """Supervision of the position of all axes, at rest and in motion, with drives on or off.
 
     ``check_sample`` is called once per tick.
     """
@@ -53,7 +53,7 @@ class FollowingErrorWatch:
     def check_sample(self, sample: AxisSample, *, is_unpowered: bool) -> None:
         """Check a sample and raise AlarmError for the first axis that is out of position.
 
-        If ``is_unpowered`` is True, the drives are off without a fault, so that no axis should move.
+        If ``is_unpowered`` is True, the drives are off without a fault, and no axis should move.
         """
         if sample.enabled is not self._enabled:
             self._enabled = sample.enabled
@@ -71,13 +71,16 @@ class FollowingErrorWatch:
                 one.check_unrequested_motion(actual, at_rest=not sample.moving and is_unpowered and homed)
 
     def reset_supervision(self) -> None:
-        """Reset the supervision because the power has changed or an alarm was acknowledged."""
+        """Reset the supervision after a change of drive power or the acknowledgment of an alarm."""
         for one in self._axes:
             one.clear_samples()
 
 
 class _AxisWatch:
-    """Supervision of one axis, based on the times of the samples, so that a late tick has no effect."""
+    """Supervision of the position of one axis.
+
+    It uses the times of the samples, so that a late tick has no effect.
+    """
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
@@ -150,7 +153,7 @@ class _AxisWatch:
         self._since.pop("rest", None)
 
     def check_unrequested_motion(self, actual: float, *, at_rest: bool) -> None:
-        """Raise AlarmError if the axis moves although it should be at rest and no setpoint controls it."""
+        """Raise AlarmError if an axis that should be at rest moves without a setpoint."""
         axis = self._axis
         if not at_rest:
             self.clear_rest_position()
@@ -174,7 +177,7 @@ class _AxisWatch:
     def _encoder(self, demand: float, actual: float) -> None:
         """Raise AlarmError if the axis is commanded to move but its encoder does not count.
 
-        In this case the axis is jammed, or its position is unknown.
+        Either the axis is jammed, or its encoder has failed and its position is unknown.
         """
         axis, (since, sent_from, read) = self._axis, self._counted
         if abs(actual - read) > 1.5 * axis.count_size:
@@ -195,7 +198,7 @@ class _AxisWatch:
             )
 
     def _lasts(self, what: str, holds: bool) -> float:
-        """Return how long the condition has been true without interruption, in seconds."""
+        """Return for how many seconds the condition ``what`` has been true without interruption."""
         if not holds:
             self._since.pop(what, None)
             return 0.0
@@ -244,9 +247,9 @@ class Supervisor:
             self._open_since = None
 
     def _check_data(self, *, is_powered: bool) -> None:
-        """Raise AlarmError if the axes send no data for more than 0.25 s and the driver reports no fault.
+        """Raise AlarmError if the axes send no data for more than 0.25 s although no fault is reported.
 
-        The alarm is raised only in a state with powered drives.
+        The alarm is raised only in a machine state with powered drives.
         """
         now = self._context.now
         since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
@@ -269,7 +272,7 @@ class Supervisor:
                 )
 
     def _check_collet(self) -> None:
-        """Raise AlarmError if the collet switch is off for longer than contact bounce can last."""
+        """Raise AlarmError if the collet switch remains off for longer than contact bounce lasts."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
         if now - self._open_since > 2.0 * self._context.machine.collet.close_time:
@@ -294,7 +297,10 @@ class OutputWatch:
         self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
     def check_outputs(self) -> None:
-        """Hold the cycle if an output changed unasked. Raises DriverError or AlarmError on failure."""
+        """Hold the cycle if an output changed without a command.
+
+        Raises DriverError or AlarmError on failure.
+        """
         trips = self._context.ports.trip_monitor
         trip = trips.get_active_trip() if trips is not None else None
         if trips is not None and trip is not None:
@@ -319,7 +325,7 @@ class OutputWatch:
             self._disturbed("switched-off", " AND ".join(each.description for each in new))
 
     def list_restart_outputs(self) -> Iterator[AnnouncedStart]:
-        """Yield announcements of the outputs that a resume switches back to their commanded states."""
+        """Yield announcements of the outputs that a resume would switch back to their commanded states."""
         if self._program_run.status.state in STOPPED_STATES:
             for name, wanted in self._context.commanded_outputs.find_mismatches():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())

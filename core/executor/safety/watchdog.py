@@ -1,10 +1,10 @@
 """The executor's thread and the watchdog, which supervise each other.
 
-The watchdog makes the machine safe if the executor has ended or is stuck. The executor reports a watchdog
-that has ended or is stuck. The watchdog counts its own checks instead of time. If the whole process stops
-for a while, both threads stop, and neither is reported. The watchdog calls the drivers only through
-``MachinePorts.halt_machine``, which any thread may call, and only on a separate thread, because a driver
-may block.
+The watchdog makes the machine safe if the executor has ended or is stuck. In turn, the executor reports a
+watchdog that has ended or is stuck. The watchdog counts its own checks instead of time, so that a pause of
+the whole process is not reported. The watchdog calls the drivers only through
+``MachinePorts.halt_machine``, which any thread may call. It uses a separate thread for this, because a
+driver may block.
 """
 
 from __future__ import annotations
@@ -61,14 +61,14 @@ class ExecutorThread:
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Start the thread, which then ticks."""
+        """Start the thread, which then runs the executor's ticks."""
         self._thread.start()
 
     def close(self, timeout_s: float = _CLOSE_TIMEOUT_S) -> None:
         """Stop the machine as an E-stop would, and end the thread.
 
-        If the thread does not end within ``timeout_s`` seconds, the drivers are halted instead and the
-        thread continues.
+        If the thread does not end within ``timeout_s`` seconds, the drivers halt the machine instead, and
+        the thread continues.
         """
         self._closing.set()
         self.executor.start_next_tick()
@@ -107,7 +107,7 @@ class MachineHalter:
         self._thread: threading.Thread | None = None
 
     def start_halt(self, timeout_s: float = 0.0) -> None:
-        """Start to halt the machine unless the last call is still blocked.
+        """Halt the machine on a separate thread, unless the previous call is still blocked.
 
         The function waits at most ``timeout_s`` seconds.
         """
@@ -129,8 +129,8 @@ class MachineHalter:
 class ThreadWatch:
     """Supervision of threads by their names, including threads that start later.
 
-    ``report_failure`` receives the name of each thread that has ended; each name is reported once. A thread
-    is supervised from the first check that finds it, or from the call of ``watch_thread``.
+    ``report_failure`` receives the name of each ended thread once. A thread is supervised from the first
+    check that finds it, or from the call of ``watch_thread``.
     """
 
     def __init__(self, names: Iterable[str], report_failure: ReportFailure) -> None:
@@ -144,9 +144,9 @@ class ThreadWatch:
         self._running.append(name)
 
     def check_threads(self) -> None:
-        """Check the threads once.
+        """Check all supervised threads once.
 
-        After ``stop_reporting``, threads that have ended are not reported.
+        After ``stop_reporting``, ended threads are not reported.
         """
         for name in [name for name in self._awaited if is_thread_running(name)]:
             self._awaited.remove(name)
@@ -158,11 +158,11 @@ class ThreadWatch:
                 self._tell(name)
 
     def start(self) -> None:
-        """Start to check the threads once per second on a separate thread."""
+        """Start a separate thread that checks the supervised threads once per second."""
         threading.Thread(target=self._look_again, name="thread-watch", daemon=True).start()
 
     def stop_reporting(self) -> None:
-        """Stop reporting ended threads, because threads now end normally."""
+        """Stop reporting ended threads, because TurnDesk is closing and threads now end normally."""
         self._closing.set()
 
     def _look_again(self) -> None:
@@ -178,10 +178,9 @@ def _report(error: BaseException) -> None:
 class Watchdog:
     """Supervision of the executor's thread, and of other threads by their names.
 
-    ``halt`` stops the machine through the drivers, or is None if they have no such function.
-    ``report_failure`` receives once the name of each thread that has ended, other than the executor's; the
-    end of that thread causes an alarm. A thread is supervised from the first check that finds it, or from
-    the call of ``watch_thread``.
+    ``halt`` stops the machine through the drivers, or is None if they cannot. The end of the executor's
+    thread causes an alarm. If another thread ends, ``report_failure`` receives its name once. A thread is
+    supervised from the first check that finds it, or from the call of ``watch_thread``.
     """
 
     def __init__(
@@ -208,11 +207,11 @@ class Watchdog:
 
     @property
     def is_closing(self) -> bool:
-        """Return whether the watchdog was requested to end."""
+        """Return whether the end of the watchdog has been requested."""
         return self._closing.is_set()
 
     def start(self) -> None:
-        """Start the watchdog, and let the executor's thread supervise it."""
+        """Start the watchdog, and register it for supervision by the executor's thread."""
         self._executor.check_watchdog = WatchdogSupervisor(self, self._tell).check_watchdog
         self._thread.start()
 
@@ -221,7 +220,7 @@ class Watchdog:
         self._others.watch_thread(name)
 
     def stop_checks(self) -> None:
-        """Stop the checks because threads now end normally. The function does not wait."""
+        """Stop the checks, because TurnDesk is closing and threads now end normally. Do not wait."""
         self._closing.set()
         self._others.stop_reporting()
 
@@ -286,9 +285,9 @@ class WatchdogSupervisor:
         self._overdue = 0.0  # s of ticks without a check
 
     def check_watchdog(self, now: float) -> None:
-        """Check the watchdog once after a tick.
+        """Check the watchdog once after each tick.
 
-        A long gap between ticks counts as a short one, because the watchdog was probably late too.
+        A long gap between ticks counts as a short one, because the watchdog was probably delayed too.
         """
         looks, last = self._watchdog.check_count, self._last
         self._last = now

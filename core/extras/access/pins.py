@@ -20,7 +20,7 @@ _MOST_MEMORY = 2**28  # bytes
 
 
 class ScryptCost(NamedTuple):
-    """Cost parameters of scrypt (log2 of N, r and p), each stored as one byte before the hash."""
+    """Cost parameters of scrypt (log2 of N, r and p), each stored as one byte in front of the hash."""
 
     log2_n: int
     block_size: int
@@ -101,7 +101,10 @@ _FIRST, _MOST = 5.0, 300.0  # s
 
 
 def calculate_delay(wrong_attempts: int) -> float:
-    """Return the delay in seconds after this number of consecutive wrong PINs: 0, 0, 5, 10, 20 … 300."""
+    """Return the delay in seconds after a number of consecutive wrong PINs.
+
+    The delays are 0, 0, 5, 10, 20 and so on, up to 300 s.
+    """
     return (
         min(_MOST, _FIRST * 2.0 ** (wrong_attempts - FREE_ATTEMPT_COUNT - 1))
         if wrong_attempts > FREE_ATTEMPT_COUNT
@@ -121,7 +124,7 @@ class WrongPinCounter:
     last_attempt_s: float = 0.0
 
     def get_remaining_delay(self, now: float) -> float:
-        """Return the time in seconds until a PIN is accepted again, or 0."""
+        """Return the time in seconds until the next PIN is accepted, or 0 if it is accepted now."""
         return max(0.0, self.last_attempt_s + calculate_delay(self.wrong_pin_count) - now)
 
     def count_wrong_pin(self, now: float) -> None:

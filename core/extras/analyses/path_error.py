@@ -1,7 +1,7 @@
-"""Path error of a measured path with its worst lines, and ball-bar analysis of an arc.
+"""Deviation of a measured path from its program, and ball-bar analysis of an arc.
 
-The measured path is in the plane (u, v) of two axes. The results describe the encoder positions: an encoder
-on the motor does not show the backlash of the screw, but a linear scale does.
+The measured path is in the plane (u, v) of two axes. The results describe encoder positions. A motor
+encoder does not show the backlash of the ball screw, but a linear scale does.
 """
 
 from __future__ import annotations
@@ -26,13 +26,14 @@ _TELL = 30.0  # largest condition number at which the values can be separated
 
 @dataclass(frozen=True, slots=True)
 class BallBarResult:
-    """Result of a ball-bar analysis of one arc.
+    """Result of a ball-bar analysis of one arc, with NaN where the arc is too short.
 
-    ``angles_deg`` (m,) contains the angles of the samples in degrees, and ``deviations_mm`` (m,) the
-    distances of the samples outside the programmed arc in mm. ``backlash_mm`` and ``reversal_spike_mm`` are
-    pairs (u, v) in mm. ``squareness_error_mm_m`` is the tilt of v toward u in mm per meter.
-    ``scale_error_mm_m`` is the excess length of u over v in mm per meter, and ``size_error_mm`` is the
-    excess radius in mm. Values are NaN if the arc is too short to determine them.
+    - ``angles_deg`` (m,): angles of the samples; ``deviations_mm`` (m,): their distances outside the
+      programmed arc
+    - ``backlash_mm`` and ``reversal_spike_mm``: pairs for the axes (u, v)
+    - ``squareness_error_mm_m``: tilt of v toward u in mm per meter
+    - ``scale_error_mm_m``: excess length of u over v in mm per meter
+    - ``size_error_mm``: excess of the radius
     """
 
     center: tuple[float, float]
@@ -57,9 +58,9 @@ class BallBarResult:
 
 
 def fit_circle(points: FloatArray) -> tuple[float, float, float]:
-    """Return the center (u, v) and the radius of the circle that best fits the points (n, 2).
+    """Return the center (u, v) and the radius of the best-fit circle of the points (n, 2).
 
-    The least-squares equation is u² + v² = 2au + 2bv + c.
+    The circle is the least-squares solution of u² + v² = 2au + 2bv + c.
     """
     middle = points.mean(axis=0)
     at = points - middle
@@ -69,7 +70,10 @@ def fit_circle(points: FloatArray) -> tuple[float, float, float]:
 
 
 def analyze_ball_bar(setpoints: FloatArray, actual: FloatArray) -> BallBarResult:
-    """Analyze setpoints and positions (m, 2) of one arc. Raises AnalysisError without a usable arc."""
+    """Analyze setpoints and positions (m, 2) of one arc.
+
+    Raises AnalysisError if the samples do not contain a usable arc.
+    """
     if len(setpoints) < MIN_ARC_SAMPLES or len(actual) != len(setpoints):
         raise AnalysisError(
             Message(
@@ -144,10 +148,7 @@ def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tup
 
 
 def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
-    """Return the largest residual within a few degrees after a reversal of this axis.
-
-    The result is NaN if the axis does not reverse.
-    """
+    """Return the largest residual shortly after a reversal of this axis, or NaN without a reversal."""
     step = np.sign(np.diff(position))
     moving = np.flatnonzero(step)
     if not len(moving):
@@ -199,10 +200,11 @@ _SAME = 1e-9  # mm, distance below which points are treated as equal
 class PathError:
     """Deviations of the measured samples (m,) from the path.
 
-    ``distances_mm`` is in mm. With two axes a distance is positive to the left of the path direction, and
-    with three axes it has no sign. ``nearest_path_points`` (m, 2 or 3) are the nearest points of the path.
-    ``path_positions_mm`` is the path length up to these points in mm, and ``line_numbers`` contains the
-    source line at each of them.
+    - ``distances_mm``: with two axes, positive to the left of the path direction; with three axes,
+      unsigned
+    - ``nearest_path_points`` (m, 2 or 3): nearest points of the path
+    - ``path_positions_mm``: path length up to these points
+    - ``line_numbers``: source line at each of these points
     """
 
     distances_mm: FloatArray
@@ -241,9 +243,9 @@ def calculate_path_error(
     """Return the deviations of measured positions (m, k) from a polyline (n, k) of 2 or 3 axes.
 
     ``lines`` (n,) are the source lines of the points of ``programmed``. ``expected_point_indices`` (m,) is
-    the index of the point that each sample should have reached. The nearest point is searched within
-    ``search_point_count`` points of this index, so that a sample is not assigned to the wrong branch where
-    the path crosses itself. Raises AnalysisError if the samples are unusable.
+    the index of the point that each sample should have reached. Only ``search_point_count`` points on
+    either side of it are searched, because the path may cross itself. Raises AnalysisError if the samples
+    are unusable.
     """
     _check(programmed, lines, measured, expected_point_indices)
     n = len(programmed)
@@ -318,9 +320,9 @@ def calculate_path_error_from_samples(
 
 
 def find_worst_deviations(error: PathError, max_count: int = 10) -> tuple[WorstDeviation, ...]:
-    """Return the worst deviation of each line, largest first, without samples of line 0.
+    """Return the worst deviation of each program line, in descending order.
 
-    At most ``max_count`` lines are returned.
+    At most ``max_count`` lines are returned. Samples without a line (0) are ignored.
     """
     found = []
     for line in np.unique(error.line_numbers[error.line_numbers > 0]):

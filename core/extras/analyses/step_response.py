@@ -1,7 +1,7 @@
-"""Response of an axis to a step, ramp or sine, and the effect of another error limit or speed.
+"""Response of an axis to a step, ramp or sine, and following errors at other limits or speeds.
 
 All values are measured from the samples. Only ``scale_error_to_speed`` assumes that the axis lag is
-proportional to its speed.
+proportional to the speed.
 """
 
 from __future__ import annotations
@@ -24,10 +24,12 @@ MIN_SAMPLES = 20  # samples
 class StepResponse:
     """Response to a step, with times in seconds and lengths in mm.
 
-    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot_fraction`` is the overshoot as a fraction of
-    the step, or 0 without overshoot. ``settling_time_s`` is the time from the end of the commanded step
-    until the axis remains within ``settling_band_mm``, or NaN if it does not settle in the record.
-    ``delay_s`` is the delay at half of the step. ``final_error_mm`` is the error at the end of the record.
+    - ``rise_time_s``: time from 10 to 90 % of the step
+    - ``overshoot_fraction``: overshoot as a fraction of the step, or 0
+    - ``settling_time_s``: time from the end of the command until the axis stays within
+      ``settling_band_mm``, or NaN if it does not settle
+    - ``delay_s``: delay at half of the step
+    - ``final_error_mm``: error at the end of the record
     """
 
     step_size_mm: float
@@ -40,7 +42,7 @@ class StepResponse:
 
 
 def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
-    """Analyze the samples (n,) from before a step until after it.
+    """Analyze the response to a step, in samples (n,) that begin before it and end after it.
 
     ``band`` is the in-position window in mm. Raises AnalysisError if the step is too small for ``band``.
     """
@@ -77,7 +79,8 @@ def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, b
 class SineResponse:
     """Response to a sine.
 
-    ``gain`` is the ratio of the amplitudes, and ``phase_lag_deg`` is the phase lag in degrees.
+    ``gain`` is the amplitude of the response divided by that of the command. ``phase_lag_deg`` is the phase
+    lag in degrees.
     """
 
     frequency_hz: float
@@ -145,9 +148,9 @@ class RampResponse:
 
 
 def analyze_ramp(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
-    """Analyze the response in the second half of a ramp's constant speed, where the lag has settled.
+    """Analyze the response to a ramp in the second half of its constant speed.
 
-    Raises AnalysisError if the command has no constant speed.
+    The lag has settled there. Raises AnalysisError if the command has no period of constant speed.
     """
     _check(times, request, response)
     speeds = np.gradient(request, times)
@@ -190,9 +193,9 @@ def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Bandwidth:
-    """Frequencies in Hz at which the gain has fallen by 3 dB and the phase lags by 90 degrees.
+    """Frequencies in Hz at which the gain is -3 dB and at which the phase lag is 90 degrees.
 
-    A frequency is None if the responses do not reach this point.
+    A frequency is None if the responses do not reach this gain or lag.
     """
 
     gain_bandwidth_hz: float | None
@@ -222,7 +225,7 @@ def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
 
 
 def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, duration_s: float) -> float | None:
-    """Return the time at which the error would cause a trip, or None.
+    """Return the time at which the error would cause a trip, or None if it would not.
 
     A trip occurs if the error exceeds ``limit_mm`` for ``duration_s`` seconds.
     """
@@ -252,11 +255,10 @@ def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float
 def find_speed_at_limit(
     lag_s: float, limit_at_rest_mm: float, limit_at_max_speed_mm: float, max_speed: float
 ) -> float | None:
-    """Return the speed in mm/s at which the lag of an axis reaches an error limit that grows with speed.
+    """Return the speed in mm/s at which the lag of an axis reaches its error limit, or None if never.
 
-    ``lag_s`` is the lag of the axis in seconds. The limit is ``limit_at_rest_mm`` mm at rest and
-    ``limit_at_max_speed_mm`` mm at ``max_speed``: lag_s · v = still + (window - still) · v / vmax. The
-    result is None if the axis does not reach the limit at any speed.
+    ``lag_s`` is the lag of the axis in seconds. The limit grows linearly from ``limit_at_rest_mm`` at rest
+    to ``limit_at_max_speed_mm`` at ``max_speed``.
     """
     steeper = lag_s - (limit_at_max_speed_mm - limit_at_rest_mm) / max_speed
     speed = limit_at_rest_mm / steeper if steeper > 0.0 else math.inf

@@ -1,7 +1,7 @@
-"""Comparison of thread passes by entry angle, lead error and spindle speed under load.
+"""Comparison of threading passes by entry angle, lead error and spindle speed under load.
 
-A pass is a period of at least two revolutions in which the axis moves by the same distance per revolution.
-A pass is described by its best-fit line, distance = lead · revolutions + entry.
+A pass is a period of at least two revolutions with a constant axis travel per revolution. A pass is
+described by its best-fit line, distance = lead · revolutions + entry.
 """
 
 from __future__ import annotations
@@ -26,12 +26,14 @@ _POINTS = 24  # points per revolution at which the travel is compared
 
 @dataclass(frozen=True, slots=True)
 class ThreadPass:
-    """One pass of a thread.
+    """Measured values of one threading pass.
 
-    ``first_sample`` and ``last_sample`` are sample numbers. ``spindle_revolutions`` (k,) are counted from
-    the start of the thread, and ``deviations_mm`` (k,) are in mm. ``entry_angle_deg`` is the spindle angle
-    at the start of the thread in degrees, relative to the first pass. ``lead_mm`` is in mm per revolution.
-    Speeds are in rpm. ``depth_mm`` is the position of the other axis in mm.
+    - ``first_sample`` and ``last_sample``: sample numbers
+    - ``spindle_revolutions`` and ``deviations_mm`` (k,): revolutions since the start of the thread, and
+      deviations
+    - ``entry_angle_deg``: spindle angle at the start of the thread, relative to the first pass
+    - ``lead_mm``: lead in mm per revolution; speeds are in rpm
+    - ``depth_mm``: position of the other axis
     """
 
     first_sample: int
@@ -56,7 +58,7 @@ class ThreadPass:
 
 @dataclass(frozen=True, slots=True)
 class ThreadAnalysis:
-    """The passes of one thread, and the signed reference lead in mm per revolution."""
+    """The passes of one thread, with the signed reference lead in mm per revolution."""
 
     reference_lead_mm: float
     passes: tuple[ThreadPass, ...]
@@ -88,11 +90,11 @@ def analyze_thread(
     speed: FloatArray,
     lead: float | None = None,
 ) -> ThreadAnalysis:
-    """Find the passes of a thread in samples (n,).
+    """Find the threading passes in samples (n,).
 
-    ``axis_positions`` and ``depth`` are the positions in mm of the axis along the thread and of the other
-    axis. ``speed`` is in rpm. ``lead`` is in mm per revolution; if it is None, it is derived from the
-    similar passes. Raises AnalysisError if no pass is found or data is missing.
+    ``axis_positions`` and ``depth`` are the positions in mm along the thread and of the other axis.
+    ``speed`` is in rpm. ``lead`` is in mm per revolution; if it is None, it is derived from the passes.
+    Raises AnalysisError if no pass is found or data is missing.
     """
     if len(spindle_revolutions) < 100:
         raise AnalysisError(
@@ -161,9 +163,9 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[SampleRange]:
 def _joined(
     runs: list[SampleRange], turns: FloatArray, along: FloatArray, direction: float
 ) -> list[SampleRange]:
-    """Return the periods, with adjacent periods of the same pass joined.
+    """Return the periods, with adjacent periods of the same threading pass joined.
 
-    A period belongs to the same pass if it starts on the line on which the previous period ended.
+    A period belongs to the same pass if it continues the best-fit line of the previous period.
     """
     found: list[SampleRange] = []
     for run in runs:
@@ -181,7 +183,7 @@ def _joined(
 def _alike(runs: list[SampleRange]) -> list[SampleRange]:
     """Return the passes with the coarsest lead that occurs more than once.
 
-    If every lead occurs only once, the passes with the coarsest lead are returned.
+    If no lead occurs more than once, return the passes with the coarsest lead.
     """
     if not runs:
         return []
@@ -198,9 +200,9 @@ def _passes(
     depth: FloatArray,
     speed: FloatArray,
 ) -> tuple[ThreadPass, ...]:
-    """Return each pass with its best-fit line and its entry angle.
+    """Return the threading passes with their best-fit lines and entry angles.
 
-    Entry angles are within half a revolution of the first pass's entry angle.
+    Entry angles differ by at most half a revolution from that of the first pass.
     """
     begin = float(np.median([along[first] for first, *_ in runs]))
     found: list[ThreadPass] = []

@@ -1,1 +1,1 @@
-"""Conversion of turning programs for other controls to OmniTurn."""
+"""Conversion of turning programs from other controls to OmniTurn programs."""

@@ -19,9 +19,10 @@ _SAME = 1e-6  # mm
 
 @dataclass(slots=True)
 class RoughingValues:
-    """Values of the first line of a roughing cycle.
+    """Values from the first line of a two-line roughing cycle.
 
-    Depth, retract and relief are in mm. ``repetition_count`` is the number of repetitions.
+    ``depth_mm`` is the depth of a pass. The retract and the relief (X and Z, of G73) are also in mm.
+    ``repetition_count`` is the number of repetitions of G73.
     """
 
     depth_mm: float = 0.0
@@ -34,7 +35,7 @@ class RoughingValues:
 def store_roughing_words(
     state: SourceState, statement: SourceStatement, code: SourceWord, rough: RoughingValues
 ) -> bool:
-    """Store the words of a roughing cycle's first line; return whether the line is a first line."""
+    """Store the words of the first line of a two-line cycle; return False if it is another line."""
     if statement.find_word("P") is not None:
         return False
     u, w, r = (statement.find_word(letter) for letter in "UWR")
@@ -65,7 +66,7 @@ def read_allowances(state: SourceState, statement: SourceStatement) -> Point:
 def read_pass_depth(
     state: SourceState, statement: SourceStatement, code: SourceWord, rough: RoughingValues
 ) -> float:
-    """Return the depth of a pass in mm.
+    """Return the depth of a roughing pass in mm.
 
     Raises ProgramError if the depth is missing.
     """
@@ -89,7 +90,7 @@ def append_roughing_passes(
     retract: float,
     allowance: Point,
 ) -> None:
-    """Append the passes of G71 or G72, the pass along the contour, and the return move.
+    """Append the roughing passes of G71 or G72, the pass along the contour, and the return move.
 
     Raises ProgramError if the contour is empty or has an undercut.
     """
@@ -121,7 +122,10 @@ def append_roughing_passes(
 
 
 class DepthLevel(NamedTuple):
-    """One depth level of the passes: start point of the cycle, signs of depth and travel, and sizes in mm."""
+    """One depth level of the roughing passes.
+
+    It contains the start point of the cycle, the signs of the depth and travel directions, and sizes in mm.
+    """
 
     start_point: Point
     depth_position: float
@@ -167,7 +171,7 @@ def _one_level(
 def append_contour_repetitions(
     state: SourceState, code: SourceWord, contour: Sequence[PathStep], rough: RoughingValues, allowance: Point
 ) -> None:
-    """Append the repetitions of the G73 contour, which move closer from the relief to the allowance."""
+    """Append the G73 repetitions of the contour, from the relief distance to the finishing allowance."""
     start = state.get_position(code)
     for k in range(rough.repetition_count):
         share = 1.0 - k / (rough.repetition_count - 1) if rough.repetition_count > 1 else 0.0
@@ -180,7 +184,7 @@ def append_contour_repetitions(
 
 
 def shift_steps(steps: Sequence[PathStep], distance: Point) -> list[PathStep]:
-    """Return the steps shifted by the X and Z distances ``distance`` in mm."""
+    """Return the path steps shifted by ``distance``, which is (X, Z) in mm."""
     return [
         replace(
             step,
@@ -194,7 +198,7 @@ def shift_steps(steps: Sequence[PathStep], distance: Point) -> list[PathStep]:
 
 
 def _follow(state: SourceState, code: SourceWord, step: PathStep) -> None:
-    """Append a move along the contour at the feed of the cycle."""
+    """Append a move along the contour, at the feed of the cycle or as a rapid."""
     if step.kind is StepKind.RAPID:
         state.append_rapid(step.line, step.x, step.z)
     elif step.kind is StepKind.ARC:
@@ -209,12 +213,12 @@ def _follow(state: SourceState, code: SourceWord, step: PathStep) -> None:
 
 
 def replace_line(code: SourceWord, line: int) -> SourceWord:
-    """Return the cycle's word with another line number, so that its moves belong to that line."""
+    """Return the G word of a cycle with another line number, so that its moves refer to that line."""
     return code._replace(line_number=line)
 
 
 def _swap(point: Point, *, across_x: bool) -> Point:
-    """Convert (x, z) to (depth, travel), or (depth, travel) to (x, z)."""
+    """Convert a point between (x, z) and (depth, travel), in either direction."""
     return point if across_x else (point[1], point[0])
 
 

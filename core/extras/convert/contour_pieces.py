@@ -1,4 +1,4 @@
-"""Pieces of the contour of a roughing cycle, and the sections of the contour that are deeper than a pass."""
+"""Elements of the contour of a roughing cycle, and the sections that a pass must cut."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ContourPiece:
-    """A line or arc of a contour.
+    """A line or arc of the contour of a roughing cycle.
 
     The first coordinate of a point is in the direction of depth, and the second is along the passes.
     """
@@ -55,7 +55,7 @@ class ContourPiece:
         return sorted(share for share in found if 0.0 < share < 1.0)
 
     def find_extremes(self, axis: int) -> list[float]:
-        """Return the extreme coordinates of an arc that are between its ends.
+        """Return the largest and smallest coordinates of an arc that are not at its ends.
 
         The coordinates are depths if ``axis`` is 0, or coordinates along the passes if ``axis`` is 1.
         """
@@ -81,10 +81,10 @@ class ContourPiece:
 def find_deeper_sections(
     pieces: Sequence[ContourPiece], level: float, depth_sign: float
 ) -> list[tuple[float | None, float]]:
-    """Return the start and end coordinates of each section that is deeper than ``level``.
+    """Return the start and end of each section of the contour that is deeper than ``level``.
 
-    The coordinates are along the passes. The start is None if the contour begins deeper than ``level``, so
-    that the pass begins at the start point of the cycle.
+    They are coordinates along the passes. The start is None if the contour already begins deeper than
+    ``level``; the pass then begins at the start point of the cycle.
     """
     found: list[tuple[float | None, float]] = []
     inside = False
@@ -103,7 +103,7 @@ def find_deeper_sections(
 
 
 def has_reversal(pieces: Sequence[ContourPiece], travel_sign: float) -> bool:
-    """Return whether a contour reverses toward the start of the passes, as in an undercut."""
+    """Return whether the contour turns back toward the start of the passes, as in an undercut."""
     farthest = travel_sign * pieces[0].start[1]
     for piece in pieces:
         for each in (*piece.find_extremes(1), piece.end[1]):

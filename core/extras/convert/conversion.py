@@ -1,4 +1,4 @@
-"""Conversion of a source program: reading the source, writing the result and proving the result."""
+"""Conversion of a source program: reading the source, writing the result and proving it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Error and warning texts, with remedies, for source lines that are changed or not convertible."""
+"""Error and warning texts with remedies, for source lines that are changed or not convertible."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ def make_error(line: int, column: int, code: str, /, **values: object) -> Progra
 
 
 def make_warning(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
-    """Return the warning that a source line is converted with a change."""
+    """Return a warning for a source line that is converted, but not identically."""
     text, hint = WARNINGS[code]
     return _finding(line, column, Severity.WARNING, code, text, hint, values)
 

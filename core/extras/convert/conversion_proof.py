@@ -30,10 +30,10 @@ _KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """Result of a proof: the differences, and the number of compared steps.
+    """Result of the proof of a conversion: the differences, and the number of compared steps.
 
-    ``rounded_move_count`` is the number of moves whose end point changes because of the resolution of the
-    control, and ``max_rounding_mm`` is the largest such change in mm.
+    ``rounded_move_count`` is the number of moves with an end point that is rounded to the resolution of the
+    control. ``max_rounding_mm`` is the largest such change in mm.
     """
 
     errors: tuple[Diagnostic, ...] = ()
@@ -52,7 +52,7 @@ def prove(
 ) -> Proof:
     """Interpret the converted program and compare it with the steps of the source.
 
-    ``sources`` contains the source line of each line of ``text``.
+    ``source_line_numbers`` contains the source line of each line of ``text``.
     """
     tools = dict.fromkeys(range(1, 33), _OFFSET)
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
@@ -83,7 +83,7 @@ class _DifferenceError(Exception):
 
 
 class _Comparison:
-    """Comparison of the converted program's blocks with the source's steps, in order."""
+    """Comparison of the converted program's blocks with the steps of the source, in program order."""
 
     def __init__(
         self,
@@ -224,7 +224,7 @@ class _Comparison:
     # --- threads
 
     def _thread_zone(self, at: int) -> int:
-        """Compare a thread pass and the rapids around it; return the number of steps.
+        """Compare a thread pass and the rapids before and after it; return the number of steps compared.
 
         The number is 0 if the next step does not belong to a thread.
         """
@@ -249,7 +249,10 @@ class _Comparison:
         return end - at
 
     def _zone(self, steps: Sequence[PathStep], blocks: Sequence[Block]) -> None:
-        """Compare threads exactly, and compare rapids only as far as the retract of the cycle permits."""
+        """Compare the steps and blocks of a thread.
+
+        Thread cuts are compared exactly, and rapids only as far as the retract of the cycle permits.
+        """
         made = iter(blocks)
         for step in steps:
             for block in made:
@@ -276,7 +279,7 @@ class _Comparison:
 def _is_idle(block: Block) -> bool:
     """Return whether a block is excluded from the comparison.
 
-    Tool changes, presets and moves without length are excluded.
+    Tool changes, presets and moves of zero length are excluded.
     """
     if block.action is not None:
         return isinstance(block.action, actions.ToolChange | actions.Preset)
@@ -284,9 +287,9 @@ def _is_idle(block: Block) -> bool:
 
 
 def _known(steps: Sequence[PathStep]) -> Iterator[PathStep]:
-    """Yield the steps that must have a matching block.
+    """Yield the source steps that must have a matching block in the converted program.
 
-    Nose codes, presets and moves whose end point is unknown are omitted.
+    Nose compensation codes, presets and moves to an unknown end point are omitted.
     """
     spindle = SpindleState()
     for step in steps:

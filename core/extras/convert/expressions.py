@@ -54,7 +54,7 @@ Variables = MutableMapping[str, float]
 
 
 class ExpressionReader:
-    """A reader of the expressions in one line.
+    """Reader of the expressions in one source line.
 
     ``at`` is the index of the next character to read.
     """
@@ -63,7 +63,7 @@ class ExpressionReader:
         self.line, self.text, self.variables, self.at = line, text, variables, at
 
     def skip_blanks(self) -> None:
-        """Skip blanks."""
+        """Advance the reading position to the next character that is not a blank."""
         while self.at < len(self.text) and self.text[self.at].isspace():
             self.at += 1
 
@@ -73,16 +73,17 @@ class ExpressionReader:
         return self.text[self.at : self.at + 1]
 
     def accept_text(self, sign: str) -> bool:
-        """Skip ``sign`` if it is next in the line; return whether it was skipped."""
+        """Skip ``sign`` if the text at the reading position starts with it; return whether it does."""
         self.skip_blanks()
         found = self.text[self.at : self.at + len(sign)].upper() == sign
         self.at += len(sign) * found
         return found
 
     def read_value(self) -> tuple[float, bool]:
-        """Return the value of a word and whether it is exempt from the decimal point rule.
+        """Return the value of a word, and whether the decimal point rule does not apply to it.
 
-        Only a plain number without a decimal point is not exempt. Raises ProgramError if invalid.
+        The rule applies only to a literal number without a decimal point. Raises ProgramError if the value
+        is invalid.
         """
         begin = self.at
         negative = False
@@ -122,7 +123,10 @@ class ExpressionReader:
             raise make_error(self.line, begin + 1, "division") from error
 
     def read_variable_key(self) -> str:
-        """Return the key of the variable that starts with ``#``. Raises ProgramError if it is invalid."""
+        """Return the key of the variable that begins with ``#`` at the reading position.
+
+        Raises ProgramError if it is invalid.
+        """
         self.at += 1
         if self.accept_text("<"):
             end = self.text.find(">", self.at)

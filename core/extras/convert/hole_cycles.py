@@ -19,7 +19,8 @@ _SAME = 1e-6  # mm
 def append_hole_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the moves of a hole cycle.
 
-    Words of earlier lines of the cycle remain active. Raises ProgramError if a required word is missing.
+    Words of earlier lines of the same cycle remain active. Raises ProgramError if a required word is
+    missing.
     """
     for word in statement.words:
         if word.letter in "ZWRQPK":
@@ -52,7 +53,7 @@ def _bottom(state: SourceState, code: SourceWord, z0: float) -> float:
 
 
 def _plane(state: SourceState, z0: float) -> float:
-    """Return the Z at which the feed begins.
+    """Return the Z of the R plane, at which the feed begins.
 
     R is a distance on Fanuc controls and a coordinate on other controls.
     """

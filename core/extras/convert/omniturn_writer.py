@@ -1,4 +1,4 @@
-"""Writer that makes an OmniTurn program from the steps of a source program."""
+"""Writer that converts the steps of a source program to an OmniTurn program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NOT_IN_COMMENTS = re.compile(r"[^ -'*-~]")
 
 
 class WrittenLine(NamedTuple):
-    """A line of the converted program, with its source line number (0 without a source line)."""
+    """A line of the converted program with its source line number, or 0 if it has no source line."""
 
     text: str
     source_line_number: int
@@ -28,7 +28,7 @@ class WrittenLine(NamedTuple):
 
 @dataclass(slots=True)
 class OmniTurnWriter:
-    """Writer of the converted program, with the modal state after the last line.
+    """Writer of the converted program, which tracks the modal state after the last line.
 
     Lengths are in mm, and X is a radius.
     """
@@ -92,7 +92,7 @@ class OmniTurnWriter:
             at += self._step(steps, at)
 
     def _step(self, steps: Sequence[PathStep], at: int) -> int:
-        """Write the lines for one step; return how many steps these lines include."""
+        """Write the lines for the step at index ``at``; return how many steps these lines cover."""
         step = steps[at]
         match step.kind:
             case StepKind.RAPID | StepKind.FEED | StepKind.ARC | StepKind.THREAD:
@@ -250,10 +250,10 @@ _NEAR = 1e-6  # mm
 
 
 def _write_thread(writer: OmniTurnWriter, step: PathStep, after: Sequence[PathStep]) -> int:
-    """Write one thread pass; return how many of the steps thread, pull-out and return it includes.
+    """Write one thread pass; return how many steps it covers: thread, pull-out and return.
 
     The tool must already be at the start of the thread, and a rapid out in X must follow. If this rapid
-    also moves Z, a warning is added and only the thread step is included. The cycle needs a start point
+    also moves Z, a warning is added and only the thread step is covered. The cycle needs a start point
     outside the thread; its retract is then the X of the pull-out. Raises ProgramError if the position
     before the pass is unknown, if no such rapid follows, or if the pull-out does not end far enough outside
     the start of the thread.
@@ -314,7 +314,7 @@ def _returns(out: PathStep, after: Sequence[PathStep], start_z: float) -> int:
 
 
 def _drop_infeed(writer: OmniTurnWriter, start_z: float) -> None:
-    """Remove the last rapid if it moves to the depth of the pass, because the cycle makes this move."""
+    """Remove the last rapid if it is the infeed to the pass depth, because the cycle makes this move."""
     if writer.last_infeed is None:
         return
     count, x, z, was_rapid = writer.last_infeed

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class StepKind(StrEnum):
-    """Kind of a step."""
+    """Kind of a step of a turning program."""
 
     RAPID = "rapid"
     FEED = "feed"
@@ -28,10 +28,11 @@ MOVE_KINDS = frozenset({StepKind.RAPID, StepKind.FEED, StepKind.ARC, StepKind.TH
 
 @dataclass(frozen=True, slots=True)
 class SpindleState:
-    """State of the spindle. ``direction`` is 1 for M03, -1 for M04 and 0 for a stopped spindle.
+    """State of the spindle in a source program.
 
-    ``speed`` is in rpm or, if ``is_css`` is True, in units of the program per minute (ft/min or m/min).
-    ``max_rpm`` is the maximum rpm if ``is_css`` is True, otherwise 0.
+    ``direction`` is 1 for M03, -1 for M04 and 0 for a stopped spindle. ``speed`` is in rpm or, if
+    ``is_css`` is True, in ft/min or m/min, according to the unit of the program. ``max_rpm`` is the maximum
+    rpm if ``is_css`` is True, otherwise 0.
     """
 
     direction: int = 0
@@ -47,13 +48,13 @@ def has_same_speed(one: SpindleState, other: SpindleState) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class PathStep:
-    """One step of a turning program. Lengths are in mm, X is a radius, None is an unknown coordinate.
+    """One step of a turning program, in mm with X as a radius; an unknown coordinate is None.
 
-    ``x z`` is the end point, and ``cx cz`` the center of an arc. ``clockwise`` is as seen with X+ toward
-    the operator, as in OmniTurn. ``feed`` is in mm/min, or in mm/rev if ``per_rev`` is True; for a thread,
-    ``feed`` is the lead. ``number`` is a tool, an M code, a dwell in seconds, or the G code 40, 41 or 42 of
-    nose compensation. In a HOME step, the coordinates of the axes that move are not None. ``comment`` is a
-    comment of the source.
+    - ``x z``: end point; in a HOME step, only the axes that move have a value
+    - ``cx cz``: center of an arc; ``clockwise`` is as seen with X+ toward the operator, as in OmniTurn
+    - ``feed``: in mm/min, or in mm/rev if ``per_rev`` is True; the lead of a thread
+    - ``number``: tool, M code, dwell in seconds, or the G code 40, 41 or 42 of nose compensation
+    - ``comment``: comment of the source
     """
 
     kind: StepKind

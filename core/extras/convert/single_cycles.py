@@ -17,7 +17,7 @@ _SAME = 1e-6  # mm
 def read_cycle_target(
     state: SourceState, statement: SourceStatement, code: SourceWord
 ) -> tuple[float, float]:
-    """Return X and Z of a single cycle; a missing word keeps its value from the previous line.
+    """Return X and Z of a single cycle. A missing word keeps its value from the previous line.
 
     Raises ProgramError if a coordinate is unknown.
     """
@@ -45,7 +45,10 @@ def read_taper(state: SourceState, statement: SourceStatement, letters: str = "R
 
 
 def append_turning_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the four moves of a turning cycle. Raises ProgramError if a required value is missing."""
+    """Append the four moves of a turning cycle (G90 of system A).
+
+    Raises ProgramError if a required value is missing.
+    """
     x0, z0 = state.get_position(code)
     taper = read_taper(state, statement)
     x, z = read_cycle_target(state, statement, code)
@@ -56,7 +59,10 @@ def append_turning_cycle(state: SourceState, statement: SourceStatement, code: S
 
 
 def append_facing_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the four moves of a facing cycle. Raises ProgramError if a required value is missing."""
+    """Append the four moves of a facing cycle (G94 of system A).
+
+    Raises ProgramError if a required value is missing.
+    """
     x0, z0 = state.get_position(code)
     taper = read_taper(state, statement, "RK")
     x, z = read_cycle_target(state, statement, code)
@@ -67,7 +73,7 @@ def append_facing_cycle(state: SourceState, statement: SourceStatement, code: So
 
 
 class PeckValues:
-    """Value of the first line of a two-line G74 or G75: the retract of a peck in mm."""
+    """Value from the first line of a two-line G74 or G75 cycle: the retract after each peck, in mm."""
 
     def __init__(self) -> None:
         self.retract: float | None = None
@@ -76,7 +82,10 @@ class PeckValues:
 def append_peck_cycle(
     state: SourceState, statement: SourceStatement, code: SourceWord, peck: PeckValues
 ) -> None:
-    """Append the moves of G74 (along Z) or G75 (along X). Raises ProgramError if a word is invalid."""
+    """Append the moves of the peck cycle G74 (along Z) or G75 (along X).
+
+    Raises ProgramError if a word is invalid.
+    """
     if not any(each.letter in "XZUW" for each in statement.words):
         r = statement.find_word("R")
         if r is not None:
@@ -133,7 +142,7 @@ def _plunge(
     *,
     along_z: bool,
 ) -> None:
-    """Append the pecks of a plunge from the first to the second coordinate in ``depths``."""
+    """Append the pecks of one plunge, between the two coordinates in ``depths``."""
     begin, end = depths
     toward = copysign(1.0, end - begin)
     reached = begin

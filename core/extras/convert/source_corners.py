@@ -15,7 +15,10 @@ _SLACK = 1e-6  # mm
 
 
 class Corner(NamedTuple):
-    """A corner after the last move: the word, its size in mm, and the start point of this move."""
+    """A chamfer or corner radius after the last move.
+
+    It contains the programmed word, its size in mm, and the start point of the last move.
+    """
 
     word: SourceWord
     size_mm: float
@@ -23,9 +26,9 @@ class Corner(NamedTuple):
 
 
 def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
-    """Shorten the last move and append the chamfer or arc toward the next end point.
+    """Shorten the last move, and append the chamfer or arc that leads toward the next end point.
 
-    Raises ProgramError if the corner is not possible.
+    Raises ProgramError if the corner does not fit between the moves.
     """
     last = state.steps[-1]
     assert last.x is not None

@@ -1,4 +1,4 @@
-"""Cycles of the source program, selected by G code and control."""
+"""Cycles of the source program, selected according to the G code and the source control."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _WORDS = {
 
 
 class SourceCycles:
-    """The cycles of one pass through a source program, with the values that their first lines store."""
+    """Cycles of a source program, with the values that the first lines of two-line cycles store."""
 
     def __init__(self, state: SourceState, flow: ProgramFlow, execute: ExecuteFunction) -> None:
         self._state, self._flow, self._execute = state, flow, execute
@@ -88,7 +88,7 @@ class SourceCycles:
             append_hole_cycle(self._state, statement, code)
 
     def execute_one_shot_cycle(self, statement: SourceStatement, code: SourceWord) -> bool:
-        """Execute a cycle that is active only on its own line; return whether the code is such a cycle."""
+        """Execute a cycle that is active only in its own line; return False if the code is another code."""
         state, number = self._state, code.value
         if not state.source_control.is_fanuc:
             if number != 76:
@@ -137,7 +137,7 @@ class SourceCycles:
         self._flow.at = after
 
     def _trace(self, lines: Sequence[SourceStatement]) -> list[PathStep]:
-        """Return the moves of a contour without its final rapids, and restore the state."""
+        """Return the moves of a contour without the rapids at its end, and restore the modal state."""
         state = self._state
         saved = (state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment)
         spindle, warnings = state.spindle, list(state.warnings)

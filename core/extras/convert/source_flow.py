@@ -43,7 +43,7 @@ class _Return(NamedTuple):
 
 
 class ProgramFlow:
-    """The statements of a source program in execution order.
+    """Iterator of the statements of a source program in execution order.
 
     ``at`` is the index of the next line to execute.
     """
@@ -60,7 +60,10 @@ class ProgramFlow:
         self._loops: dict[int, int] = {}  # repeat loops: line index and passes left
 
     def iter_statements(self) -> Iterator[SourceStatement]:
-        """Yield the statements in execution order. Raises ProgramError if the program is not executable."""
+        """Yield the statements in execution order.
+
+        Raises ProgramError if the program cannot be executed, for example because a loop is endless.
+        """
         while self.at < len(self.lines) and not self.ended:
             line = self.lines[self.at]
             self.at += 1

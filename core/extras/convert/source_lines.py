@@ -19,9 +19,9 @@ _O_WORD = re.compile(r"\s*O\s*(?P<o>\d+|<[^>]+>)\s*(?P<key>[A-Za-z]+)(?P<rest>.*
 class SourceLine(NamedTuple):
     """One line of the source program.
 
-    ``code`` is the text with comments replaced by blanks. ``n`` is the block number, or 0 without one.
-    ``o_word`` is the number or name of an O word, ``o_keyword`` is its keyword, and ``start_index`` is the
-    index after them.
+    ``code`` is the text with comments replaced by blanks. ``n`` is the block number, or 0 if it has none.
+    If the line has an O word, ``o_word`` is its number or name and ``o_keyword`` its keyword.
+    ``start_index`` is the index at which the other words begin.
     """
 
     line_number: int
@@ -36,7 +36,7 @@ class SourceLine(NamedTuple):
 
 
 class SourceWord(NamedTuple):
-    """A word of a line.
+    """A word of a source line, such as X1.5.
 
     ``has_point`` is False only for a number without a decimal point.
     """
@@ -51,18 +51,18 @@ class SourceWord(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SourceStatement:
-    """The words of a line with their values, in order."""
+    """The words of a source line with their values, in the order in which they are written."""
 
     line_number: int
     words: tuple[SourceWord, ...]
     comment: str = ""
 
     def find_word(self, letter: str) -> SourceWord | None:
-        """Return the last word of the line with this letter, or None."""
+        """Return the last word of the line with this letter, or None if the letter does not occur."""
         return next((each for each in reversed(self.words) if each.letter == letter), None)
 
     def find_words(self, letter: str) -> Sequence[SourceWord]:
-        """Return all words with this letter."""
+        """Return all words of the line with this letter."""
         return [each for each in self.words if each.letter == letter]
 
     def has_g(self, *codes: float) -> bool:

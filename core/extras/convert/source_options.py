@@ -25,7 +25,7 @@ class SourceControl(StrEnum):
 
     @property
     def is_fanuc(self) -> bool:
-        """Return whether the words, cycles and macros are those of Fanuc controls."""
+        """Return whether words, cycles and macros have the same meaning as on Fanuc controls."""
         return self not in {SourceControl.LINUXCNC, SourceControl.MACH}
 
 
@@ -33,11 +33,12 @@ class SourceControl(StrEnum):
 class ConversionOptions:
     """Options of a conversion, mainly facts that the text of the source program does not contain.
 
-    ``no_point`` is the value of 1 in a length without a decimal point: 0 means not specified, 1 means a
-    whole unit, and 0.001 means the least increment (0.001 mm or 0.0001 in). ``metric`` is the unit of a
-    program that selects no unit, and ``diameter`` is the meaning of X in a program that does not select
-    one; None means not specified. ``front`` is True if G02 and G03 are seen with X+ toward the operator.
-    ``skipped_m_codes`` are M codes to omit.
+    - ``no_point``: the value of 1 without a decimal point. 0 means not specified, 1 a whole unit, and
+      0.001 the least increment (0.001 mm or 0.0001 in).
+    - ``metric`` and ``diameter``: the unit, and the meaning of X, of a program that does not select them.
+      None means not specified.
+    - ``front``: whether G02 and G03 are seen with X+ toward the operator
+    - ``skipped_m_codes``: M codes to omit
     """
 
     control: SourceControl

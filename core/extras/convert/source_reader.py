@@ -1,4 +1,4 @@
-"""Reader of a source program, which executes words on a modal state and produces steps."""
+"""Reader of a source program, which executes its words on a modal state and produces path steps."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class SourceReader:
         return replace(statement, words=tuple(each for each in statement.words if each not in idle))
 
     def _numbers_mode(self, word: SourceWord) -> bool:
-        """Execute a code for units, X diameter or increments; return whether the word is such a code."""
+        """Execute a code for units, diameter programming or increments; return False for other codes."""
         state, fanuc, code = self.state, self.state.source_control.is_fanuc, word.value
         if code in {20, 21} or (code in {70, 71} and not fanuc):
             state.is_metric = code in {21, 71}
@@ -126,7 +126,7 @@ class SourceReader:
         return True
 
     def _feed_mode(self, word: SourceWord) -> bool:
-        """Execute a code that selects the feed mode; return whether the word is such a code."""
+        """Execute a code that selects the feed mode; return False for other codes."""
         state, code = self.state, word.value
         if code in self._feed_codes():
             per_rev = code in {99, 95}
@@ -207,8 +207,8 @@ class SourceReader:
     def _spindle(self, statement: SourceStatement) -> None:
         """Execute G96, G97, S, M03 and M04.
 
-        A speed in rpm above the maximum of the options is limited with a warning. Without a speed, no
-        spindle step is appended.
+        A speed in rpm above the maximum in the options is reduced to this maximum, with a warning. If no
+        speed is programmed, no spindle step is appended.
         """
         state = self.state
         spindle = state.spindle
@@ -401,7 +401,7 @@ class SourceReader:
     # --- codes that act only on their line
 
     def _one_shot(self, statement: SourceStatement, word: SourceWord) -> bool:
-        """Execute a code that uses its line's axis words; return whether the word is such a code."""
+        """Execute a code that uses the axis words of its line; return False for other codes."""
         code, control = word.value, self.state.source_control
         if code == 4:
             self._dwell(statement, word)
@@ -476,7 +476,10 @@ class SourceReader:
 
 
 def read_source(texts: Sequence[str], options: ConversionOptions) -> tuple[SourceState, list[Diagnostic]]:
-    """Return the state after a pass through the source, and the findings; an error is always last."""
+    """Return the state after reading the source program, and the findings in order.
+
+    If an error has ended the reading, it is the last finding.
+    """
     try:
         reader = SourceReader(texts, options)
     except ProgramError as error:

@@ -53,15 +53,18 @@ class SourceState:
         return self.options.control
 
     def get_unit_mm(self, word: SourceWord) -> float:
-        """Return the size of the program's length unit in mm. Raises ProgramError if the unit is unknown."""
+        """Return one length unit of the program in mm.
+
+        Raises ProgramError if the unit is unknown.
+        """
         if self.is_metric is None:
             raise make_error(word.line_number, word.column, "unit")
         return 1.0 if self.is_metric else MM_PER_INCH
 
     def convert_length(self, word: SourceWord) -> float:
-        """Return the length or coordinate of a word in mm, without halving a diameter.
+        """Return the length or coordinate of a word in mm; a diameter remains a diameter.
 
-        Raises ProgramError if the unit or the meaning without a decimal point is unknown.
+        Raises ProgramError if the unit is unknown, or the meaning of a number without a decimal point.
         """
         if not word.value:
             return 0.0
@@ -73,7 +76,10 @@ class SourceState:
         return word.value * unit * _LEAST[bool(self.is_metric)]
 
     def convert_x(self, word: SourceWord) -> float:
-        """Return an X or U word in mm as a radius. Raises ProgramError as ``convert_length`` does."""
+        """Return an X or U word in mm as a radius.
+
+        Raises ProgramError in the same cases as ``convert_length``.
+        """
         return self.convert_length(word) / (2.0 if self.is_x_diameter else 1.0)
 
     def convert_increment(self, word: SourceWord) -> float:
@@ -130,7 +136,7 @@ class SourceState:
     # --- steps
 
     def append_step(self, step: PathStep) -> None:
-        """Append a step, and attach the comment that precedes it."""
+        """Append a step, and attach the source comment that precedes it."""
         if self.comment:
             object.__setattr__(step, "comment", self.comment)
             self.comment = ""
@@ -139,7 +145,7 @@ class SourceState:
     def append_move(
         self, kind: StepKind, line: int, x: float | None, z: float | None, **values: float | bool
     ) -> None:
-        """Append a move to this point, unless its length is zero."""
+        """Append a move to the given point, unless its length is zero."""
         moves = not (
             self.x is not None
             and self.z is not None
@@ -153,7 +159,7 @@ class SourceState:
         self.x, self.z = x, z
 
     def append_rapid(self, line: int, x: float | None, z: float | None) -> None:
-        """Append a rapid move to this point."""
+        """Append a rapid move to the given point."""
         self.append_move(StepKind.RAPID, line, x, z)
 
     def append_cut(self, word: SourceWord, x: float | None, z: float | None) -> None:

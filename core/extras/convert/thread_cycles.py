@@ -1,4 +1,4 @@
-"""Threads of a source program: single passes, and thread cycles that are expanded into passes."""
+"""Threading in a source program: single passes, and threading cycles that are expanded to passes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,10 @@ def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) 
 
 
 def append_single_thread_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Append the four moves of G92 (G78 of system B). Raises ProgramError if a value is missing."""
+    """Append the four moves of the threading cycle G92 (G78 of system B).
+
+    Raises ProgramError if a value is missing.
+    """
     x0, z0 = state.get_position(code)
     lead = read_lead(state, statement, code)
     taper = read_taper(state, statement)
@@ -52,9 +55,9 @@ def append_single_thread_cycle(state: SourceState, statement: SourceStatement, c
 
 
 class FanucThreadValues:
-    """Values of the first line of a two-line G76 cycle.
+    """Values from the first line of a two-line G76 cycle.
 
-    The values are the number of finishing passes, the angle, the minimum depth and the finishing depth.
+    They are the number of finishing passes, the thread angle, the minimum depth and the finishing depth.
     """
 
     def __init__(self) -> None:
@@ -114,7 +117,7 @@ def append_thread_cycle(
 def _depths(
     state: SourceState, statement: SourceStatement, code: SourceWord, set_up: FanucThreadValues
 ) -> tuple[float, float, float, float, int, float]:
-    """Return the depths of a G76 cycle in mm, the number of finishing passes, and the angle.
+    """Return the depths of a G76 cycle in mm, the number of finishing passes, and the thread angle.
 
     The depths are the total depth, the first depth, the minimum depth and the finishing allowance.
     """
@@ -134,7 +137,7 @@ def _taper_of_cycle(state: SourceState, statement: SourceStatement) -> float:
 
 
 def _cut_depths(depth: float, first: float, least: float) -> list[float]:
-    """Return the depths of the passes, which are first·√n.
+    """Return the depths of the passes, which are first·√n for pass n.
 
     Each pass is at least ``least`` deeper than the previous pass.
     """

@@ -1,4 +1,4 @@
-"""Extraction of a contour from a drawing: its elements are joined, and one side is traced.
+"""Extraction of a contour from a drawing: elements are connected, and one side is traced.
 
 All points are (r, z) in mm, measured from the spindle axis and from the Z zero of the lathe.
 """
@@ -69,7 +69,7 @@ def split_element(element: Element, points: Iterable[Point]) -> list[Element]:
 
 @dataclass(slots=True)
 class _Nodes:
-    """Points at which element ends meet. Ends that are closer than the gap share one node."""
+    """Points at which ends of drawing elements meet. Ends within the gap distance share one node."""
 
     gap_mm: float
     points: list[Point] = field(default_factory=list)
@@ -77,7 +77,7 @@ class _Nodes:
     _known: dict[Point, int] = field(default_factory=dict)  # found since the last new node
 
     def find_node(self, point: Point) -> int:
-        """Return the number of the node at a point; create a node if no node is near."""
+        """Return the number of the node at a point, or of a new node if no node is within the gap."""
         if (known := self._known.get(point)) is None:
             known = self._known[point] = self._found(point)
         return known
@@ -97,7 +97,7 @@ class _Nodes:
 
 @dataclass(frozen=True, slots=True)
 class ElementGroup:
-    """A group of connected elements.
+    """A group of connected drawing elements.
 
     ``element_end_nodes`` contains the two node numbers of each element, and ``node_points`` the positions
     of the nodes.
@@ -155,14 +155,14 @@ def _on_axis(net: ElementGroup, gap: float) -> bool:
 
 
 def _moved(element: Element, a: Point, b: Point) -> Element:
-    """Return the element with its ends moved to the positions of the nodes."""
+    """Return the element with its ends moved to ``a`` and ``b``, the positions of their nodes."""
     if isinstance(element, Line):
         return Line(a, b)
     return make_arc(a, b, element.center, is_clockwise=element.clockwise)
 
 
 def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
-    """Return for each node the number of one node that represents its connected group."""
+    """Return for each node the number of the node that represents its group of connected nodes."""
     owner = list(range(count))
 
     def root(n: int) -> int:
@@ -204,7 +204,7 @@ def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element
 
 
 def _touch(element: Element, point: Point, gap: float) -> Point | None:
-    """Return where a point touches an element between its ends, or None if it does not."""
+    """Return where a point touches the inside of an element, or None if it does not touch it there."""
     along = element.get_distance_from_start(point)
     if not gap < along < element.length - gap:
         return None
@@ -216,7 +216,7 @@ def _touch(element: Element, point: Point, gap: float) -> Point | None:
 
 
 def trace_outer_side(group: ElementGroup, gap: float = DEFAULT_GAP_MM) -> list[Element]:
-    """Return the elements along the outside, from the foremost point to the end at the chuck.
+    """Return the elements of the outside, from the frontmost point to the end at the chuck.
 
     Raises DrawingError if the contour crosses itself or the axis, or if no element ends at its front.
     """
@@ -287,9 +287,9 @@ def _angle(element: Element) -> float:
 def _walk(
     group: ElementGroup, start: int, back: float, hand: float, gap: float, without: Iterable[int] = ()
 ) -> list[Element]:
-    """Return the elements along one side of the contour.
+    """Return the elements along one side of the contour, starting at the node ``start``.
 
-    At each node the path follows the first element next to the empty side. The path returns from dead ends.
+    At each node, the trace follows the first element next to the empty side. It returns from dead ends.
     """
     at_node: dict[int, list[int]] = {}
     for number, ends in enumerate(group.element_end_nodes):
@@ -333,7 +333,7 @@ def _next(
 ) -> int | None:
     """Return the number of the next element at a node, or None if there is none.
 
-    This is the first element found when turning in the direction ``hand`` from the incoming direction.
+    This is the first element in the direction of rotation ``hand``, starting from the incoming direction.
     """
     if path_steps:
         last = path_steps[-1][0]
@@ -392,7 +392,7 @@ def _no_crossing(walked: Sequence[Element]) -> None:
 
 
 def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of each pair of elements with overlapping bounding boxes, smaller first.
+    """Yield each pair of element numbers with overlapping bounding boxes, the smaller number first.
 
     The elements are compared in a sweep along Z.
     """
@@ -416,7 +416,7 @@ def _crossing(walked: Sequence[Element], i: int, k: int) -> Iterator[Point]:
 
 
 def mirror_elements(elements: Iterable[Element]) -> Iterator[Element]:
-    """Yield the elements mirrored about the axis."""
+    """Yield the elements mirrored about the spindle axis."""
     for each in elements:
         if isinstance(each, Arc):
             a, b, c = ((-p[0], p[1]) for p in (each.start, each.end, each.center))

@@ -1,4 +1,4 @@
-"""Drawing as lines and arcs by layer, with its errors, its work limit and its encoding as bytes."""
+"""Drawing as lines and arcs by layer, with its errors, its work limit and its binary encoding."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Drawing:
         return tuple(sorted(count, key=lambda layer: (-count[layer], layer)))
 
     def select_layer(self, layer: str) -> tuple[DrawnElement, ...]:
-        """Return the elements on a layer; an empty name selects all layers."""
+        """Return the elements on a layer, or all elements if ``layer`` is empty."""
         return tuple(each for each in self.elements if not layer or each.layer == layer)
 
 
@@ -99,7 +99,7 @@ def make_arc(center: Point, radius: float, start_angle: float, sweep_angle: floa
 
 
 def make_bulged_segment(start: Point, end: Point, bulge: float) -> Iterator[Element]:
-    """Yield a line or arc of a polyline; ``bulge`` is the tangent of a quarter of the arc's angle."""
+    """Yield a line or arc of a polyline. ``bulge`` is the tangent of a quarter of the arc's angle."""
     if abs(bulge) < 1e-9:
         yield from make_line(start, end)
         return
@@ -229,7 +229,7 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
     """Limit the processor time of this thread in the ``with`` block to ``limit_s`` seconds.
 
-    ``report_elapsed`` is called with the processor time in seconds that has been used.
+    ``report_time`` is called with the processor time used so far, in seconds.
     """
     token = _limit.set(_Limit(time.thread_time(), limit_s, report_time))
     try:
@@ -239,9 +239,9 @@ def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READIN
 
 
 def check_work_limit() -> None:
-    """Check the work limit inside a loop over elements.
+    """Check the work limit; to be called inside loops over elements.
 
-    Raises DrawingError if the limit is exceeded, or the exception that ``report_elapsed`` raises.
+    Raises DrawingError if the limit is exceeded, or the exception that ``report_time`` raises.
     """
     limit = _limit.get()
     if limit is None:

@@ -1,8 +1,8 @@
 """Child process that reads one drawing.
 
 ``drawing_process`` starts it with the command ``python -m core.extras.drawings.drawing_child FILE MEMORY
-SECONDS``. The process writes the drawing, or the error, to stdout in the format of ``encode_drawing``.
-Output, logs and warnings of the drawing libraries are discarded.
+SECONDS``. It writes the drawing, or the error, to stdout in the format of ``encode_drawing``. Text output
+of the drawing libraries is discarded.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def limit_process(memory: int, seconds: int) -> None:
 
 
 def read_and_encode(path: Path) -> bytes:
-    """Read a drawing and return it as bytes; if reading fails, return the error as bytes."""
+    """Read a drawing and return it encoded as bytes, or return the encoded error if reading fails."""
     try:
         return encode_drawing(read_drawing(path))
     except DrawingError as error:

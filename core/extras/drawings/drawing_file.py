@@ -1,6 +1,6 @@
 """Reader of a drawing file, which is DXF or SVG according to its suffix.
 
-Empty and oversized files are rejected without being read.
+Empty and oversized files are rejected before they are read.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def has_drawing_suffix(name: str) -> bool:
 def read_drawing(path: Path) -> Drawing:
     """Return the lines and arcs of a drawing.
 
-    Raises only DrawingError, whose text is never the message of a library.
+    Raises no errors other than DrawingError. Its text is written by TurnDesk, not by a library.
     """
     if not has_drawing_suffix(path.name):
         raise DrawingError(

@@ -1,4 +1,4 @@
-"""Placement of a drawing on the lathe by its axis, face end and Z zero."""
+"""Placement of a drawing on the lathe: its axis, its face end and its Z zero."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _MEETS = 1e-3  # fraction of the drawing's width within which ends meet
 
 
 class FaceEnd(StrEnum):
-    """The end of the drawn axis at which the part's face is."""
+    """End of the drawn axis at which the face of the part is located."""
 
     RIGHT = "RIGHT"
     LEFT = "LEFT"
 
 
 class ZeroPosition(StrEnum):
-    """Position of the Z zero on the drawn part."""
+    """Point of the drawn part that is the Z zero."""
 
     FACE = "FACE"
     BACK = "BACK"
@@ -41,14 +41,17 @@ class ZeroPosition(StrEnum):
 
 
 class ContourSide(StrEnum):
-    """Side of the material whose contour is extracted."""
+    """Side of the part, outside or inside, whose contour is extracted."""
 
     OUTSIDE = "OUTSIDE"
     INSIDE = "BORE"
 
 
 class DrawingAxis(NamedTuple):
-    """An axis in the drawing: its name, and one point and the direction, both as (y, x)."""
+    """Candidate for the spindle axis in a drawing.
+
+    It contains a name, a point and a direction; point and direction are (y, x).
+    """
 
     name: str
     point: Point
@@ -59,8 +62,8 @@ class DrawingAxis(NamedTuple):
 class DrawingPlacement:
     """Placement of a drawing on the lathe.
 
-    ``unit`` is the size of a drawing unit in mm. ``shift`` is the Z in mm of the point that ``zero`` names.
-    ``gap`` is the widest gap in mm between element ends that are joined.
+    ``unit`` is the size of a drawing unit in mm. ``shift`` is the Z, in mm, of the point selected by
+    ``zero``. Element ends up to ``gap`` mm apart are joined.
     """
 
     axis: DrawingAxis
@@ -75,7 +78,7 @@ class DrawingPlacement:
 
 
 def find_axes(drawing: Drawing, layer: str = "") -> list[DrawingAxis]:
-    """Return the lines that may be the spindle axis, the most likely first."""
+    """Return the drawn lines that could be the spindle axis, with the most likely first."""
     there = _contour_lines(drawing, layer)
     if not there:
         return []
@@ -139,7 +142,7 @@ def _same(a: DrawingAxis, b: DrawingAxis) -> bool:
 
 
 def _lowest(there: Sequence[DrawnElement], low: float, width: float) -> float | None:
-    """Return the y of the lowest line if it may be the axis, or None.
+    """Return the y of the lowest line if it could be the spindle axis, otherwise None.
 
     The line must close most of the drawing, and other lines must meet both its ends.
     """
@@ -161,7 +164,10 @@ def _met(end: Point, others: Iterable[Element], wide: float) -> bool:
 
 
 def make_axis_from_line(drawing: Drawing, number: int) -> DrawingAxis:
-    """Return line ``number`` (from 1) as an axis. Raises DrawingError if it is missing or an arc."""
+    """Return line ``number`` of the drawing, counted from 1, as the spindle axis.
+
+    Raises DrawingError if the line does not exist or is an arc.
+    """
     if not 1 <= number <= len(drawing.elements):
         raise DrawingError(
             Message(
@@ -241,7 +247,8 @@ def place_elements(elements: Iterable[Element], placement: DrawingPlacement) -> 
 def find_contours(drawing: Drawing, placement: DrawingPlacement, layer: str = "") -> list[ElementGroup]:
     """Return the groups of connected elements on the side of the axis where the part is drawn.
 
-    Z is measured as in ``place_elements``. Raises DrawingError if the work limit is exceeded.
+    Z is measured from the drawing origin, as in ``place_elements``. Raises DrawingError if the work limit
+    is exceeded.
     """
     there = _contour_lines(drawing, layer)
     placed = list(place_elements((each.element for each in there), placement))
@@ -266,10 +273,10 @@ def _touches(net: ElementGroup, gap: float) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ContourProfile:
-    """One side of the contour from the face to the chuck, as (r, z) in mm.
+    """One side of the part contour, from the face to the chuck, as (r, z) in mm.
 
-    ``widest_closed_gap_mm`` is the width of the widest gap that was closed. ``front_z_mm`` and
-    ``back_z_mm`` are the ends of the part along Z.
+    ``widest_closed_gap_mm`` is the widest gap that was closed. ``front_z_mm`` and ``back_z_mm`` are the
+    ends of the part along Z.
     """
 
     elements: tuple[Element, ...]
@@ -285,7 +292,10 @@ def extract_profile(
     group: ElementGroup,
     side: ContourSide = ContourSide.OUTSIDE,
 ) -> ContourProfile:
-    """Return one side of a contour, with the chosen Z zero. Raises DrawingError if tracing fails."""
+    """Return one side of a contour, relative to the selected Z zero.
+
+    Raises DrawingError if the contour cannot be traced.
+    """
     try:
         walked = (
             trace_inner_side(group, placement.gap)

@@ -1,4 +1,4 @@
-"""Reader that reads a drawing in a separate process with limited time and memory, for safety."""
+"""Reader of drawings in a separate process, which limits processor time and memory for safety."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _read_output(process: subprocess.Popen[bytes]) -> bytes | None:
 
 
 def _ended(path: Path, status: int, limits: ReadingLimits) -> DrawingError:
-    """Return the error for a process that ended without a result."""
+    """Return the error to raise if the process has ended without a result."""
     if -status == getattr(signal, "SIGXCPU", 0):
         return _too_long(path, limits.processor_time_s)
     most = limits.memory_bytes // 1024**2

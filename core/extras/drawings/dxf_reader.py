@@ -1,4 +1,7 @@
-"""Reader of DXF drawings: lines, arcs, polylines, splines and ellipses of the model space and of blocks."""
+"""Reader of DXF drawings.
+
+It reads lines, arcs, polylines, splines and ellipses of the model space and of blocks.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +47,8 @@ The second argument is the maximum deviation of the arcs from a curve.
 def read_dxf(path: Path, data: bytes) -> Drawing:
     """Return the drawing of a DXF file.
 
-    Raises DrawingError if the drawing is rejected. Raises OSError, ValueError or an ezdxf error if the file
-    cannot be read or is invalid.
+    Raises DrawingError if the drawing is rejected, and OSError, ValueError or an ezdxf error if the file
+    cannot be read.
     """
     document = _document(path, data)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
@@ -94,7 +97,7 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
 def _content(document: Document, block: str) -> BlockContent:
     """Return the content of a block, or of the model space if ``block`` is an empty string.
 
-    For the model space, its own entities are not counted.
+    The count for the model space does not include its own entities.
     """
     entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
     own = 1 + len(entities) if block else 0

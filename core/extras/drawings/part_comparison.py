@@ -1,6 +1,6 @@
 """Comparison of the proved part with its drawing.
 
-The comparison finds material that remains and cuts that are too deep.
+It finds material that remains and cuts that are too deep.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PartDeviation:
-    """A deviation of the part from the drawing between two Z positions in mm.
+    """A deviation of the part from the drawing, in a range between two Z positions in mm.
 
     ``max_deviation_mm`` is the largest difference of the radius in mm; it is positive if material remains.
     """
@@ -73,7 +73,7 @@ def compare_part(
 def _find_drawing_radii(
     elements: Iterable[Element], z: FloatArray, side: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the smallest and the largest radius of the outermost line near each Z.
+    """Return the smallest and the largest radius of the outermost drawing line near each Z.
 
     At a shoulder these two radii differ.
     """

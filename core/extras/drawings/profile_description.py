@@ -1,4 +1,4 @@
-"""Functions for programs from drawings: proposed fields, remaining material, required offsets."""
+"""Functions for programs from drawings: field proposals, remaining material and required offsets."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CLOSED = 1e-4  # mm; narrower gaps are not reported
 def describe_program(
     program: ProfileProgram, comparison: DrawingComparison | None, profile: ContourProfile, *, is_metric: bool
 ) -> Iterator[str]:
-    """Yield sentences that describe the program and its differences from the drawing.
+    """Yield sentences that describe the program and the differences of its part from the drawing.
 
     Lengths are in the unit of the program.
     """
@@ -136,9 +136,9 @@ def convert_to_json(
 
 
 def _convert_nose_to_json(program: ProfileProgram) -> dict[str, Any]:
-    """Return a JSON object with the offset that G41 requires.
+    """Return a JSON object with the nose offset that G41 and G42 require.
 
-    The offset is a secondary offset or a cutting edge.
+    It is a secondary offset or a cutting edge.
     """
     nose = program.nose_offset
     if nose is not None and nose.quadrant:
@@ -175,7 +175,7 @@ def propose_fields(
     is_metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> dict[str, FieldValue]:
-    """Return the fields for ``make_profile_program``.
+    """Return the values of all fields for ``make_profile_program``.
 
     The result contains the given values, and proposals for all other fields.
     """
@@ -205,6 +205,6 @@ def propose_bar_diameter(profile: ContourProfile, *, is_metric: bool) -> float:
 
 
 def find_first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:
-    """Return the number of the first tool of a kind in the tool data, or 0."""
+    """Return the number of the first tool of a kind in the tool data, or 0 if there is none."""
     fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is is_inside)
     return next((n for n in fits if not shapes[n].is_rear_tool), 0)

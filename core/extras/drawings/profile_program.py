@@ -1,4 +1,4 @@
-"""Program for a profile, as a sequence of shapes: head, face, turning with G75, and grooves."""
+"""Program for a profile, as a sequence of shapes: program head, face, turning (G75) and grooves."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class UncutRange:
 
 
 class NoseOffset(NamedTuple):
-    """Offset that G41 and G42 of the program use, in mm with X as a radius.
+    """Offset that G41 and G42 use in the program, in mm with X as a radius.
 
-    ``offset_number`` is the number of a secondary offset, or of a cutting edge if ``quadrant`` is set.
+    ``offset_number`` is the number of a secondary offset, or of a cutting edge if ``quadrant`` is not 0.
     """
 
     offset_number: int
@@ -57,9 +57,9 @@ class NoseOffset(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ProfileProgram:
-    """A program for a profile, with its shapes, its lines and its uncut ranges.
+    """Program for a profile: its shapes, its lines, and the ranges that remain uncut.
 
-    Each shape has the settings that are active before it.
+    With each shape, the settings that are active before it are stored.
     """
 
     shapes: tuple[tuple[FilledShape, ProgramSettings], ...]
@@ -78,11 +78,15 @@ def make_profile_program(
     """Make the shapes for a profile, to be appended to ``lines``.
 
     If ``lines`` is empty, the program begins with a head. ``entered_values`` contains fields of HEAD, FACE,
-    TURN and GROOVE by name: UNIT, BAR and MATERIAL (the head), T and BLADE (the tools), STOCK, FROM, HOLE,
-    ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE. PAST is the distance by which the contour extends past
-    the part, in the program's unit; without it, the nose radius determines the distance. ``settings``
-    specifies the program language. Raises DrawingError if the tool has a nose radius but no tip quadrant,
-    if nothing remains to be turned, or if a shoulder is too steep for the tool.
+    TURN and GROOVE by name:
+
+    - UNIT, BAR and MATERIAL for the head, and T and BLADE for the tools
+    - STOCK, FROM, HOLE, ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP and WIDE
+    - PAST, the distance by which the contour extends past the part, in the program's unit; without it,
+      the nose radius determines the distance
+
+    Raises DrawingError if the tool has a nose radius but no tip quadrant, if nothing remains to be turned,
+    or if a shoulder is too steep for the tool.
     """
     writer = _Writer(list(lines), settings)
     if not lines:
@@ -129,7 +133,7 @@ def make_profile_program(
 
 
 class _Writer:
-    """Writer of consecutive shapes, each with the settings that the preceding lines leave active."""
+    """Writer of consecutive shapes, each with the settings that earlier lines leave active."""
 
     def __init__(self, lines: list[str], settings: ProgramSettings) -> None:
         self.lines, self.shapes = lines, list[tuple[FilledShape, ProgramSettings]]()
@@ -145,7 +149,7 @@ class _Writer:
         return SHAPES_BY_DIALECT[self._new.dialect][key]
 
     def add(self, key: str, typed: FieldValues, rows: tuple[ContourPoint, ...] = ()) -> None:
-        """Add the shape of a form, selected by its key, unless the shape has errors."""
+        """Add the shape with this key, filled with the typed values, unless it has errors."""
         now = self.current_settings
         one = fill_shape(self._shape(key), typed, now, rows)
         refused = one.find_errors(now)
@@ -158,7 +162,7 @@ class _Writer:
         self.lines += one.make_lines(now)
 
     def add_groove(self, typed: FieldValues | str, groove: OmittedGroove) -> Iterator[UncutRange]:
-        """Add a groove; if the groove cannot be cut, yield its range with the reason instead."""
+        """Add a groove, or yield its range with the reason if it cannot be cut."""
         span = groove.back_edge[1], groove.front_edge[1]
         if isinstance(typed, str):
             yield UncutRange(*span, typed)
@@ -202,8 +206,8 @@ def _calculate_allowance(
 ) -> dict[str, FieldValue]:
     """Return the finishing allowance that the nose radius requires.
 
-    The result is empty unless it is larger than the usual allowance. G75 has no nose compensation. On a
-    contour that falls at the angle a, the nose radius R cuts R (1 + sin a - cos a) too deep.
+    The result is empty unless it is larger than the usual allowance. G75 has no nose compensation. Where
+    the contour falls at the angle a, a nose of radius R cuts R (1 + sin a - cos a) too deep.
     """
     if settings.dialect is Dialect.SINUMERIK:
         return {}  # CYCLE95 compensates the nose radius
@@ -236,19 +240,16 @@ def _check_tip(tool: ToolShape | None, number: float, settings: ProgramSettings)
 
 
 def find_nose_radius(tool: ToolShape | None) -> float:
-    """Return the nose radius in mm from the tool data.
-
-    If the tool data does not specify it, the radius in the insert code is returned.
-    """
+    """Return the nose radius in mm from the tool data, or from the insert code if not specified."""
     if tool is None or tool.nose_radius or not tool.insert:
         return tool.nose_radius if tool is not None else 0.0
     return decode_insert_code(tool.insert).nose_radius
 
 
 def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
-    """Return the offset with which a touched-off tip cuts to size, or None without compensation.
+    """Return the offset with which a touched-off tip cuts to size, or None if it needs none.
 
-    In SINUMERIK the cutting edge also contains the nose radius and the tip quadrant.
+    On a SINUMERIK control, the cutting edge also contains the nose radius and the tip quadrant.
     """
     if not number or tool is None:
         return None
@@ -268,9 +269,10 @@ def calculate_end_extension(tool: ToolShape | None) -> float:
 
 
 def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
-    """Yield the contour, preceded by a move up the face if the contour falls from the face.
+    """Yield the contour, preceded by a move up the face if the contour starts toward the axis.
 
-    Roughing rejects a contour that falls at its start, because the return path would cross the contour.
+    Roughing rejects a contour that starts in this direction, because the return path would cross the
+    contour.
     """
     side = 1.0 if outside else -1.0
     r, z = elements[0].start
@@ -283,8 +285,8 @@ def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterato
 def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> Iterator[Element]:
     """Yield the contour, extended along Z by ``distance`` unless it ends in a wall.
 
-    After a fall of angle a, a tool with the nose radius R leaves the contour later by R tan (a / 2), and
-    the compensation needs this travel.
+    After a slope of angle a, a tool with the nose radius R leaves the contour R tan (a / 2) later. Nose
+    compensation needs this travel.
     """
     yield from elements
     (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
@@ -297,7 +299,7 @@ def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> I
 
 
 def _cut_at_radius(elements: Iterable[Element], r: float) -> Iterator[Element]:
-    """Yield the wall of a bore where it is wider than the drilled hole."""
+    """Yield the sections of a bore wall where the bore is wider than the drilled hole."""
     for each in elements:
         if each.end[0] >= r - _SAME:
             yield each
@@ -336,7 +338,7 @@ def _row(point: tuple[float, float], mm: float, arc: float) -> ContourPoint:
 
 
 def _find_blade_clearance(elements: Iterable[Element], groove: OmittedGroove, side: float) -> float:
-    """Return the radius in mm that the blade must clear as it moves from the face, or 0."""
+    """Return the radius in mm that the blade must clear on its move from the face, or 0 if none."""
     before = [
         p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front_edge[1] - _SAME
     ]
@@ -399,9 +401,9 @@ class _SlopedGroove(NamedTuple):
 
 
 def _leaning(groove: OmittedGroove, width: float) -> _SlopedGroove | None:
-    """Return a groove with sloped walls, or None if this groove has another form.
+    """Return a groove with straight sloped walls, or None if the groove does not have this form.
 
-    The result is None if the walls are square or curved, or if the bottom is narrower than the blade.
+    It is None if the walls are square or curved, or if the bottom is narrower than the blade.
     """
     if len(groove.elements) != 3 or not all(isinstance(each, Line) for each in groove.elements):
         return None
@@ -416,7 +418,7 @@ def _leaning(groove: OmittedGroove, width: float) -> _SlopedGroove | None:
 
 
 def _blade(typed: FieldValues, settings: ProgramSettings) -> float | None:
-    """Return the width of the blade in the program's unit, or None."""
+    """Return the width of the blade in the program's unit, or None if it is not specified."""
     if not _number(typed, "BLADE"):
         return None
     shape = settings.tool(_number(typed, "BLADE"))
@@ -425,7 +427,7 @@ def _blade(typed: FieldValues, settings: ProgramSettings) -> float | None:
 
 
 def _square(groove: OmittedGroove, width: float, side: float) -> tuple[float, float, float, float] | None:
-    """Return the Z of both walls, the r of the bottom and the edge chamfer.
+    """Return the dimensions of a square groove: Z of both walls, r of the bottom, and edge chamfer.
 
     The result is None if the blade does not fit.
     """
@@ -444,7 +446,7 @@ def _square(groove: OmittedGroove, width: float, side: float) -> tuple[float, fl
 
 
 def _chamfer(inner: Sequence[Element], side: float) -> float:
-    """Return the size of equal 45-degree chamfers on both edges, or 0."""
+    """Return the size of equal 45-degree chamfers on both edges, or 0 if there are none."""
     sizes = []
     for each in (inner[0], inner[-1]):
         dr, dz = abs(each.end[0] - each.start[0]), abs(each.end[1] - each.start[1])
@@ -479,7 +481,7 @@ def _one_plunge(groove: OmittedGroove, width: float, side: float) -> tuple[float
 
 
 def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[float]:
-    """Yield the radii of a contour at both ends of a range and at the points within it."""
+    """Yield the radii of a contour at both ends of a Z range and at the element ends within it."""
     for each in elements:
         walls = (Line((-1e5, z), (1e5, z)) for z in (low, high))
         for point in (p for wall in walls for p in find_intersections(wall, each)):

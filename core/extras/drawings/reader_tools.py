@@ -1,4 +1,4 @@
-"""Functions shared by the drawing readers, which limit expansion and convert curves to arcs."""
+"""Functions shared by the drawing readers: limits for block expansion, and arc fits to curves."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ CurveFunction = Callable[[float], CurvePoint]
 
 
 def fit_arcs(curve: CurveFunction, tolerance: float, min_pieces: int = 1) -> Iterator[Element]:
-    """Yield tangent arcs that deviate from a curve by at most ``tolerance``.
+    """Yield arcs, joined tangentially, that deviate from a curve by at most ``tolerance``.
 
     The curve is divided into at least ``min_pieces`` pieces.
     """
@@ -66,9 +66,10 @@ def _between(begin: float, end: float) -> Iterator[float]:
 
 
 def _is_point(curve: CurveFunction, begin: float, end: float, at: Point, tolerance: float) -> bool:
-    """Return whether a piece remains within the tolerance of its start, so that halving it is useless.
+    """Return whether a piece stays within the tolerance of its start, so that it is only a point.
 
-    CAD programs write splines with coincident control points, whose spans have no length and no direction.
+    CAD programs write splines with coincident control points, whose spans have neither length nor
+    direction.
     """
     return all(math.dist(curve(t).point, at) <= tolerance for t in (*_between(begin, end), end))
 
@@ -79,7 +80,7 @@ def _unit(v: Point) -> Point | None:
 
 
 def _joint(a: CurvePoint, b: CurvePoint) -> Point | None:
-    """Return the point where the two arcs of a biarc meet, or None.
+    """Return the point where the two arcs of a biarc meet, or None if no such point exists.
 
     The tangent lengths at both ends are equal.
     """
@@ -118,7 +119,7 @@ def _bulge(at: Point, tangent: Point, to: Point) -> float:
 def _find_max_deviation(
     curve: CurveFunction, begin: float, end: float, a: CurvePoint, joint: Point, b: CurvePoint
 ) -> float:
-    """Return the largest distance of points on the curve from the nearer of the two arcs."""
+    """Return the largest distance of the curve from the nearer of the two arcs that replace it."""
     first = a.point, joint, _bulge(a.point, a.tangent, joint)
     last = joint, b.point, -_bulge(b.point, (-b.tangent[0], -b.tangent[1]), joint)
     if max(abs(first[2]), abs(last[2])) > 1.0:
@@ -170,7 +171,8 @@ def check_expansion(
 ) -> None:
     """Reject a file whose blocks contain themselves or expand to more than ``MAX_ELEMENTS`` entities.
 
-    ``remaining_count`` is an additional allowance for entities in the file itself. Raises DrawingError.
+    ``remaining_count`` more entities are permitted for the file itself. Raises DrawingError if the file is
+    rejected.
     """
     if _count(name, root, content) > MAX_ELEMENTS + remaining_count:
         raise DrawingError(
@@ -185,7 +187,7 @@ def check_expansion(
 
 
 def _count(name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent]) -> int:
-    """Count entities depth first, without recursion because blocks may be nested too deep for Python."""
+    """Count the entities depth first, without recursion because blocks may be nested deeply."""
     known: dict[Hashable, int] = {}
     waiting: dict[Hashable, BlockContent] = {}
     stack: list[Hashable] = [root]

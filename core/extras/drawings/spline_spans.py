@@ -1,7 +1,7 @@
 """Spans of a spline between its knots, and a fit of two arcs to all spans at once.
 
-A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all of them are so short that two arcs
-fit. The fit is the same as in ``reader_tools.fit_arcs``, which halves the spans that two arcs do not fit.
+A spline in a drawing of 2 MB has tens of thousands of spans, most of which are so short that two arcs fit.
+``reader_tools.fit_arcs`` uses the same fit, and halves spans that two arcs do not fit.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class SplineSpans(NamedTuple):
 
 
 class Biarc(NamedTuple):
-    """Two tangent arcs from ``start`` through ``joint`` to ``end``.
+    """Two tangent arcs from ``start`` through their common point ``joint`` to ``end``.
 
     ``bulges`` contains the tangents of a quarter of their angles.
     """
@@ -52,8 +52,8 @@ def make_spans(
 ) -> SplineSpans:
     """Return the spans of a spline with these control points.
 
-    If ``weights`` is empty, all weights are 1. Each Bézier point is the polar form of the spline at the
-    knots at both ends of its span. Raises ValueError if the knots interrupt the spline.
+    If ``weights`` is empty, all weights are 1. The Bézier points of a span are values of the spline's polar
+    form (blossom) at the knots of the span. Raises ValueError if the knots interrupt the spline.
     """
     control, knot = _homogeneous(points, weights), np.sort(np.array(list(knots), dtype=np.float64))
     at = np.arange(degree, len(control))
@@ -148,7 +148,7 @@ def _points(control: FloatArray, u: float) -> FloatArray:
 
 
 def _ends(spans: SplineSpans, u: float) -> tuple[FloatArray, FloatArray]:
-    """Return the span points at ``u``, and the directions measured just inside the spans."""
+    """Return the points of all spans at ``u``, and the directions measured just inside the spans."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
     pair = _levels(spans.control_points, held, 2)
     p, q = pair[:, 0], pair[:, 1]
@@ -174,7 +174,7 @@ def _joints(
 
 
 def _bulges(at: FloatArray, tangents: FloatArray, to: FloatArray) -> FloatArray:
-    """Return the bulges of arcs from their starts, their start directions and their ends."""
+    """Return the bulges of arcs, given their start points, start directions and end points."""
     d = to - at
     half = np.arctan2(tangents[:, 0] * d[:, 1] - tangents[:, 1] * d[:, 0], (tangents * d).sum(axis=1))
     return np.where(np.abs(half) < STRAIGHT_TOLERANCE, 0.0, np.tan(0.5 * half))

@@ -1,6 +1,6 @@
 """Reader of SVG drawings with paths, lines, polylines, rectangles, circles and transforms.
 
-Y is upward.
+In the result, Y points upward.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def _shapes(name: str, data: bytes) -> Any:
 def _check_elements(name: str, text: bytes) -> None:
     """Reject dimensions that are not numbers, and reused groups (``<use>``) with too many elements.
 
-    Raises DrawingError if the drawing is rejected, or ParseError if the XML is invalid.
+    Raises DrawingError if an element is rejected, or ParseError if the XML is invalid.
     """
     root = ElementTree.fromstring(text)
     by_id: dict[str, list[Element_]] = {}
@@ -186,9 +186,9 @@ def _up(point: Any) -> Point:
 
 
 def _make_ellipse_curve(element: Any) -> Any:
-    """Return an elliptic arc as a curve, with directions calculated from differences.
+    """Return an elliptic arc as a curve, with tangent directions calculated from differences.
 
-    The differences are accurate enough for the joint of two arcs.
+    The differences are accurate enough to place the junction of two arcs.
     """
     begin, step = element.get_start_t(), 1e-6
 

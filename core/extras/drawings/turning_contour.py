@@ -1,4 +1,4 @@
-"""Contour that a turning tool can follow with its nose, without grooves and faces.
+"""Contour that the nose of a turning tool can follow, without grooves and faces.
 
 The calculation is for an outside contour. The wall of a bore is mirrored about the axis before and after
 the calculation.
@@ -31,7 +31,7 @@ _MOST = math.radians(179.0)  # largest angle of an arc that R can specify
 
 @dataclass(frozen=True, slots=True)
 class OmittedGroove:
-    """A range that a turning tool omits.
+    """A groove in the contour that a turning tool omits.
 
     ``elements`` are in order from the edge at the face to the edge at the chuck.
     """
@@ -40,20 +40,21 @@ class OmittedGroove:
 
     @property
     def front_edge(self) -> Point:
-        """Return the edge at the face as (r, z)."""
+        """Return the groove edge at the face as (r, z)."""
         return self.elements[0].start
 
     @property
     def back_edge(self) -> Point:
-        """Return the edge at the chuck as (r, z)."""
+        """Return the groove edge at the chuck as (r, z)."""
         return self.elements[-1].end
 
 
 @dataclass(frozen=True, slots=True)
 class TurningContour:
-    """Contour for a turning tool, with the grooves for a blade and the ranges that neither tool can reach.
+    """Contour for a turning tool, with the grooves for a blade and the ranges that no tool can reach.
 
-    ``unreachable_ranges`` contains (z, z, reason) for each of these ranges.
+    ``unreachable_ranges`` contains (z, z, reason) for each range that neither the tool nor the blade can
+    reach.
     """
 
     elements: tuple[Element, ...]
@@ -64,10 +65,10 @@ class TurningContour:
 
 @dataclass(frozen=True, slots=True)
 class ToolReach:
-    """Contour angles that the edges of a tool permit, in radians.
+    """Slope angles of a contour that the edges of a tool can follow, in radians.
 
-    ``max_falling_angle_rad`` is the steepest fall toward the chuck, and ``max_rising_angle_rad`` the
-    steepest rise.
+    ``max_falling_angle_rad`` applies where the radius decreases toward the chuck, and
+    ``max_rising_angle_rad`` where it increases.
     """
 
     max_falling_angle_rad: float = 0.0
@@ -90,7 +91,10 @@ def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReac
 
 
 def _straight(points: Sequence[Point]) -> float | None:
-    """Return the angle between the axis and an edge's first straight piece after the nose, or None."""
+    """Return the angle between the axis and the first straight piece of a tool edge after the nose.
+
+    The result is None if the edge has no straight piece.
+    """
     for (z0, r0), (z1, r1) in pairwise(points):
         if math.hypot(z1 - z0, r1 - r0) > _CHORD:
             return math.atan2(abs(r1 - r0), abs(z1 - z0))
@@ -98,7 +102,7 @@ def _straight(points: Sequence[Point]) -> float | None:
 
 
 def make_turning_contour(profile: ContourProfile, reach: ToolReach) -> TurningContour:
-    """Return the part of a profile that a tool with this reach can turn.
+    """Return the part of a profile that a tool with the given reach can turn.
 
     Raises DrawingError if nothing remains to be turned, or if the tool's leading edge would cut into a
     shoulder.
@@ -170,7 +174,7 @@ def _remove_undercuts(elements: list[Element], left: list[tuple[float, float, st
 
 
 def _replace_under_lip(contour: list[Element], lip: Point) -> None:
-    """Replace the elements under a lip with a wall."""
+    """Replace the contour elements under an overhanging lip with a wall."""
     while contour and contour[-1].start[1] < lip[1]:
         contour.pop()
     if contour and contour[-1].end[1] < lip[1]:
@@ -183,7 +187,7 @@ def _replace_under_lip(contour: list[Element], lip: Point) -> None:
 
 
 def _add_wall_under_edge(contour: list[Element], elements: Sequence[Element], at: int, edge: Point) -> int:
-    """Add a wall from an edge to the point where the contour reappears.
+    """Add a wall from an edge toward the axis, to the point where it meets the contour again.
 
     Return the number of the next element after the wall.
     """
@@ -202,17 +206,17 @@ def _wall(a: Point, b: Point) -> list[Element]:
 
 
 def _find_point_at_z(element: Element, z: float) -> Point:
-    """Return the point of an element at this Z."""
+    """Return the point of an element at the given Z."""
     return _crossing(element, Line((-1e5, z), (1e5, z))) or element.start
 
 
 def _crossing(element: Element, line: Line) -> Point | None:
-    """Return the first point along an element at which it meets a line, or None."""
+    """Return the first point of an element at which it meets a line, or None if they do not meet."""
     return min(find_intersections(line, element), key=element.get_distance_from_start, default=None)
 
 
 def _without_face(elements: list[Element]) -> list[Element]:
-    """Return the contour without the face at its front and without a wall at its end."""
+    """Return the contour without the face at its front and without the wall at its end."""
     begin = 0
     while begin < len(elements) and abs(elements[begin].end[1] - elements[0].start[1]) <= _SAME:
         begin += 1
@@ -226,9 +230,9 @@ def _without_face(elements: list[Element]) -> list[Element]:
 
 
 def _fall(element: Element) -> float:
-    """Return the steepness of an element's fall toward the chuck, in radians.
+    """Return the largest slope angle of a contour element toward the axis and chuck, in radians.
 
-    The steepness is negative if the element rises.
+    The angle is negative if the radius of the element increases toward the chuck.
     """
     ways = (element.start_direction, element.end_direction)
     found = (math.atan2(-direction[0], max(-direction[1], 0.0)) for direction in ways)
@@ -263,7 +267,7 @@ def _bridged(
 ) -> tuple[list[Element], list[OmittedGroove]]:
     """Return the contour without the ranges that are too steep, and these ranges as grooves.
 
-    A range is too steep if it falls more steeply than the edge of the tool.
+    A range is too steep if its slope toward the axis exceeds ``fall``, which the tool edge permits.
     """
     most = fall - _SPARE if fall > _LEVEL else 0.0
     kept: list[Element] = []
@@ -305,9 +309,9 @@ def _level(a: Point, b: Point) -> list[Element]:
 
 
 def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
-    """Return the element and the point at which a falling contour is again as high as its edge.
+    """Return the element and the point at which the contour, after a recess, reaches its edge radius.
 
-    If the contour does not return to this height, the result is the number of elements and None.
+    If the contour does not return to this radius, the result is the number of elements and None.
     """
     edge = elements[at].start
     for number in range(at, len(elements)):
@@ -321,7 +325,10 @@ def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
 
 
 def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add the falling elements that the tool can follow; return the number of the next element."""
+    """Add the elements whose slope toward the axis the tool can follow.
+
+    Return the number of the next element.
+    """
     while _fall(elements[at]) <= most:
         kept.append(elements[at])
         at += 1
@@ -336,7 +343,7 @@ def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) 
 
 
 def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add a line from an edge to the contour along the steepest slope that the tool permits.
+    """Add a line at the steepest slope that the tool permits, from an edge to the contour.
 
     Return the number of the next element.
     """
@@ -397,7 +404,7 @@ _STRAIGHT = 0.1  # rad; the error of omitting such an arc is at most 0.0015 mm
 def add_nose_fillets(
     elements: Sequence[Element], nose_radius: float, *, is_inside: bool
 ) -> tuple[Element, ...]:
-    """Return the contour with fillets where a nose of this radius in mm would not fit.
+    """Return the contour with fillets in corners that a nose of this radius in mm cannot enter.
 
     If no continuous path remains, the contour is returned unchanged; the proof of the program then reports
     the location.
@@ -427,7 +434,7 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
 
 
 def _follows(contour: Sequence[Element], nose_radius: float) -> bool:
-    """Return whether nose compensation can follow the contour; the control's own calculation decides."""
+    """Return whether the control's calculation of nose compensation can follow the contour."""
     try:
         offset_known_contour(contour, nose_radius)
     except GougeError:

@@ -1,4 +1,4 @@
-"""Check for drawings in a wrong unit: too large for the travel, but fitting in another unit."""
+"""Detection of drawings in a wrong unit, which exceed the travel but would fit in another unit."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ UNIT_SIZES_MM = {"MM": 1.0, "INCH": 25.4}
 def detect_wrong_unit(
     group: ElementGroup, unit_mm: float, travel: tuple[float, float]
 ) -> tuple[str, str] | None:
-    """Return the excessive size and the smaller unit in which the contour would fit, or None.
+    """Return the excessive size, and a smaller unit in which the contour would fit, or None.
 
-    ``unit_mm`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in
-    mm, or 0 if unknown. The result is None if the contour fits, or if it does not fit in a smaller unit
-    either.
+    ``unit_mm`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z
+    in mm, or 0 if unknown. The result is None if the contour fits, or if it does not fit in any smaller
+    unit.
     """
     low, high, radius = group.extent_mm
     if not all(travel) or _fits(high - low, radius, travel):

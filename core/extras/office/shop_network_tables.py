@@ -1,4 +1,4 @@
-"""Tables [status_page] and [announce] of the machine file: office page, MQTT broker and web hook."""
+"""Tables [status_page] and [announce] of the machine file: office page, MQTT broker and webhook."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _WEB = ("http://", "https://")
 class StatusPageTable:
     """Settings of the office page, including the other machines that it shows.
 
-    The other machines are office pages of other TurnDesks and devices of MTConnect agents. ``token`` is the
-    password for browsers. It may be empty only if no other computer can connect.
+    The other machines are office pages of other TurnDesk installations, and devices of MTConnect agents.
+    ``token`` is the password for browsers. It may be empty only if no other computer can connect.
     """
 
     enabled: bool = declare_key(default=False, meaning="true: TurnDesk serves the office page.")
@@ -56,16 +56,16 @@ class StatusPageTable:
 
     @property
     def agent_addresses(self) -> tuple[str, ...]:
-        """Return the addresses of the devices at their MTConnect agents."""
+        """Return the addresses of the machines that are devices of MTConnect agents."""
         return tuple(self.agents.split())
 
 
 @make_key_table
 class AnnounceTable:
-    """Settings of the MQTT broker (``host:port``) and of the web hook.
+    """Settings of the MQTT broker (``host:port``) and of the webhook.
 
-    An empty address disables the broker or the web hook. ``again`` is the time in seconds after which
-    TurnDesk retries a broker or host that did not respond.
+    An empty address disables the broker or the webhook. ``again`` is the time in seconds after which
+    TurnDesk retries a broker or webhook host that did not respond.
     """
 
     mqtt: str = declare_key(
@@ -86,7 +86,7 @@ class AnnounceTable:
 
 
 def is_loopback(address: str) -> bool:
-    """Return whether the address accepts connections from this computer only."""
+    """Return whether the address can be reached from this computer only."""
     try:
         return ip_address(address).is_loopback
     except ValueError:

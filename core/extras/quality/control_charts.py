@@ -1,8 +1,8 @@
 """Shewhart control charts (X-bar/R, I-MR) and process capability (ISO 22514-2).
 
-The limits are at three standard deviations within the samples, with the constants of ISO 7870-2 and ASTM
-E2587 for normally distributed values. Lengths may have any unit. The rules that detect drift are those of
-Western Electric (1956) and Nelson (1984), with Nelson's numbers.
+The control limits are three within-sample standard deviations from the center line. The constants are from
+ISO 7870-2 and ASTM E2587, for normally distributed values. Lengths may have any unit. The rules that detect
+drift are those of Western Electric (1956) and Nelson (1984), with Nelson's numbers.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _ONE_SIDED_95 = 1.645  # quantile of the normal distribution
 
 @dataclass(frozen=True, slots=True)
 class Capability:
-    """Process capability of a feature.
+    """Process capability of a measured feature.
 
-    ``cp`` and ``pp`` are None if one of the limits is missing. All indices are None if the values do not
-    vary.
+    ``cp`` and ``pp`` are None if one of the tolerance limits is missing. All indices are None if the values
+    do not vary.
     """
 
     count: int
@@ -39,9 +39,9 @@ class Capability:
 
     @property
     def cpk_lower_bound(self) -> float | None:
-        """Return the lower 95 % confidence limit of Cpk (Bissell 1990), or None.
+        """Return the lower 95 % confidence limit of Cpk (Bissell 1990), or None if Cpk is unknown.
 
-        The limit is low if there are few readings.
+        With few readings, this limit is far below Cpk.
         """
         if self.cpk is None:
             return None
@@ -54,9 +54,9 @@ def calculate_capability(
 ) -> Capability:
     """Calculate the capability from values in the order of the parts, in samples of ``sample_size``.
 
-    Raises QualityError if there are fewer than 10 values, if there are no limits, or if the limits are in
-    the wrong order. Also raises QualityError as ``make_charts`` does, for example if there are fewer than 2
-    complete samples.
+    Raises QualityError if there are fewer than 10 values, or if the tolerance limits are missing or
+    reversed. Also raises it in the same cases as ``make_charts``, for example with fewer than 2 complete
+    samples.
     """
     if lower is None and upper is None:
         raise QualityError(
@@ -86,10 +86,10 @@ def calculate_capability(
 def _indices(
     mean: float, sigma: float, lower: float | None, upper: float | None
 ) -> tuple[float | None, float | None]:
-    """Return two capability indices: one ignores the position of the mean, the other includes it.
+    """Return two capability indices: first without, then with the position of the mean.
 
-    The first index is the tolerance divided by six standard deviations. The second index is the distance
-    from the mean to the nearer limit, divided by three standard deviations.
+    The first index is the tolerance divided by six standard deviations. The second is the distance from the
+    mean to the nearer limit, divided by three standard deviations.
     """
     if sigma <= 1e-12:
         return None, None  # the resolution of the gauge is too coarse to show the variation
@@ -107,10 +107,10 @@ MIN_STABLE_POINTS = 20
 
 
 class ChartFactors(NamedTuple):
-    """Factors for a sample of n values.
+    """Control chart factors for a sample of n values.
 
-    The factors are for the limits of averages (``a2``) and of ranges (``d3``, ``d4``), and for the ratio of
-    range to standard deviation (``d2``).
+    ``a2`` is for the limits of averages, and ``d3`` and ``d4`` for the limits of ranges. ``d2`` is the
+    ratio of the mean range to the standard deviation.
     """
 
     a2: float
@@ -136,7 +136,7 @@ SAMPLE_SIZES = range(2, 11)
 
 @dataclass(frozen=True, slots=True)
 class ControlChart:
-    """A control chart with its points in order, its center line and its two limits."""
+    """A control chart: its points in order, its center line and its control limits."""
 
     point_values: FloatArray
     center_line: float
@@ -153,7 +153,7 @@ class ControlChart:
 
     @property
     def has_stable_limits(self) -> bool:
-        """Return whether there are enough points for stable limits."""
+        """Return whether the chart has enough points for stable control limits."""
         return len(self.point_values) >= MIN_STABLE_POINTS
 
 
@@ -173,9 +173,9 @@ class ControlChartPair:
 def make_charts(values: Sequence[float], sample_size: int) -> ControlChartPair:
     """Return the control charts of values in the order of the parts.
 
-    If ``sample_size`` is 1, the charts are for individuals, otherwise X-bar/R. An incomplete last sample is
-    omitted. Raises QualityError if the sample size is not supported, if a value is not a number, or if
-    there are fewer than 2 values or 2 complete samples.
+    If ``sample_size`` is 1, the charts are individuals charts, otherwise X-bar/R charts. An incomplete last
+    sample is omitted. Raises QualityError if the sample size is not supported, a value is not a number, or
+    fewer than 2 values or complete samples exist.
     """
     if sample_size == 1:
         return make_individuals_charts(values)
@@ -257,7 +257,10 @@ ZoneArray = npt.NDArray[np.float64]
 
 
 class RuleViolation(NamedTuple):
-    """A violated rule: the index (from 0) of the run's last point, the rule's number, and its text."""
+    """A violation of a control chart rule.
+
+    It contains the index (from 0) of the last point of the run, the number of the rule, and its text.
+    """
 
     point_index: int
     rule_number: int
@@ -265,7 +268,10 @@ class RuleViolation(NamedTuple):
 
 
 def find_rule_violations(chart: ControlChart) -> tuple[RuleViolation, ...]:
-    """Return the violations of all rules, sorted by point, or () if the points do not vary."""
+    """Return the violations of all chart rules, in the order of the points.
+
+    The result is empty if the points do not vary.
+    """
     if chart.standard_deviation_mm <= 0.0 or not len(chart.point_values):
         return ()
     zones = (chart.point_values - chart.center_line) / chart.standard_deviation_mm
@@ -303,9 +309,10 @@ def _alternating(zones: ZoneArray) -> bool:
 
 
 def _so_many(zones: ZoneArray, count: int, beyond: float) -> bool:
-    """Return whether enough points, including the last point, are beyond a limit on the same side.
+    """Return whether enough points exceed a limit on the same side of the center line.
 
-    ``count`` is the minimum number of such points, and ``beyond`` is the limit in sigma.
+    The last point must be one of them. ``count`` is the required number of points, and ``beyond`` is the
+    limit in sigma.
     """
     side = 1.0 if zones[-1] > 0.0 else -1.0
     far = zones * side > beyond

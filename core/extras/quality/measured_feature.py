@@ -1,9 +1,9 @@
 """Measured feature of a part: nominal size, limits, correcting offset and proposed correction.
 
-Lengths are in mm, and diameters are not halved. ``grows`` is +1 if the feature becomes larger with a larger
-correction, or -1 if it becomes smaller. A larger X increases any diameter, outside or inside, if the tool
-is at positive X, and decreases it if the tool is at negative X. For a length, the sign depends on the end
-that the tool cuts.
+Lengths are in mm, and diameters are not halved. ``grows`` is +1 if a larger correction makes the feature
+larger, or -1 if it makes the feature smaller. A larger X increases any diameter, outside or inside, if the
+tool is at positive X, and decreases it if the tool is at negative X. For a length, the sign depends on the
+end that the tool cuts.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MAX_SAMPLE_INTERVAL = 10_000
 
 
 class FeatureKind(StrEnum):
-    """Kind of size that is measured."""
+    """Kind of size of a measured feature: a diameter or a length."""
 
     DIAMETER = "diameter"
     LENGTH = "length"
@@ -42,8 +42,8 @@ class CorrectingOffset(StrEnum):
 class MeasuredFeature:
     """A measured feature of a part.
 
-    ``low`` and ``high`` are deviations from the nominal size. ``every`` is the number of parts between two
-    measurements, or 0 without a sampling plan.
+    ``low`` and ``high`` are deviations from the nominal size. ``every`` is the sampling interval in parts,
+    or 0 if there is no sampling plan.
     """
 
     name: str
@@ -171,10 +171,9 @@ _FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 class CorrectionRule:
     """Rule for corrections, with a dead band and a step.
 
-    ``dead_band_share`` is the fraction of the tolerance within which nothing is corrected. ``step_share``
-    is the fraction of the deviation that is corrected. ``reading_count`` is the number of newest readings
-    that are averaged. With a step of one half, the corrections follow the variation of single parts only
-    half as much.
+    Within ``dead_band_share`` of the tolerance, nothing is corrected. ``reading_count`` newest readings are
+    averaged, and ``step_share`` of their deviation is corrected. A step of one half also halves the effect
+    of the variation between parts.
     """
 
     dead_band_share: float = 0.1
@@ -205,7 +204,7 @@ def propose_correction(
     """Propose a correction from the newest readings since the last correction.
 
     The change is a multiple of ``resolution`` in mm; X changes as a diameter. Raises QualityError if there
-    are no readings, if a reading is not finite, or if wear cannot explain a reading or the change.
+    are no readings, a reading is not finite, or the deviation or the change is too large to be wear.
     """
     rule = rule or CorrectionRule()
     if not readings:
@@ -265,7 +264,7 @@ def _nothing(feature: MeasuredFeature, count: int, mean: float, why: str) -> Cor
 def _round_to_resolution(length: float, resolution: float) -> float:
     """Return a length rounded to the resolution.
 
-    Halves are rounded toward zero, so that the length is never too large.
+    Half steps are rounded toward zero, so that a correction is never too large.
     """
     steps = math.ceil(abs(length) / resolution - 0.5 - 1e-9)
     return math.copysign(max(0, steps) * resolution, length) if steps > 0 else 0.0

@@ -1,6 +1,6 @@
 """Analysis of production stops: Pareto analysis, times between stops, and availability.
 
-The availability of a shift is the fraction of its time in which parts were made (ISO 22400-2).
+The availability of a shift is the fraction of its time in which a cycle ran (ISO 22400-2).
 """
 
 from __future__ import annotations
@@ -13,7 +13,10 @@ from core.message import Message
 
 
 class ProductionStop(NamedTuple):
-    """A production stop: its reason, and its start and duration in seconds of one clock."""
+    """A production stop: its reason, its start and its duration.
+
+    Start and duration are in seconds of the same clock.
+    """
 
     reason: str
     start_s: float
@@ -21,10 +24,10 @@ class ProductionStop(NamedTuple):
 
 
 class StopReasonTotal(NamedTuple):
-    """Total of all stops with the same reason.
+    """Total of all production stops with the same reason.
 
     ``share`` is the fraction of the total stop time. ``together`` is the cumulative fraction of this reason
-    and all reasons with a longer duration.
+    and all reasons with a longer total.
     """
 
     reason: str
@@ -76,14 +79,14 @@ def calculate_times_between(stops: Sequence[ProductionStop]) -> tuple[float, ...
 
 
 class TimeSpan(NamedTuple):
-    """A period from ``start_s`` to ``end_s``, in seconds of one clock."""
+    """A period from ``start_s`` to ``end_s``, in seconds of the same clock."""
 
     start_s: float
     end_s: float
 
 
 class Availability(NamedTuple):
-    """Availability of a shift, as the duration of the shift and of its running cycles in seconds."""
+    """Availability of a shift: its duration, and the time in which a cycle ran, in seconds."""
 
     planned_s: float
     producing_s: float

@@ -34,9 +34,9 @@ _INCHES, _MILLIMETRES = 12.0, 1000.0
 
 
 def solve_taper(known_values: Mapping[str, FieldValue]) -> dict[str, float]:
-    """Return the known values of SMALL, LARGE, LONG and ANGLE, and the fourth value if three are known.
+    """Return the known values of a taper, and the fourth value if three are known.
 
-    ANGLE is the angle to the axis in degrees.
+    The values are SMALL, LARGE, LONG and ANGLE. ANGLE is the angle to the axis in degrees.
     """
     at = {
         word: number(known_values, word)
@@ -126,7 +126,7 @@ TAPER_CALCULATOR = Shape(
 
 
 def _around(values: FieldValues, settings: ProgramSettings) -> float:
-    """Return the rpm that corresponds to a surface speed of 1, or 0 if the diameter is unknown."""
+    """Return the rpm for a surface speed of 1, or 0 if the diameter is unknown."""
     across = number(values, "DIA")
     return (_MILLIMETRES if settings.metric else _INCHES) / (math.pi * across) if across else 0.0
 
@@ -285,9 +285,9 @@ def _thread_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fi
 
 
 def _passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the number of passes that results from the specified first depth.
+    """Return the number of thread passes that results from the specified first depth.
 
-    If no first depth is specified, the number that insert makers recommend is returned.
+    If no first depth is specified, return the number that insert makers recommend.
     """
     first, deep = number(values, "FIRST"), abs(number(values, "CREST") - number(values, "ROOT")) / 2.0
     if first and deep:

@@ -24,9 +24,9 @@ MAX_RPM = 100_000.0
 
 
 def make_tool_field(*kinds: ToolKind) -> ShapeField:
-    """Return a tool field with a proposal.
+    """Return a tool field that proposes a tool.
 
-    The proposal is the first unused tool of these kinds, otherwise the next free number.
+    The proposal is the first unused tool of these kinds, or the next free number if there is none.
     """
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
@@ -43,14 +43,14 @@ def make_tool_field(*kinds: ToolKind) -> ShapeField:
 
 
 def find_next_tool(settings: ProgramSettings) -> int:
-    """Return the first number above all used tool numbers that is not in the tool data."""
+    """Return the first tool number above all used numbers that is not in the tool data."""
     first = max(settings.used, default=0) + 1
     free = (n for n in range(first, _MOST_TOOL + 1) if n not in settings.shop.tools)
     return next(free, min(first, _MOST_TOOL))
 
 
 def propose_bar_diameter(_values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the bar diameter specified in the program head as a proposal."""
+    """Return the bar diameter specified in the program head, or None if it is not specified."""
     return settings.bar or None
 
 
@@ -104,7 +104,7 @@ def check_rpm(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[
 
 
 def check_feeds(filled_shape: FilledShape, settings: ProgramSettings, *words: str) -> Iterator[FieldError]:
-    """Yield errors for feeds per revolution that are far too high."""
+    """Yield errors for feeds per revolution that exceed a plausible maximum."""
     most = 0.05 * 25.4 / settings.mm
     for word in words:
         if filled_shape.get_number(word) > most:
@@ -117,7 +117,7 @@ def check_feeds(filled_shape: FilledShape, settings: ProgramSettings, *words: st
 
 
 def check_flute_length(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if DEEP exceeds the flute length in the tool data."""
+    """Yield an error if the depth (DEEP) exceeds the flute length in the tool data."""
     shape, deep = settings.tool(filled_shape.get_number("T")), filled_shape.get_number("DEEP")
     if shape is not None and shape.length and deep > shape.length / settings.mm + 1e-9:
         yield FieldError(

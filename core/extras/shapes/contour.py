@@ -1,4 +1,7 @@
-"""Contour as a table of points (X, Z, chamfer or radius, arc), and its conversion to lines."""
+"""Contour as a table of points, and its conversion to program lines.
+
+A row contains X, Z, a chamfer or radius, and an arc.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,7 @@ class ContourPoint:
 
 
 def make_point_label(number: int) -> str:
-    """Return the name of a row in error messages. Row numbers start at 1."""
+    """Return the name of a table row for error messages. Row numbers start at 1."""
     return f"#{number}"
 
 
@@ -59,7 +62,7 @@ def resolve_points(rows: Iterable[ContourPoint]) -> list[Point]:
 
 
 def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
-    """Return the rows that produce these lines, or None if a line has other contents."""
+    """Return the table rows from which these lines were made, or None if a line has other content."""
     if settings.dialect is Dialect.SINUMERIK:
         return _read_sinumerik(lines, settings)
     rows = []
@@ -76,7 +79,10 @@ def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[Conto
 
 
 def _read_sinumerik(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
-    """Return the rows of SINUMERIK lines, or None. With X drawn upward, G3 is a convex arc."""
+    """Return the table rows of SINUMERIK lines, or None if a line has other content.
+
+    With X drawn upward, G3 is a convex arc.
+    """
     rows = []
     scale = 1.0 if settings.diameter else 2.0
     for line in lines:
@@ -236,7 +242,7 @@ def _cut_corner(row: ContourPoint, before: Point, here: Point, next_point: Point
 
 
 def _quadratic(a: Point, corner: Point, b: Point, t: float) -> Point:
-    """Return a point on a quadratic curve, which approximates an arc closely enough for a sketch."""
+    """Return a point on a quadratic curve, which approximates a corner radius in the sketch."""
     u = 1.0 - t
     return (
         u * u * a[0] + 2 * u * t * corner[0] + t * t * b[0],

@@ -1,20 +1,21 @@
 """Proposed feeds, speeds and depths of cut by material, operation, tool and machine.
 
 Surface speeds in ft/min and feeds in in/rev are conservative values from handbooks and insert makers. They
-are for uncoated carbide and, for drills and taps, for high-speed steel on small machines. They are only
-proposals.
+are for uncoated carbide and, for drills and taps, for high-speed steel on small lathes.
 
-All depths are per side. A proposal is the smallest of three values, rounded down:
+All depths are per side. The proposed depth is the smallest of three values, rounded down:
 
-- by material: ``CuttingData.roughing_depth_in``, which handbooks give for light roughing on small lathes;
+- by material: ``CuttingData.roughing_depth_in``, which handbooks give for light roughing on small
+  lathes;
 - by insert: a quarter of the largest depth for its cutting edge. Insert makers limit the depth to a
-  fraction of the edge, which is smaller for a sharper corner: 1/2 from 75°, 1/3 from 55°, 1/5 below;
-- by machine: the depth at which the cutting force equals the torque of the spindle at the stock diameter.
-  Drives of these lathes have constant torque. A machine file may state the power at the highest speed,
-  ``[spindle] power_kw``; otherwise a small drive of 1.5 kW is assumed.
+  fraction of the edge length, which is smaller for a sharper corner: 1/2 from 75°, 1/3 from 55°, 1/5
+  below;
+- by machine: the depth at which the cutting force needs the full torque of the spindle at the stock
+  diameter. Drives of these lathes have constant torque. ``[spindle] power_kw`` of the machine file is
+  the power at the highest speed; without it, a small drive of 1.5 kW is assumed.
 
 For boring bars half of this depth is proposed, because they bend. If the tool data has no insert, the
-insert of a small holder, CCMT 0602, is assumed. The operator may change every proposal; only the largest
+insert of a small holder, CCMT 0602, is assumed. The operator can change every proposal; only the largest
 depth is enforced.
 """
 
@@ -48,10 +49,10 @@ class Operation(StrEnum):
 class CuttingData:
     """Cutting data of a material.
 
-    Surface speeds are in ft/min for turning with carbide and for drilling with high-speed steel.
-    ``feed_factor`` is a factor for the feed. ``roughing_depth_in`` is the depth of a roughing pass in
-    inches per side. ``specific_cutting_force`` is the specific cutting force kc1.1 at the proposed feeds in
-    N/mm², for a chip thickness of 0.1 mm.
+    - ``turning_speed_ft_min``: for carbide; ``drilling_speed_ft_min``: for high-speed steel
+    - ``feed_factor``: factor for the proposed feed
+    - ``roughing_depth_in``: depth of a roughing pass in inches per side
+    - ``specific_cutting_force``: kc1.1 in N/mm² at the proposed feeds, for a chip thickness of 0.1 mm
     """
 
     turning_speed_ft_min: float
@@ -102,7 +103,7 @@ _SURE_RPM = 50.0  # rpm are rounded down to multiples of this value
 
 
 def find_cutting_data(settings: ProgramSettings) -> CuttingData:
-    """Return the cutting data of the material in the program head, otherwise conservative values."""
+    """Return the cutting data of the material in the program head, or conservative data if unknown."""
     return CUTTING_DATA.get(settings.material, CONSERVATIVE_DATA)
 
 

@@ -1,4 +1,4 @@
-"""Shape of the editor with its fields, lines, checks and sketch, and a shape filled with values."""
+"""Shape of the editor: its fields, program lines, checks and sketch, and the shape with values."""
 
 from __future__ import annotations
 
@@ -41,13 +41,15 @@ TOOL_FIELD_WORD = "T"  # in the code of the line with the comment, and therefore
 class Shape:
     """A shape that the editor offers.
 
-    ``name`` begins the comment, so it contains only letters and spaces. ``write_lines`` writes the lines.
-    ``find_blocking_errors`` yields errors that prevent proposals for other fields, and
-    ``find_field_conflicts`` yields errors between fields. If ``contour`` is True, the shape has a point
-    table, which is read from its lines. ``make_program_end_lines`` returns lines for the end of the program,
-    after M30. If ``has_comment`` is True, the lines have a comment, so that the shape can be opened again.
-    ``make_notes`` returns notes about the lines. ``calculate_extent`` returns values of the points on which
-    proposals depend.
+    - ``name`` begins the comment, so it contains only letters and spaces.
+    - ``write_lines`` writes the program lines. ``make_program_end_lines`` returns lines to be placed
+      after M30.
+    - ``find_blocking_errors`` yields errors that prevent proposals for other fields.
+      ``find_field_conflicts`` yields errors between fields.
+    - If ``contour`` is True, the shape has a point table, which is read from its lines.
+      ``calculate_extent`` returns values of the points on which proposals depend.
+    - If ``has_comment`` is True, the lines have a comment, from which the shape can be opened again.
+    - ``make_notes`` returns notes about the lines.
     """
 
     name: str
@@ -70,7 +72,7 @@ class Shape:
     calculate_extent: Callable[[Sequence[ContourPoint]], FieldValues] = field(default=lambda _rows: {})
 
     def find_field(self, word: str) -> ShapeField | None:
-        """Return the field with this word, or None."""
+        """Return the field with this word, or None if the shape has no such field."""
         return next((each for each in self.fields if each.word == word), None)
 
 
@@ -94,11 +96,11 @@ class FilledShape:
 
     @property
     def fields(self) -> tuple[ShapeField, ...]:
-        """Return the fields that apply to these values."""
+        """Return the fields of the shape that apply to the current values."""
         return tuple(each for each in self.shape.fields if each.applies_to(self.values))
 
     def find_errors(self, settings: ProgramSettings) -> list[FieldError]:
-        """Return all errors of single fields or, if there are none, the errors between fields."""
+        """Return the errors of single fields or, if there are none, the conflicts between fields."""
         if first := list(self.shape.find_blocking_errors(self, settings)):
             return first
         said = (each.find_error(self.values.get(each.word)) for each in self.fields)
@@ -153,7 +155,7 @@ def fill_shape(
     settings: ProgramSettings,
     contour_points: tuple[ContourPoint, ...] = (),
 ) -> FilledShape:
-    """Return the shape with the entered values, and with proposals for the other fields.
+    """Return the shape with the entered values, and with proposals for all other fields.
 
     The proposals are made in the order of the fields.
     """
@@ -170,7 +172,10 @@ def fill_shape(
 
 
 def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None:
-    """Return the field values from a comment after the shape's name, or None if they are invalid."""
+    """Return the field values from the words of a comment, or None if they are invalid.
+
+    ``words`` are the words after the name of the shape.
+    """
     if len(words) % 2:
         return None
     found: dict[str, FieldValue] = {}

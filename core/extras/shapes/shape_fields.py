@@ -1,4 +1,7 @@
-"""Fields of a shape, and the data for proposals: program, machine, material and tools."""
+"""Input fields of shapes, and the data from which their values are proposed.
+
+The data are the program, the machine, the material and the tools.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ ValueProposal = Callable[[FieldValues, "ProgramSettings"], FieldValue | None]
 
 
 class FieldKind(StrEnum):
-    """Kind of a field's value."""
+    """Kind of value that a shape field accepts."""
 
     LENGTH = "length"
     DIAMETER = "diameter"
@@ -44,7 +47,7 @@ TEXT_KINDS = frozenset({FieldKind.CHOICE, FieldKind.NAME})
 
 
 class FieldError(NamedTuple):
-    """An error of a field: the word of the field, and a sentence with the error and a remedy."""
+    """An error in a field of a shape: the field's name, and a sentence with the cause and a remedy."""
 
     field_word: str
     text: str
@@ -56,12 +59,14 @@ def _always(_values: FieldValues) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ShapeField:
-    """A field of a shape. ``word`` is its name in the comment, and ``label`` is its name on the form.
+    """An input field of a shape.
 
-    ``default`` is the proposed value. If ``allows_zero`` is True, the value 0 is permitted and means
-    "none". ``applies_to`` returns whether the field applies, depending on the other values.
-    ``is_in_comment`` adds MM to metric values in the comment, for programs that read the value as a tool
-    size without knowing the program's unit.
+    - ``word`` is the field's name in the comment, and ``label`` its name on the form.
+    - ``default`` is the proposed value.
+    - ``allows_zero`` permits the value 0, which means "none".
+    - ``applies_to`` returns whether the field applies, depending on the other values.
+    - ``is_in_comment`` adds MM to metric values in the comment, for programs that read the
+      value as a tool size without knowing the program's unit.
     """
 
     word: str
@@ -80,7 +85,7 @@ class ShapeField:
         return self.default(values, settings) if callable(self.default) else self.default
 
     def find_error(self, value: FieldValue | None) -> FieldError | None:
-        """Return the error in the value of this field, or None."""
+        """Return the error in a value entered in this field, or None if the value is valid."""
         said = self._wrong_word(value) if isinstance(value, str | None) else self._wrong_number(value)
         return FieldError(self.word, said) if said else None
 
@@ -175,12 +180,14 @@ class ShopData:
 
 @dataclass(frozen=True, slots=True)
 class ProgramSettings:
-    """Settings of the program at the place of a shape, with lengths in the unit of the program.
+    """Settings that are active at one place in a program, with lengths in the program's unit.
 
-    ``tool_change_z`` is the Z of the tool change position, or 0 if it is not specified. ``bar`` is the bar
-    diameter. If ``is_subroutine`` is True, the shape is in a subroutine. ``used`` contains the numbers of
-    the tools used before the shape. ``free_subroutine_number`` is the first number that is not used by a
-    subroutine of the program or, in SINUMERIK, by a labeled contour.
+    - ``tool_change_z``: Z of the tool change position, or 0 if it is not specified.
+    - ``bar``: diameter of the bar.
+    - ``is_subroutine``: whether the place is in a subroutine.
+    - ``used``: numbers of the tools used before the place.
+    - ``free_subroutine_number``: first number that neither a subroutine nor, in SINUMERIK,
+      a labeled contour of the program uses.
     """
 
     metric: bool = False
@@ -196,12 +203,12 @@ class ProgramSettings:
 
     @property
     def near(self) -> float:
-        """Return the distance from the part at which a rapid toward the part ends."""
+        """Return the safety distance from the part at which an approaching rapid ends."""
         return _NEAR[self.metric]
 
     @property
     def clear(self) -> float:
-        """Return the Z of the tool change position."""
+        """Return the Z of the tool change position, or a default if the program specifies none."""
         return self.tool_change_z or DEFAULT_TOOL_CHANGE_Z[self.metric]
 
     @property

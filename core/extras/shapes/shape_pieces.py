@@ -72,9 +72,9 @@ class ShapePiece:
 
 
 def strip_line(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
-    """Return a line in capitals, without comment and spaces.
+    """Return a line in capitals without comments and spaces.
 
-    A line that switches planes is not removed as a comment. In SINUMERIK, the block number is removed.
+    A plane selection in comment syntax is retained. In SINUMERIK, the block number is removed.
     """
     bare = line.strip()
     if dialect is Dialect.SINUMERIK:
@@ -179,8 +179,9 @@ def find_damaged_comment(
 ) -> tuple[int, Shape] | None:
     """Return the line and the shape of a damaged comment at or above line ``line_number``, or None.
 
-    Lines are counted from 0. A damaged comment begins with the name of a shape and still has two of the
-    shape's fields, because programmers also use names such as DRILL in comments.
+    Lines are counted from 0. A comment counts as damaged if it begins with a shape's name and still has two
+    of its fields. The name alone is not enough, because programmers also use words such as DRILL in
+    comments.
     """
     for line in range(min(line_number, len(lines) - 1), -1, -1):
         found = _COMMENT[dialect].search(lines[line])
@@ -245,7 +246,7 @@ def _piece(
 def _compare_with_text(
     filled_shape: FilledShape, there: list[str], at: int, settings: ProgramSettings
 ) -> ShapePiece:
-    """Return the piece for these fields, after comparing its lines with the lines in the text."""
+    """Return a piece with these fields, after comparing the lines they produce with the text."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted and there[: len(wanted)] == wanted:
         return ShapePiece(at, len(wanted), filled_shape, settings)
@@ -277,7 +278,7 @@ def _incomplete(one: FilledShape) -> bool:
 def _contours(
     shape: Shape, there: list[str], settings: ProgramSettings
 ) -> Iterator[tuple[ContourPoint, ...]]:
-    """Yield the point tables that these lines may contain.
+    """Yield the contour point tables that these program lines may represent.
 
     For a shape without a contour, one empty table is yielded.
     """
@@ -299,9 +300,9 @@ def _contours(
 
 
 def _sinumerik_contours(there: list[str], settings: ProgramSettings) -> Iterator[tuple[ContourPoint, ...]]:
-    """Yield the contours from the first cut to the move away from the part.
+    """Yield the possible contours, each from the first cut to the retract move.
 
-    This move is the last line or the line after it.
+    The retract move is the last line or the line after it.
     """
     labels = [n for n, line in enumerate(there) if _LABEL.fullmatch(line)]
     begin = next((n for n, line in enumerate(there) if _FIRST_CUT.fullmatch(line)), len(there))
@@ -313,9 +314,9 @@ def _sinumerik_contours(there: list[str], settings: ProgramSettings) -> Iterator
 
 
 def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tuple[ContourPoint, ...]]:
-    """Yield the contours without roughing, from the approach to the move away from the part.
+    """Yield the possible contours without roughing, each from the approach to the retract move.
 
-    This move is the last line or the line before it.
+    The retract move is the last line or the line before it.
     """
     began = [
         n
@@ -340,7 +341,7 @@ def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tupl
 def _adopt_fields(
     filled_shape: FilledShape, there: list[str], settings: ProgramSettings, left: int
 ) -> FilledShape | None:
-    """Return the shape with field values that match the lines, or None if no such values exist."""
+    """Return the shape with field values that produce the lines in the text, or None if impossible."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted == there:
         return filled_shape
@@ -361,7 +362,7 @@ def _adopt_fields(
 
 
 def _agreeing(wanted: list[str], there: list[str]) -> int:
-    """Return the number of words before the first difference."""
+    """Return the number of words before the first difference between both lists."""
     count = 0
     for a, b in zip(wanted, there, strict=False):
         for this, that in zip(_WORD.findall(a), _WORD.findall(b), strict=False):
@@ -389,9 +390,9 @@ def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | 
 
 
 def _explaining(filled_shape: FilledShape, before: float, after: float) -> Iterator[tuple[str, float]]:
-    """Yield the fields that explain the changed word, each with the field's new value.
+    """Yield the fields whose values explain an edited number, each with its new value.
 
-    The word may contain the value unchanged, negated, doubled or halved.
+    The number may be the field's value itself, negated, doubled or halved.
     """
     for word, value in filled_shape.values.items():
         if isinstance(value, str):
@@ -463,9 +464,9 @@ def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
 def rewrite_pieces(
     lines: Sequence[str], shop: ShopData, pieces: Sequence[ShapePiece]
 ) -> tuple[list[str], int]:
-    """Rewrite the pieces after the program head was changed; return the text and the unchanged count.
+    """Rewrite the pieces after the program head was changed.
 
-    Pieces that were changed by hand are not rewritten.
+    Return the new text and the number of pieces that were not rewritten because they were edited by hand.
     """
     text, stay = list(lines), 0
     shift = 0

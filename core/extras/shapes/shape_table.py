@@ -1,4 +1,4 @@
-"""Tables of the shapes and calculators in the order of the menu, each with its key."""
+"""Tables of the shapes and calculators in menu order, each with its function key."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ CALCULATORS_BY_DIALECT = {Dialect.OMNITURN: CALCULATORS_BY_KEY, Dialect.SINUMERI
 
 
 def _labelled(shape: Shape) -> Shape:
-    """Return the shape with an additional label field, because CYCLE95 finds the contour by labels."""
+    """Return the shape with an additional field for the label by which CYCLE95 finds the contour."""
     return replace(shape, fields=(*shape.fields, LABEL_FIELD))
 
 
@@ -116,7 +116,10 @@ _BY_NAME = {
 
 
 def find_shape(words: list[str], dialect: Dialect = Dialect.OMNITURN) -> tuple[Shape, list[str]] | None:
-    """Return the shape whose name is at the beginning of these words, and the remaining words, or None."""
+    """Return the shape whose name these words start with, and the remaining words.
+
+    Return None if the words do not start with the name of a shape.
+    """
     for count in (2, 1):
         found = _BY_NAME[dialect].get(" ".join(words[:count]))
         if found is not None and len(words) >= count:

@@ -297,7 +297,7 @@ def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) ->
 
 
 def _run_up(filled_shape: FilledShape, settings: ProgramSettings) -> FilledShape:
-    """Return the shape with a run-up of three pitches, in which the axis can reach the lead."""
+    """Return the shape with a run-up of three pitches, in which the axis reaches its feed rate."""
     return replace(
         filled_shape,
         values={**filled_shape.values, "RUNUP": 3.0 * filled_shape.get_number("PITCH") + settings.near},
@@ -309,9 +309,9 @@ def _passes(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _make_pass_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
-    """Return the notes of the thread calculator without the start position.
+    """Return the notes of the thread calculator, without a note about the start position.
 
-    The cycle moves to its first pass automatically.
+    CYCLE97 moves to its first pass automatically.
     """
     depth, _, passes = THREAD_CALCULATOR.make_notes(filled_shape, settings)
     return depth, passes

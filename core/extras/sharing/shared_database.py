@@ -68,7 +68,7 @@ def parse_conninfo(connection_string: str) -> dict[str, str]:
 
 
 def get_display_parameters(values: Mapping[str, str]) -> str:
-    """Return the parameters that messages may show.
+    """Return the connection parameters as text for messages, without secrets.
 
     A note is added if the server's certificate is not verified.
     """
@@ -81,9 +81,9 @@ def get_display_parameters(values: Mapping[str, str]) -> str:
 
 
 def require_tls(values: Mapping[str, str]) -> dict[str, str]:
-    """Return the parameters, with TLS verification added for a server on another computer.
+    """Return the connection parameters, with TLS verification added for a server on another computer.
 
-    Parameters or environment variables that specify TLS have priority.
+    TLS settings in the parameters or in environment variables take precedence.
     """
     found = dict(values)
     if is_server_local(values):
@@ -96,7 +96,7 @@ def require_tls(values: Mapping[str, str]) -> dict[str, str]:
 
 
 def is_server_local(values: Mapping[str, str]) -> bool:
-    """Return whether the parameters refer to a server on this computer."""
+    """Return whether the connection parameters refer to a server on this computer."""
     if "service" in values:
         return False
     hosts = values.get("hostaddr") or values.get("host") or os.environ.get("PGHOST", "")
@@ -198,7 +198,7 @@ class SharedDatabase:
     def publish_versions(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add versions and the state of this machine in one transaction.
 
-        The method returns when the data is on the server's disk.
+        The method returns after the server has written the data to its disk.
         """
         with self._open_transaction() as connection:
             rows = [(each.version.id, encode_version(each.version), each.program_text) for each in versions]

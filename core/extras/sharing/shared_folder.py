@@ -1,7 +1,7 @@
 """Sharing of programs in a folder, with one file for each version and one file for each machine.
 
-Files are added completely or not at all. Files on a network drive are not locked. Each machine writes only
-its own state file and version files. The contents of a version file do not depend on the machine that
+A file is added completely or not at all. Files on a network drive are not locked. Each machine writes only
+version files and its own state file. The contents of a version file do not depend on the machine that
 writes it.
 """
 
@@ -59,13 +59,13 @@ class SharedFolder:
 
     @property
     def marker_path(self) -> Path:
-        """Return the path of the file that marks a folder as a folder with shared programs."""
+        """Return the path of the marker file, which identifies a folder for shared programs."""
         return self._folder / MARKER_FILE_NAME
 
     def set_up(self) -> None:
-        """Set up the folder, which must exist.
+        """Set up an existing folder for shared programs.
 
-        A missing folder is not created, because it may only be unmounted.
+        A missing folder is not created, because its network drive may only be unmounted.
         """
         with self._system():
             if not self.marker_path.exists():
@@ -151,7 +151,7 @@ class SharedFolder:
         draft.replace(path)
 
     def _clear(self, machine_id: str) -> None:
-        """Remove unfinished files of this machine that a power failure has left."""
+        """Remove this machine's temporary files that remained after a power failure."""
         for folder in (VERSIONS, DESKS):
             for path in (self._folder / folder).glob(f"{_WRITING}{machine_id}-*"):
                 path.unlink(missing_ok=True)

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 
 class SharedVersion(NamedTuple):
-    """One version of a program.
+    """One version of a shared program.
 
-    The version has its machine, the versions from which it was made, and the SHA-256 of its text. ``id`` is
-    the SHA-256 of the record, so different versions never have the same id. ``saved`` is the time of the
-    machine's clock (UTC), which is shown but never compared.
+    The version contains its machine, the versions from which it was made, and the SHA-256 of its text.
+    ``id`` is the SHA-256 of the record, so different versions never have the same id. ``saved`` is the
+    clock time of the machine in UTC; it is displayed but never compared.
     """
 
     id: str
@@ -52,9 +52,9 @@ class ProgramVersions:
 
     @property
     def newest_versions(self) -> tuple[SharedVersion, ...]:
-        """Return the versions from which no other version was made.
+        """Return the versions that have no successor.
 
-        There is one such version, unless two machines have changed the same version.
+        There is normally one such version. There are several if two machines have changed the same version.
         """
         followed = {each for version in self.versions.values() for each in version.follows}
         return tuple(version for name, version in sorted(self.versions.items()) if name not in followed)
@@ -91,17 +91,17 @@ class ProgramVersions:
         return False
 
     def is_newer(self, version: SharedVersion) -> bool:
-        """Return whether a version was made from the version on this machine.
+        """Return whether a version was made from the local version, or True if no local version exists.
 
-        If not, either both machines have changed the program, or two different programs have the same name.
-        If this machine has no version, the result is True.
+        If the result is False, either both machines have changed the program, or two different programs
+        have the same name.
         """
         return not self.local_version_id or self.is_derived_from(version.id, self.local_version_id)
 
     def find_newer_by_text(self, text: str) -> SharedVersion | None:
-        """Return a version with this text (SHA-256) that is newer than the local version, or None.
+        """Return a version that has this text and is newer than the local version, or None.
 
-        A version from which no other version was made is preferred.
+        ``text`` is the SHA-256 of the text. A version without a successor is preferred.
         """
         found = [each for each in self.versions.values() if each.text == text and self.is_newer(each)]
         newest = {each.id for each in self.newest_versions}
@@ -132,7 +132,7 @@ def read_all_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ..
 
 
 def read_unpublished_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
-    """Return the versions that the shared location does not have and whose text is stored on this machine."""
+    """Return the versions with a locally stored text that the shared location does not have yet."""
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM shared_versions WHERE published = 0 AND EXISTS"
         " (SELECT 1 FROM program_versions WHERE sha256 = shared_versions.text) ORDER BY rowid"
@@ -169,7 +169,7 @@ def delete_unpublished(connection: sqlite3.Connection, version: SharedVersion) -
 
 
 def set_published_versions(connection: sqlite3.Connection, version_ids: Collection[str]) -> None:
-    """Mark exactly these versions as published.
+    """Mark exactly these versions as published, and all others as unpublished.
 
     Versions that are missing in the shared location are then published again.
     """
@@ -181,9 +181,9 @@ def set_published_versions(connection: sqlite3.Connection, version_ids: Collecti
 
 
 def set_local_version(connection: sqlite3.Connection, key: str, version: str) -> None:
-    """Store the version of a program that is in the folder of this machine.
+    """Record which version of a program is in the folder of this machine.
 
-    An empty id means that there is no version.
+    An empty id means that no version is in the folder.
     """
     if not version:
         connection.execute("DELETE FROM shared_here WHERE program = ?", (key,))

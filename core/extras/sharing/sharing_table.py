@@ -1,4 +1,4 @@
-"""Table [sharing] of the machine file: where this machine shares programs with others."""
+"""Table [sharing] of the machine file, which specifies where this machine shares programs."""
 
 from __future__ import annotations
 

@@ -27,20 +27,26 @@ class RecordError(CodedError):
 def make_version(
     program: str, text: bytes, parent_ids: tuple[str, ...], machine: str, saved: str, why: str
 ) -> SharedVersion:
-    """Return the version for a text. The id of the version is the SHA-256 of the other values."""
+    """Return a new version of a program with this text.
+
+    The id of the version is the SHA-256 of its other values.
+    """
     bare = SharedVersion("", program, sha256(text).hexdigest(), len(text), parent_ids, machine, saved, why)
     return bare._replace(id=sha256(encode_version(bare)).hexdigest())
 
 
 def encode_version(version: SharedVersion) -> bytes:
-    """Return the record of a version as bytes, which are always identical for the same version."""
+    """Return the record of a version as bytes. Equal versions have identical records."""
     values = version._asdict()
     del values["id"]
     return _plain({"format": FORMAT_VERSION, **values})
 
 
 def decode_version(name: str, record: bytes) -> SharedVersion:
-    """Return the version stored under this id. Raises RecordError if the record is invalid."""
+    """Return the version in a record that is stored under the id ``name``.
+
+    Raises RecordError if the record is invalid.
+    """
     if sha256(record).hexdigest() != name:
         raise RecordError("the record does not match the checksum in the record name", "not-as-published")
     values = _object(record)
@@ -83,7 +89,7 @@ def verify_text(version: SharedVersion, text: bytes) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class PublishedMachineState:
-    """The versions that a machine has, as ids by program name.
+    """The program versions on one machine, as version ids by program name.
 
     ``machine_id`` identifies the machine, because two machines may have the same name.
     """

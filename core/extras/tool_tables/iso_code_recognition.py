@@ -32,7 +32,7 @@ _KINDS = tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), kind) for words,
 
 
 def recognize_shape_fields(text: str) -> dict[str, str]:
-    """Return the tool shape fields, by name, that the codes and words of a text specify."""
+    """Return the tool fields that the ISO codes and other words of a remark specify, by field name."""
     words = text.upper().replace(",", " ").replace(";", " ").split()
     candidates = [*(f"{one}{two}" for one, two in pairwise(words)), *words]
     insert = next(_inserts(candidates), "")
@@ -45,7 +45,7 @@ def recognize_shape_fields(text: str) -> dict[str, str]:
 
 
 def recognize_tool_kind(text: str) -> str:
-    """Return the kind of tool that the words of a text specify, or an empty string."""
+    """Return the kind of tool that the words of a remark specify, or an empty string if none."""
     return next((kind for words, kind in _KINDS if words.search(text)), "")
 
 
@@ -70,7 +70,10 @@ def _holders(words: list[str]) -> Iterator[tuple[str, str]]:
 
 
 def _kind_of(insert: str, holder: str) -> str:
-    """Return the kind of tool that the codes imply: boring for a round bar, otherwise turning."""
+    """Return the kind of tool that the ISO codes imply.
+
+    A round boring bar implies boring; otherwise the kind is turning.
+    """
     if holder and _BAR.match(holder):
         return "boring"
     return "turning" if insert or holder else ""

@@ -60,7 +60,10 @@ def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
 
 
 def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
-    """Return the numbers of a line by letter, and add mistakes with their columns."""
+    """Return the numbers of a line by letter.
+
+    A mistake with its column is added for each invalid word.
+    """
     found: dict[str, float] = {}
     for match in _WORD.finditer(line):
         place = Message("line {line}, column {column}", line=count, column=match.start() + 1)
@@ -116,7 +119,7 @@ def get_diameter(tool: ToolEntry) -> float:
 
 
 def make_remark(tool: ToolEntry) -> str:
-    """Return the remark of a tool, with its kind and codes added unless the remark already contains them."""
+    """Return the remark of a tool, with its kind and ISO codes added if they are missing."""
     words = [str(tool.offset_values.get("remark", ""))]
     for name in ("insert", "holder", "kind"):
         value = str(tool.shape_values.get(name, ""))

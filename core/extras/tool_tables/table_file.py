@@ -1,4 +1,7 @@
-"""Reader of tool tables by format name or file suffix, with limits against malicious files."""
+"""Reader of tool table files, which limits the file size as a protection against malicious files.
+
+The format name or the file suffix determines the format.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +39,7 @@ FORMATS: Mapping[str, TableFormat] = {
 
 
 def find_format(name: str) -> str:
-    """Return the format that the suffix of a file name implies. Raises ToolTableError if it is unknown."""
+    """Return the table format that a file's suffix implies. Raises ToolTableError if none matches."""
     suffix = Path(name).suffix.lower()
     for word, each in FORMATS.items():
         if suffix in each.suffixes:

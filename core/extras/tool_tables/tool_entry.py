@@ -88,7 +88,10 @@ class ToolTable(NamedTuple):
 
 @dataclass(slots=True)
 class TableReader:
-    """Collector of the tools in a file, and of the mistakes that it reports under ``file_name``."""
+    """Collector of the tools and the mistakes in a table file.
+
+    ``file_name`` is the name of the file in error messages.
+    """
 
     file_name: str
     options: ReadingOptions
@@ -115,10 +118,10 @@ class TableReader:
         return None
 
     def check_tool_number(self, place: str, value: float | None) -> int | None:
-        """Return the number of a tool, or None if the tool is not to be read.
+        """Return a valid tool number, or None if this tool must be skipped.
 
-        The result is None if the options exclude the tool. It is also None if the number is invalid or used
-        twice; in this case a mistake is added.
+        A tool is skipped if the options exclude it. It is also skipped if its number is invalid or already
+        used; a mistake is then added.
         """
         if value is None:
             return None
@@ -218,7 +221,7 @@ class TableReader:
 
 
 def _stated(values: Mapping[str, FieldValue]) -> dict[str, FieldValue]:
-    """Return the values that are specified, which are the nonzero values and X and Z."""
+    """Return the values that the file specifies: nonzero values, and X and Z even if 0."""
     return {name: value for name, value in values.items() if value or name in {"x", "z"}}
 
 
@@ -235,9 +238,9 @@ def _cleaned(found: dict[str, FieldValue]) -> list[str]:
 
 
 def _unmeasured(values: Mapping[str, FieldValue], found: dict[str, FieldValue]) -> list[str]:
-    """Remove X and Z if both are 0; return a note if they were specified.
+    """Remove X and Z if both are 0, because other programs write 0 for an unmeasured tool.
 
-    Other programs enter 0 for a tool that is not measured.
+    Return a note if X and Z were specified.
     """
     if found.get("x", 0.0) or found.get("z", 0.0):
         return []

@@ -108,7 +108,7 @@ class ConsequentFaultFilter:
         return silent
 
     def record_unreadable_block(self, text: str) -> None:
-        """Record the text of a block that cannot be parsed."""
+        """Record a block that cannot be parsed, because later errors may be its consequences."""
         follows = next((codes for begins, codes in _BEGINS if begins.match(text.upper())), _ALL_CODES)
         self._silent |= follows
         self._cycles = self._cycles or bool(follows & (_CYCLE_CODES | {TOOL_AXIS_MISSING}))
@@ -142,7 +142,7 @@ class ConsequentFaultFilter:
 
 
 def _assigned_parameters(node: nodes.Node | None) -> set[tuple[str, int]]:
-    """Return the parameters that a rejected block would have set."""
+    """Return the Q parameters that a rejected block would have assigned."""
     match node:
         case nodes.Assignment() | nodes.SystemRead():
             return {(node.parameter_kind, node.parameter_number)}

@@ -1,4 +1,4 @@
-"""Interpreter of Klartext, which generates the elementary blocks of a program for a setup."""
+"""Interpreter of Klartext, which converts a program to elementary blocks for a setup."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return self._setup, self._log, program, self._setup.kinematics, *program.called_programs.values()
 
     def _restore_from(self, start: PassStart) -> None:
-        """Restore the state at the start of the start line, for MDI or for a restart."""
+        """Restore the state at the start line, for MDI or for a mid-program startup."""
         kept = start.checkpoint.kept
         if kept is not None:
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
@@ -399,7 +399,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return SlContour(name, runner.elements, runner.side, part.is_pocket)
 
     def _corner_is_next(self) -> bool:
-        """Return whether the next block is RND or CHF, so that the current element must be buffered."""
+        """Return whether RND or CHF follows, so that the current path element must be buffered."""
         return isinstance(self._flow.peek_next_node(), nodes.CornerBlock)
 
 

@@ -137,7 +137,10 @@ def _din_iso(source: ProgramSource) -> KlartextLine | None:
 
 
 def _lines(source: ProgramSource) -> list[KlartextLine]:
-    """Return one entry per line; a block with continuation lines (~) is in the entry of its first line."""
+    """Return one entry per program line.
+
+    A block with continuation lines (~) is in the entry of its first line.
+    """
     texts = source.lines
     found: list[KlartextLine] = []
     while len(found) < len(texts):
@@ -171,7 +174,7 @@ def _join_lines(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
 def _corners(program: Program) -> BlankCorners | None:
     """Return the minimum and maximum corners of the blank, or None if they are invalid.
 
-    The coordinates of both corners must be numbers, and the corners must enclose a volume.
+    They are valid if all coordinates are numbers and the corners enclose a volume.
     """
     scale = MM_PER_INCH if program.is_inch else 1.0
     found: dict[int, Vector] = {}
@@ -295,7 +298,7 @@ class _Level(FlowFrame[Program]):
 
 
 class Flow(ControlFlow[_Level]):
-    """The position in a program, with labels, jumps, repeats and called programs."""
+    """The current position in a program, including its label calls, repeats and called programs."""
 
     def __init__(self, program: Program) -> None:
         super().__init__(_Level(program, 0, program.end_index))

@@ -58,15 +58,16 @@ POINT_TOLERANCE = 1e-7  # mm or degrees; closer points count as equal
 
 
 class State:
-    """The state of a pass through a Klartext program.
+    """The state of an interpreter pass through a Klartext program.
 
-    ``position_by_axis`` contains all axis positions by name, and ``axis_positions`` contains them in the
-    machine's order. Positions are in mm or degrees. Rotary axes are continuous. ``datum`` is the workpiece
-    datum in the workpiece system, and ``shift`` is the TRANS DATUM within the active plane. ``frame`` and
-    ``origin`` are the axes and the origin of the working plane in the workpiece system. ``plane_transform``
-    converts points of the plane to machine positions of the linear axes. ``tip_in_plane`` is the tip
-    position in the plane, in mm. ``line_number`` is the active line, and ``text`` is its block as
-    displayed.
+    - ``position_by_axis``: all axis positions by name, in mm or degrees; rotary axes are continuous.
+    - ``axis_positions``: the same positions in the machine's axis order.
+    - ``datum``: workpiece datum in the workpiece system.
+    - ``shift``: TRANS DATUM within the active plane.
+    - ``frame``, ``origin``: axes and origin of the working plane in the workpiece system.
+    - ``plane_transform``: conversion of points of the plane to machine positions of the linear axes.
+    - ``tip_in_plane``: position of the tool tip in the plane, in mm.
+    - ``line_number``, ``text``: number and displayed text of the active block.
     """
 
     def __init__(self, setup: Setup, kinematics: Kinematics, log: DiagnosticLog, *, is_inch: bool) -> None:
@@ -141,7 +142,7 @@ class State:
         )
 
     def set_axis_positions(self, goal: dict[str, float]) -> None:
-        """Set the positions of all axes from ``goal``, which maps axis names to positions."""
+        """Set the positions of all axes from ``goal``, by axis name, in mm or degrees."""
         if any(goal[name] != self.position_by_axis[name] for name in self.rotary_axis_names):
             self._shown = None
         turned = self._shown is None
@@ -186,9 +187,9 @@ class State:
 
     @property
     def target_angles(self) -> dict[str, float]:
-        """Return the effective angle of each rotary axis, in degrees.
+        """Return the angles at which the rotary axes must be for the active plane, in degrees.
 
-        The angles come from the active plane. Without an active plane, they are the current angles.
+        Without an active plane, they are the current angles.
         """
         if self.active_plane is not None:
             return dict(self.active_plane.target_angles)
@@ -216,9 +217,9 @@ class State:
         self.update_derived_values()
 
     def set_plane(self, plane: ActivePlane | None) -> None:
-        """Set the active plane, or clear it with None.
+        """Set the active working plane; None clears it.
 
-        The datum point on the workpiece does not change.
+        The datum remains at the same point of the workpiece.
         """
         self.datum, self.shift = self.origin, ORIGIN_POINT
         self.active_plane = plane
@@ -264,9 +265,9 @@ class State:
             raise self.make_error(column, code, text, hint, **values)
 
     def record_position_read(self) -> None:
-        """Record that the program reads a position.
+        """Record that the program reads an axis position.
 
-        After a program stop, the proof can only assume this position.
+        After a program stop, this position is only an assumption while the program is proved.
         """
         self.is_position_assumed = self.is_position_assumed or self.is_after_program_stop
 
@@ -304,7 +305,7 @@ class State:
         feed: float | None,
         curved_move: CurvedMove | None = None,
     ) -> Block:
-        """Move to ``end`` and return the block.
+        """Return the block of a move to ``end``, and update the positions of the state.
 
         Axes that ``end`` does not contain do not move. A ``feed`` of None is a rapid. The feed is in mm of
         the linear axes. It is in degrees if only rotary axes move, or if ``curved_move`` specifies a feed

@@ -1,4 +1,4 @@
-"""Execution of one program line as elementary blocks, in the order in which the control acts."""
+"""Execution of one program line as elementary blocks, in the control's order of execution."""
 
 from __future__ import annotations
 

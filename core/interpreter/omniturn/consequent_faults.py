@@ -39,9 +39,9 @@ class ConsequentFaultFilter:
         self._uncertain: set[str] = set()
 
     def record_rejected_line(self, text: str, *, is_position_known: bool) -> None:
-        """Record a rejected line and its possible consequences.
+        """Record a rejected line, because later errors may be its consequences.
 
-        With ``is_position_known``, the position after the line is known, so later position errors are
+        If ``is_position_known`` is True, the position after the line is known, so later position errors are
         reported.
         """
         code = text.upper()
@@ -72,7 +72,10 @@ def remove_consequent_findings(findings: Sequence[Diagnostic], lines: Sequence[s
 
 
 def _divided_arc(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
-    """Return the finding for an arc whose center words are on the next line, or None for other lines."""
+    """Return the finding for an arc that is divided into two lines, or None for any other line.
+
+    Such an arc has its center words on the next line.
+    """
     if finding.code != "word-unused" or finding.line < 2:
         return None
     arc, center = re.match(_BARE_ARC, lines[finding.line - 2]), re.match(_CENTER, lines[finding.line - 1])

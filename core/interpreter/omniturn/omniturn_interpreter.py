@@ -1,4 +1,4 @@
-"""Interpreter of OmniTurn programs, which generates the elementary blocks of a program."""
+"""Interpreter of OmniTurn programs, which converts a program to elementary blocks."""
 
 from __future__ import annotations
 
@@ -148,9 +148,9 @@ class Interpreter(InterpreterPass):
                 yield each
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Generate the same blocks as ``generate_blocks``, but combine straight moves into series.
+        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series.
 
-        Moves are combined only where possible.
+        Only moves that need no individual treatment are combined.
         """
         if (
             self._program.structure.loop_ends
@@ -264,7 +264,7 @@ class Interpreter(InterpreterPass):
         return [each for each in found if each is not None]
 
     def _nose(self, statement: Statement) -> Iterator[Block]:
-        """Yield the buffered blocks that G41, G42 or G40 releases."""
+        """Execute G41, G42 or G40, and yield the buffered blocks that can no longer change."""
         found = execute_compensation_code(
             self._state, statement, get_nose_code(statement), is_in_subroutine=self._flow.is_in_subprogram
         )
@@ -272,9 +272,10 @@ class Interpreter(InterpreterPass):
             yield from self._released(self._modifier.switch_compensation(found))
 
     def _apply_stages(self, block: Block) -> Iterator[Block]:
-        """Yield the block itself, or the buffered blocks that no later line can change.
+        """Yield the block after corners and nose compensation are applied.
 
-        Blocks are buffered while a corner or nose compensation is active.
+        While a corner or nose compensation is active, the block is buffered, and the blocks that no later
+        line can change are yielded.
         """
         if self._state.contour.is_buffering:
             yield from self._released(self._modifier.accept_block(block))
@@ -309,7 +310,7 @@ class Interpreter(InterpreterPass):
         return is_call_made(statement, self._state.setup.inputs)
 
     def _recover(self, problem: ProgramError, line: ExecutableLine) -> None:
-        """Log the error, and set the position to the end point of the rejected line.
+        """Log the error of a rejected line, and set the position to the end point of the line.
 
         Later lines are then checked from the correct position.
         """
@@ -320,7 +321,7 @@ class Interpreter(InterpreterPass):
             self._skip(line)
 
     def _skip(self, statement: Statement) -> None:
-        """Set the state so that the pass continues after a rejected line."""
+        """Skip a rejected line, and set the state so that the pass can continue."""
         self._set_end_position(statement)
         self._consequences.record_rejected_line(
             statement.text, is_position_known=statement.has_x_or_z_move and self._state.absolute
@@ -340,13 +341,16 @@ class Interpreter(InterpreterPass):
 
 
 class StoppablePass(Interpreter):
-    """A pass that can stop before any line, in each loop pass and call, and then continue."""
+    """An interpreter pass that can stop before any line and then continue.
+
+    It can stop in a certain loop pass or subroutine call.
+    """
 
     def run_to_line(self, line: int) -> Iterator[Block]:
         """Yield the blocks up to the next execution of this line, counted from 1.
 
-        After the last block, ``is_at_line`` is True. The method can be called again with a later line. At
-        the first error, the iterator ends and ``has_errors`` is True.
+        After the last block, ``is_at_line`` is True. The method can then be called again with a later line.
+        The iterator ends at the first error, and ``has_errors`` is then True.
         """
         self._flow.stop_before(line)
         return self._until_stop()

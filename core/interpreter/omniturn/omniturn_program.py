@@ -73,7 +73,7 @@ _KINDS = {
 
 
 class StyleChecker:
-    """Collector of deviations from the style of the original control in one program."""
+    """Collector of a program's deviations from the style that the original control requires."""
 
     def __init__(self, *, strict: bool) -> None:
         self.findings: list[Diagnostic] = []
@@ -148,11 +148,11 @@ class Program:
         return replace(self, executable_lines=self.executable_lines.copy_lines())
 
     def get_line(self, number: int) -> LexedLine:
-        """Return the words of a line; line numbers count from 1."""
+        """Return the words of the line with this number, counted from 1."""
         return lex_line(number, self.source.lines[number - 1])
 
     def get_statement(self, number: int) -> Statement | None:
-        """Return the statement of a line, or None for an empty line; line numbers count from 1."""
+        """Return the statement of the line with this number (from 1), or None for an empty line."""
         ready = self.executable_lines[number - 1]
         return make_statement(self.get_line(number)) if isinstance(ready, tuple) else ready
 
@@ -199,7 +199,10 @@ class _Reader:
         return statement
 
     def _suspect_plane(self, number: int, text: str) -> None:
-        """Report a (PLXC) without the required ~, because TurnDesk would treat the section as comments."""
+        """Report a plane code such as (PLXC) without the required ~.
+
+        Without ~, the whole section would be treated as comments.
+        """
         following = islice(self.source.lines, number, number + _NEAR)
         lacks = is_missing_tilde(text, following) if "(" in text else None
         if lacks is not None:
@@ -278,7 +281,7 @@ def read_program(source: ProgramSource, is_strict: bool = False) -> Program:
 
 
 def is_machine_m_code(statement: Statement) -> bool:
-    """Return whether the line has an M code that is not built into the control."""
+    """Return whether the line has an M code that only the machine file can define."""
     return (
         statement.m_number is not None
         and statement.m_code_entry is None
@@ -295,7 +298,10 @@ def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
 
 
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
-    """Return one line as a statement with its errors; the statement is None for an empty line."""
+    """Parse one line, and return its statement and its errors.
+
+    The statement is None for an empty line.
+    """
     reader = _Reader(ProgramSource("", text), strict=False)
     statement = reader.read_statement(number, text)
     return statement, reader.problems
@@ -318,7 +324,10 @@ def _comments_in_loops(statements: list[Statement], structure: ProgramStructure)
 
 
 def _check_after_end(ready: ExecutableLines, structure: ProgramStructure) -> list[Diagnostic]:
-    """Return a list with an error for the first move after M30 outside of subroutines, or an empty list."""
+    """Return a list with an error if a move follows M30 outside of subroutines.
+
+    Only the first such move is reported. Without such a move, the list is empty.
+    """
     inside = False
     starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
     for at in range(structure.main_end_index, len(ready)):
@@ -331,7 +340,7 @@ def _check_after_end(ready: ExecutableLines, structure: ProgramStructure) -> lis
 
 
 def _limit_findings(problems: list[Diagnostic]) -> list[Diagnostic]:
-    """Return at most 100 findings, with priority for errors."""
+    """Return at most 100 findings; errors take precedence over warnings."""
     if len(problems) <= _MAX_FINDINGS:
         return problems
     by_weight = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)

@@ -24,7 +24,7 @@ FloatOrArray = TypeVar("FloatOrArray", float, FloatArray)
 
 
 class Corner(NamedTuple):
-    """A corner (C or R) between a straight move and the next straight move, with its size in mm."""
+    """A chamfer (C) or rounding (R) between two consecutive straight moves, with its size in mm."""
 
     letter: str
     size_mm: float
@@ -32,10 +32,9 @@ class Corner(NamedTuple):
 
 
 class CompensationSwitch(NamedTuple):
-    """Marker for G41, G42 or G40 among the blocks.
+    """Marker between blocks at which G41, G42 or G40 switches nose compensation.
 
-    ``secondary_x`` and ``secondary_z`` are the secondary offset that is included in the current position,
-    in mm.
+    ``secondary_x`` and ``secondary_z`` are the secondary offset in mm that the current position includes.
     """
 
     g_code: int
@@ -54,7 +53,7 @@ StageItem = Block | CompensationSwitch
 
 @dataclass(slots=True)
 class ContourState:
-    """State of the pending corner and of the active nose compensation while blocks are generated."""
+    """State of the corner that waits for its second move, and of the active nose compensation."""
 
     is_buffering: bool = False  # blocks are buffered, so each block must pass through the contour modifier
     open_corner: Corner | None = None  # corner after the present move
@@ -159,7 +158,7 @@ class State:
         self.fast = False
 
     def is_first_feed(self, feed: float) -> bool:
-        """Return whether a feed is the F of the first line; programs without G00 use this F for rapids."""
+        """Return whether a feed is the F of the first line, which is the rapid rate without G00."""
         if self.modal.per_rev or self.first_feed is None:
             return False
         return abs(feed - self.first_feed) <= 1e-9 * self.first_feed
@@ -169,7 +168,7 @@ class State:
         return value * self.mm_per_z_unit / (1 if self.modal.per_rev else 60)
 
     def stay(self, modal: ModalState) -> None:
-        """Set a modal state with another program frame; the machine position does not change."""
+        """Set a modal state with another program frame, without changing the machine position."""
         x, z = self.x + self.offset_x, self.z + self.offset_z
         self.set_modal(modal)
         self.x, self.z = x - self.offset_x, z - self.offset_z
@@ -214,15 +213,15 @@ _STATE_FIELDS = tuple(name for name in Checkpoint._fields if name not in _OTHER_
 
 
 def make_checkpoint(state: State) -> Checkpoint:
-    """Return the state at the start of the next line, from which another pass can continue."""
+    """Return a checkpoint at the start of the next line, from which another pass can continue."""
     return Checkpoint(*(getattr(state, name) for name in _STATE_FIELDS))
 
 
 def restore_state(state: State, pass_start: PassStart) -> None:
-    """Restore the state that the start line of ``pass_start`` inherits.
+    """Restore the state that the pass inherits at its start line.
 
-    An MDI line starts at the current position. A restart starts at its checkpoint, which the approach
-    reaches. C remains at its position unless it is locked.
+    An MDI line starts at the current position. A restart starts at its checkpoint, to which the approach
+    leads. C remains at its position unless it is locked.
     """
     point = pass_start.checkpoint
     for name in _STATE_FIELDS:

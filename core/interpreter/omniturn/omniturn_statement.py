@@ -1,4 +1,4 @@
-"""Statements, which contain the words of a line sorted by function and checked for conflicts."""
+"""Statements: the words of a line, sorted by function and checked for conflicts."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ PLANE_FLOW = "plane"
 
 @dataclass(slots=True)
 class Statement:
-    """A line ready for execution.
+    """A program line that is ready for execution.
 
-    ``words`` contains the words by letter, except G and M. ``block_texts`` contains the texts of the line's
-    blocks.
+    ``words`` contains the words by letter, except G and M. ``block_texts`` contains the texts of the blocks
+    that the line generates.
     """
 
     line: int
@@ -64,7 +64,7 @@ class Statement:
 
     @property
     def is_contour_cycle(self) -> bool:
-        """Return whether the line is a cycle along a contour that is described by other lines."""
+        """Return whether the line is a cycle whose contour is described by other lines."""
         return self.code_entry.action_kind is ActionKind.CONTOUR
 
     @property
@@ -332,7 +332,7 @@ def _check_flow(statement: Statement, line: LexedLine) -> None:
 
 
 def _name_parts(statement: Statement, line: LexedLine) -> None:
-    """Assign its words to each block of the line, or the whole line to a single block."""
+    """Assign a text to each block of the line: its own words, or the whole line for a single block."""
     groups: dict[str, str] = {}
     for word in line.words:
         name = _group(statement, word)

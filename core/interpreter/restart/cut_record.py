@@ -42,12 +42,14 @@ _PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_prog
 class CutRecord:
     """All moves of a program as rows (m,), and the known limits of the material.
 
-    ``block_number`` is the number of the elementary block. ``bar_section`` counts how often the collet was
-    opened, because earlier cuts are then on another section of the bar. ``max_feed_radius`` is the largest
-    radius of a feed move, or 0. ``retract_radius`` is a radius at which tools retract at rapid, or inf if
-    it is unknown, because the largest cut may be a bore. ``face_z`` is a Z beyond all cuts at which rapids
-    move inside that radius, or inf if it is unknown. ``machine_x_range_by_tool`` contains the minimum and
-    maximum machine X of each tool. ``max_machine_z`` is the maximum machine Z of all moves.
+    - ``block_number``: number of the elementary block.
+    - ``bar_section``: how often the collet was opened; earlier cuts are on another section of the bar.
+    - ``max_feed_radius``: largest radius of a feed move, or 0 if no feed move exists.
+    - ``retract_radius``: radius at which tools retract at rapid, or inf if it is unknown, because
+      the largest cut may be a bore.
+    - ``face_z``: Z past all cuts at which rapids move inside that radius, or inf if it is unknown.
+    - ``machine_x_range_by_tool``: minimum and maximum machine X of each tool.
+    - ``max_machine_z``: maximum machine Z of all moves.
     """
 
     block_number: IntArray
@@ -85,7 +87,7 @@ class CutRecord:
         return float(self.x0[row]), float(self.z0[row]), float(self.x[row]), float(self.z[row])
 
     def compute_front_z(self, tool: int) -> float:
-        """Return the tip Z beyond which the tool is in front of all material, in mm."""
+        """Return the tip Z from which this tool is in front of all material, in mm."""
         return self.face_z_by_tool.get(tool, self.face_z)
 
     def is_clear_after_rapid(self, x: float, z: float) -> bool:
@@ -102,9 +104,10 @@ class CutRecord:
 
 
 class _Rows:
-    """Collector of tables (9, m) with one column for each straight segment.
+    """Collector of the rows of a cut record.
 
-    The rows of the tables are the block number, line, x0, z0, x, z, move kind, tool and bar section.
+    The rows are collected in tables (9, m) with one column for each straight segment. Each column contains
+    the block number, line, x0, z0, x, z, move kind, tool and bar section.
     """
 
     def __init__(self) -> None:
@@ -165,7 +168,7 @@ class _Rows:
 def record_all_cuts(
     blocks: Iterable[Block | StraightMoveSeries], report_progress: Callable[[float], None]
 ) -> CutRecord:
-    """Return the record of all blocks.
+    """Record the moves of all blocks.
 
     ``report_progress`` is called with the number of blocks and may raise an exception to cancel the
     recording.
@@ -224,9 +227,10 @@ def _record(rows: _Rows, blocks: int) -> CutRecord:
 def _faces(
     feeds: BoolArray, x0: FloatArray, x: FloatArray, z: FloatArray, tool: IntArray, radius: float
 ) -> dict[int, float]:
-    """Return for each tool the minimum Z beyond all cuts at which a rapid moves inside the cut radius.
+    """Return for each tool the minimum Z, in front of all cuts, at which a rapid moves along X.
 
-    Only the end of a cut is certainly in material, because its start may be in air.
+    The rapid ends inside the radius of the cuts. Only the end of a cut is certainly in material, because
+    its start may be in air.
     """
     cut = _greatest(z[feeds], inf)
     within = max(radius - SAME_POINT_MM, _CENTERLINE_TOLERANCE_MM)
@@ -238,7 +242,7 @@ def _faces(
 
 
 def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -> dict[int, float]:
-    """Return for each tool the maximum Z of its rapids, if that Z is beyond the starts of all cuts."""
+    """Return for each tool the maximum Z of its rapids, if all cuts start at a smaller Z."""
     cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
     rapid_z_by_tool = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
     return {each: far for each, far in rapid_z_by_tool.items() if far > cut + SAME_POINT_MM}
@@ -247,7 +251,7 @@ def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -
 def _retract_radius(
     feeds: BoolArray, x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray, radius: float
 ) -> float:
-    """Return the minimum radius to which rapids retract between cuts and which no cut reaches.
+    """Return the minimum radius to which rapids retract between cuts, outside all cuts.
 
     A boring bar retracts toward the center, so its rapids end at a smaller radius than its cuts.
     """
@@ -261,7 +265,7 @@ def _retract_radius(
 
 
 def _forget_start(x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray) -> None:
-    """Set the unknown start positions of each axis to NaN, until the axis has moved."""
+    """Set the start positions of an axis to NaN until its first move, because they are unknown."""
     for start, end in ((x0, x), (z0, z)):
         if len(start):
             moved = np.flatnonzero(np.abs(end - start) > SAME_POINT_MM)
@@ -306,6 +310,6 @@ def _points(block: Block) -> list[tuple[float, float]]:
 
 
 def _step(radius: float) -> float:
-    """Return the angle in radians of a chord that is within the tolerance of an arc with this radius."""
+    """Return the angle in radians of the longest chord within the tolerance of an arc."""
     share = min(1.0, _CHORD / radius) if radius > 0.0 else 1.0
     return min(pi / 2, 2.0 * sqrt(2.0 * share))

@@ -1,4 +1,4 @@
-"""Visits of a line, which are the executions of this line in loop passes and subroutine calls."""
+"""Visits of a program line: its executions in the passes of loops and in subroutine calls."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _PROGRESS_INTERVAL = 2000
 
 @dataclass(frozen=True, slots=True)
 class LineVisits:
-    """The visits of a line, in the order of execution.
+    """The visits (executions) of one program line, in order.
 
     For each visit, the lists contain the number of earlier elementary blocks and the flow position.
     """
@@ -44,7 +44,7 @@ class LineVisits:
         return max(1, bisect_left(self.earlier_block_counts, block))
 
     def explain_missing_visit(self, line: int, number: int) -> str:
-        """Return the reason why a visit does not exist, or an empty string if the visit exists."""
+        """Return the reason why a visit with this number does not exist, or an empty string if it exists."""
         if not self.earlier_block_counts:
             return Message("The program never reaches line {line}.", line=line)
         if len(self.earlier_block_counts) > MAX_VISIT_COUNT:
@@ -63,7 +63,7 @@ class LineVisits:
         )
 
     def find_anchor(self, number: int) -> tuple[int, int]:
-        """Return the main program line that contains the visit, and the visit number of that line.
+        """Return the main program line in which a visit occurs, and the visit number of that line.
 
         The main program line is outside of all loops.
         """
@@ -87,7 +87,7 @@ class LineVisits:
 def find_line_visits(
     program: Program, setup: Setup, line: int, report_progress: Callable[[float], None]
 ) -> LineVisits:
-    """Return the visits of a line in a complete run with the inputs of ``setup``."""
+    """Return all visits of a line in a complete run with the input states of ``setup``."""
     found = LineVisits(program, [], [])
     walk, count, ended = StoppablePass(program, setup), 0, False
     blocks = walk.run_to_line(line)

@@ -11,7 +11,7 @@ PATH_TOLERANCE_MM = 0.1  # mm; a tool within this distance of a path is on the p
 
 
 def compute_distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> float:
-    """Return the distance of a point from the move of a row, in mm."""
+    """Return the distance in mm of a point from the move that a row of the cut record describes."""
     x0, z0, x1, z1 = cut_record.get_end_points(row)
     if isnan(x0) or isnan(z0):
         return hypot(x - x1, z - z1)
@@ -19,9 +19,9 @@ def compute_distance_from_row(cut_record: CutRecord, row: int, x: float, z: floa
 
 
 def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
-    """Return the point of a row that is nearest to (x, z), in mm.
+    """Return the point on the move of a cut record row that is nearest to (x, z), in mm.
 
-    Returns None if the start of the row is unknown.
+    Returns None if the start of the move is unknown.
     """
     x0, z0, x1, z1 = cut_record.get_end_points(row)
     length = hypot(x1 - x0, z1 - z0)

@@ -1,9 +1,9 @@
 """Block search with calculation for Klartext and SINUMERIK programs.
 
-All blocks before the line are interpreted as in a run. The tool, spindle, datum, plane, parameters, loops
-and calls are therefore the same as in the run. A second pass starts at other axis positions. If an axis has
-a different position in the second pass, the program has not positioned the axis. The line is then rejected
-unless the axis has never moved.
+All blocks before the restart line are interpreted as in a run. The tool, spindle, datum, plane, parameters,
+loops and calls are therefore the same as in the run. A second pass starts at other axis positions. If an
+axis then ends at a different position, the program has not positioned it. The line is then rejected, unless
+the axis has never moved.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_prog
 
 @dataclass(slots=True)
 class _RunVisits:
-    """Visits of all lines in a complete run, with the number of blocks before each visit."""
+    """Executions of all lines in a complete run, with the number of blocks before each execution."""
 
     visits: dict[int, list[int]] = field(default_factory=dict)
     blocking_reasons: dict[int, str] = field(
@@ -68,10 +68,10 @@ class BlockSearch:
     def find_restart(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
     ) -> RestartPoint | RestartRefusal:
-        """Return the restart point of a line at its ``visit``-th execution, or the refusal of the restart.
+        """Return the restart point of a line at its ``visit``-th execution, or the reason for refusal.
 
-        A ``visit`` of 0 selects the interrupted pass, or the first pass without an interruption.
-        ``interruption`` is the interruption of the program.
+        A ``visit`` of 0 selects the interrupted pass, or the first pass if the program was not interrupted.
+        ``interruption`` describes where the program was interrupted.
         """
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
@@ -177,7 +177,7 @@ class BlockSearch:
     def _machine_positions(
         self, here: Checkpoint, other: Checkpoint | None
     ) -> tuple[float | None, ...] | str:
-        """Return the machine positions, or the reason why they are unknown.
+        """Return the machine positions for a restart, or the reason why they are unknown.
 
         The position of an axis that has not moved is None.
         """
@@ -234,7 +234,7 @@ class BlockSearch:
         return RestartPoint(line, point, clear, None, visit, skipped_lines=(first, last), axis_positions=at)
 
     def _nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
-        """Return the nearest suitable line in one direction.
+        """Return the nearest line in one direction at which a restart is possible.
 
         Each candidate line must pass the same checks as a line that the operator selects. Returns 0 if none
         of the first few lines is suitable.
@@ -255,9 +255,9 @@ class BlockSearch:
 
 @dataclass(slots=True)
 class _PassState:
-    """The state of a pass during the search.
+    """The state of an interpreter pass during a block search.
 
-    ``is_cutting`` means that the last move was a feed move. ``skipped_lines`` are the first and last line
+    ``is_cutting`` is True if the last move was a feed move. ``skipped_lines`` are the first and last line
     of skipped cuts.
     """
 
@@ -271,7 +271,10 @@ class _PassState:
     skipped_lines: tuple[int, int] | None = None
 
     def process_block(self, block: Block, *, uncut: bool) -> None:
-        """Update the state with the next block; ``uncut`` means that its cut is missing or incomplete."""
+        """Update the state with the next block.
+
+        ``uncut`` means that the block's cut was not made or not completed before the interruption.
+        """
         if block.swivel is not None:
             self.tool_length_mm = block.swivel.system.tool_length_mm
         if not block.moves:
@@ -288,7 +291,7 @@ class _PassState:
                 self.max_skipped_z = max(self.max_skipped_z, tip)
 
     def is_above_skipped_cuts(self, point: Checkpoint) -> bool:
-        """Return whether the position was reached at rapid and is not below the start of a skipped cut."""
+        """Return whether a position is not below a skipped cut's start and was reached at rapid."""
         return (
             not (self.is_cutting or self.moves_rotary_axes)
             and point.at[2] - self.tool_length_mm >= self.max_skipped_z - _SAME
@@ -298,8 +301,8 @@ class _PassState:
 def _is_uncut(block: Block, interruption: Interruption) -> bool:
     """Return whether the cut of a block was not started, or was interrupted before its end.
 
-    A closed block, such as a full circle, counts as uncut, because its end point does not show how much was
-    cut.
+    A closed block, such as a full circle, counts as uncut, because its end point does not show how far the
+    cut had progressed.
     """
     if block.n != interruption.block_number or block.travel is None:
         return block.n > interruption.last_complete_block
@@ -312,12 +315,12 @@ def _is_uncut(block: Block, interruption: Interruption) -> bool:
 
 
 def _is_same_position(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Return whether two machine positions agree, without regard to whole revolutions of the rotary axes."""
+    """Return whether two machine positions agree, ignoring whole revolutions of rotary axes."""
     offs = [b - a for a, b in zip(one, other, strict=False)]
     turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_LINEAR_AXIS_COUNT:]]
     return all(abs(each) <= PATH_TOLERANCE_MM for each in (*offs[:_LINEAR_AXIS_COUNT], *turned))
 
 
 def _axis_positions(point: Checkpoint) -> tuple[float, ...]:
-    """Return the machine positions of all axes."""
+    """Return the machine positions of all axes at a checkpoint."""
     return point.at or (*point.machine, point.c + point.modal.offset_c)

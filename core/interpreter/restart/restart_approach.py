@@ -82,7 +82,7 @@ class OperatorChoices:
 
 
 def plan_retract_from_part(cut_record: CutRecord, present: PresentState) -> tuple[Retract, int]:
-    """Return the retract of the tool from the part, and the number of this tool."""
+    """Return the retract that moves the tool in use out of the part, and the number of this tool."""
     broken = present.interruption
     if broken is None or broken.tool_number not in cut_record.tool_offsets:
         return _unknown(cut_record, present), present.modal.tool
@@ -127,9 +127,9 @@ def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float
 
 
 def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
-    """Return the retract for an unknown interruption.
+    """Return the retract if the point of interruption is not known.
 
-    The tool is known to be clear only if all tools of the program would be outside the material.
+    The tool counts as clear only if every tool of the program would be outside the material here.
     """
     clear = present.axis_positions[1] >= cut_record.max_machine_z - _SAME or all(
         cut_record.is_outside_material(*_tip(cut_record, present.axis_positions, tool), tool)
@@ -141,7 +141,7 @@ def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
 def _find_stale_position(
     cut_record: CutRecord, interruption: Interruption, x: float, z: float
 ) -> ToolPosition | None:
-    """Return the current tool position, searched from the saved row onward, or None if no row fits."""
+    """Return the tool position on the first row from the saved row on that passes (x, z), or None."""
     row = max(0, cut_record.find_last_row(interruption.block_number))
     for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
         if int(cut_record.tool_number[each]) != interruption.tool_number:
@@ -152,7 +152,7 @@ def _find_stale_position(
 
 
 def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: float, z: float) -> Retract:
-    """Return the remaining retract after a stop during the approach or retract of an earlier restart."""
+    """Return the rest of a retract if an earlier restart was stopped in its approach or retract."""
     row = cut_record.find_last_row(interruption.block_number)
     place = None if row < 0 else find_nearest_point(cut_record, row, x, z)
     if place is None or int(cut_record.tool_number[row]) != interruption.tool_number:
@@ -166,7 +166,7 @@ def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: flo
 
 
 def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
-    """Return the retract, or an unknown retract if a mill is in its hole and C has turned."""
+    """Return the retract, without a path if C has rotated while a milling tool was in its cut."""
     broken = present.interruption
     if (
         retract.situation is not ToolSituation.MILLING
@@ -184,7 +184,7 @@ def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
 
 
 def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
-    """Return the remaining part of a retract along which the tool has already moved."""
+    """Return the retract without the distance that the tool has already traveled."""
     at = RetractLeg(*start)
     for number, hop in enumerate(retract.legs):
         if compute_distance_from_segment(at.x, at.z, hop.x, hop.z, x, z) <= PATH_TOLERANCE_MM:
@@ -196,7 +196,7 @@ def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: 
 def make_lathe_start(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> PassStart:
-    """Return the start of a pass at the line, with C at its actual number of revolutions."""
+    """Return the start of a pass at a line of a lathe, with C at the nearest equivalent angle."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
     if modal.c_locked:
         modal = modal._replace(
@@ -210,7 +210,7 @@ def make_lathe_start(
 def plan_lathe_approach(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
-    """Return all steps from the current standstill to the first block of the line."""
+    """Return all approach steps from the current position at rest to the first block of the line."""
     out = (
         plan_exit_moves(restart_point.cut_record, present, choices)
         if restart_point.cut_record is not None
@@ -265,12 +265,12 @@ def _free(cut_record: CutRecord, tool: int, start: tuple[float, float], end: tup
 def list_starting_functions(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
-    """Return the functions that will start or turn on, for confirmation by the operator."""
+    """Return the machine functions that the restart will turn on, for confirmation by the operator."""
     return tuple(step for step in _starts(restart_point, present, choices) if isinstance(step, FunctionStep))
 
 
 def list_stopping_functions(target: ModalState, present: ModalState) -> Iterator[ApproachStep]:
-    """Yield the functions that must stop before any motion."""
+    """Yield the machine functions that must stop before the approach moves an axis."""
     if present.spindle and present.spindle != target.spindle:
         yield FunctionStep(SpindleStop(), "M05")
     if present.coolant and not target.coolant:
@@ -303,7 +303,7 @@ def _starts(found: RestartPoint, now: PresentState, choices: OperatorChoices) ->
 
 
 def _target_c_angle(angle: float, present: float) -> float:
-    """Return the target angle of C, or the nearest equivalent angle if it exceeds one revolution."""
+    """Return the target angle of C; beyond one revolution, use the nearest equivalent angle."""
     return angle if abs(angle) <= _TURN else _nearest_angle(angle, present)
 
 

@@ -1,4 +1,4 @@
-"""Lines from which a program can be restarted, according to the program text alone."""
+"""Lines from which a program can be restarted, as far as the program text alone determines them."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class RestartSuitability:
         return any(each.first <= line <= each.last_line for each in self.repeated_ranges)
 
     def find_nearest(self, line: int, direction: int) -> int:
-        """Return the nearest suitable line in one direction, or 0 if no line is suitable.
+        """Return the nearest suitable line in one direction, or 0 if that direction has no suitable line.
 
         ``direction`` is 1 to search forward and -1 to search backward. Loops and subroutines are skipped.
         From inside a subroutine, the backward search continues at its first call.
@@ -99,7 +99,7 @@ class RestartSuitability:
 
 
 def _calls(program: Program) -> list[tuple[int, int, int]]:
-    """Return the first line, the last line and the first external call of each called subroutine."""
+    """Return the first line, last line and first outside call line of each called subroutine."""
     calls = [
         (number, get_subroutine_number(step))
         for number, step in enumerate(program.executable_lines, start=1)
@@ -114,7 +114,7 @@ def _calls(program: Program) -> list[tuple[int, int, int]]:
 
 
 def _structured(program: Program) -> Iterator[LineRange]:
-    """Yield the ranges of contours and of unreachable lines.
+    """Yield the line ranges of contours and of code that is never reached.
 
     Only the first line of a contour is suitable for a restart.
     """
@@ -146,7 +146,10 @@ def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
 
 
 def _open(lines: ExecutableLines) -> Iterator[LineRange]:
-    """Yield the ranges of plane switching, nose compensation and corners, from the line after their start."""
+    """Yield the line ranges of unfinished functions, from the line after the start of each function.
+
+    The functions are coordinate transformation (plane switching), nose compensation and corners.
+    """
     plane = nose = corner = 0
     for number, step in enumerate(lines, start=1):
         if not isinstance(step, Statement):
@@ -173,9 +176,9 @@ def _open(lines: ExecutableLines) -> Iterator[LineRange]:
 
 
 def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
-    """Return the start line of the active plane switching, and of the plane switching that ends here.
+    """Return the start line of the active coordinate transformation (plane switching).
 
-    Each value is 0 if such plane switching does not exist.
+    Also returns the start line of the transformation that ends here. Each line is 0 if there is none.
     """
     name = step.plane_line.name if step.plane_line is not None else ""
     if name == "END":

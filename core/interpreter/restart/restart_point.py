@@ -11,7 +11,7 @@ from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):
-    """One pass of a loop; LS is on ``first_line``, and LF is on ``last_line``."""
+    """One pass of a program loop, with LS on ``first_line`` and LF on ``last_line``."""
 
     first_line: int
     last_line: int
@@ -49,7 +49,7 @@ class Interruption(NamedTuple):
 
     @property
     def last_complete_block(self) -> int:
-        """Return the last block whose cut is certainly complete."""
+        """Return the number of the last block that was certainly cut completely."""
         return (
             max(self.last_started_block, self.block_number)
             if self.block_number <= self.last_started_block + 1
@@ -59,10 +59,11 @@ class Interruption(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class RestartPoint:
-    """A line that is suitable for a restart, in one of its passes.
+    """A line at which a program can be restarted, in one particular execution of this line.
 
-    The restart point contains the inherited state and the retract from the start of the line.
-    ``skipped_lines`` are the first and last line of the cuts that the restart would skip, or (0, 0).
+    The point contains the state that the line inherits and the retract from the start of the line.
+    ``skipped_lines`` are the first and last line of the cuts that the restart would skip, or (0, 0) if it
+    skips none.
     """
 
     line_number: int
@@ -79,7 +80,10 @@ class RestartPoint:
 
 @dataclass(frozen=True, slots=True)
 class RestartRefusal:
-    """The reason why a restart at a line is not possible, with the nearest suitable lines (0 for none)."""
+    """The reason why a restart at a line is not possible, with the nearest suitable lines.
+
+    A suitable line is 0 if none exists in that direction.
+    """
 
     line_number: int
     why: str

@@ -1,8 +1,8 @@
 """Retract of a tool from the part along moves that do not cross material.
 
-The reversed retract is the approach of the tool. Space is known to be free outside the largest cut radius,
-in front of the face, and where this tool has been since the collet was last opened. Other moves are safe
-only if the program itself makes the same retract. The rules are in docs/decisions/0021-restart.md.
+The approach of the tool is the same path in reverse. Space is known to be free outside the largest cut
+radius, in front of the face, and where this tool has been since the collet was last opened. Other moves are
+safe only if the program itself makes the same retract. The rules are in docs/decisions/0021-restart.md.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class _Segment(NamedTuple):
 
 
 def plan_retract(cut_record: CutRecord, position: ToolPosition, last_complete_block: int) -> Retract:
-    """Return the retract from this position, after the blocks up to ``last_complete_block`` were cut."""
+    """Return the retract from this position, if the blocks to ``last_complete_block`` were cut."""
     row = cut_record.find_last_row(position.block_number)
     if row >= 0 and int(cut_record.tool_number[row]) == position.tool_number:
         row, on = _nearest_row(cut_record, row, position)
@@ -85,7 +85,7 @@ def _nearest_row(cut_record: CutRecord, row: int, position: ToolPosition) -> tup
 
 
 class _Search:
-    """Search for a retract from one position on one row."""
+    """Search for a safe retract from one tool position on one row of the cut record."""
 
     def __init__(
         self, cut_record: CutRecord, position: ToolPosition, row: int, last_complete_block: int
@@ -129,7 +129,7 @@ class _Search:
     # --- retract as in the program ------------------------------------------------------------------------
 
     def _following_segments(self) -> Iterator[_Segment]:
-        """Yield the next segments of this tool on this bar section, starting with the rest of the row."""
+        """Yield the rest of this row and the following moves of this tool on this bar section."""
         cut, row = self.cut_record, self.row
         if self.is_inside_row:
             yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.move_kind, row)
@@ -189,7 +189,7 @@ class _Search:
         return self._out_with(self._segment(crossing), steps, grew=grew, shrank=shrank)
 
     def _remaining_travel(self, level: float) -> float | None:
-        """Return the outward travel of the rest of this row in mm, or 0 in a thread.
+        """Return the outward travel of the rest of this row in mm, or 0 in a screw thread.
 
         Returns None if the rest of the row is itself an obstacle.
         """
@@ -199,7 +199,7 @@ class _Search:
         return None if here or z > level else sideways
 
     def _same_tool_rows(self, first: int) -> slice:
-        """Return the rows from ``first`` onward with this tool and this bar section, up to a limit."""
+        """Return the rows from ``first`` on with this tool and bar section, up to a maximum count."""
         cut = self.cut_record
         far = slice(first, first + _MAX_SEARCH_ROWS)
         other = (cut.tool_number[far] != cut.tool_number[self.row]) | (
@@ -292,7 +292,7 @@ class _Search:
         return False
 
     def _drawoff_radius(self, row: int, side: float) -> float:
-        """Return the radius from which the cut before this rapid moved outward to the level of the rapid.
+        """Return the start radius of the outward cut along X that directly precedes this rapid.
 
         The radius is inf if such a cut does not exist.
         """
@@ -314,10 +314,10 @@ class _Search:
     # --- retract along the entry path ---------------------------------------------------------------------
 
     def _entry_retract(self) -> Retract:
-        """Return the retract along the entry path.
+        """Return the retract along the path on which the tool entered the part.
 
         The retract ends where the program's retract is safe or the tool is clear. It does not pass through
-        a thread, the opening of the collet or a tool change.
+        a screw thread, the opening of the collet or a tool change.
         """
         points = [RetractLeg(self.x, self.z)]
         for segment in self._earlier_segments():
@@ -335,7 +335,7 @@ class _Search:
         return self._direction_only()
 
     def _earlier_segments(self) -> Iterator[_Segment]:
-        """Yield the earlier segments of this tool on this bar section, from the last to the first."""
+        """Yield the earlier path segments of this tool on this bar section, in reverse order."""
         cut, row = self.cut_record, self.row
         tool, bar = int(cut.tool_number[row]), int(cut.bar_section[row])
         before: _Segment | None = None
@@ -393,7 +393,7 @@ class _Search:
         return first and cut.is_clear_after_rapid(float(cut.x[row]), float(cut.z[row]))
 
     def _direction_only(self) -> Retract:
-        """Return a retract without legs; its direction comes from the next rapid or the entry path."""
+        """Return a retract without moves, with the direction of the next rapid or of the entry."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
         ways = [(segment.x - segment.start_x, segment.z - segment.start_z) for segment in rapids]
@@ -436,7 +436,7 @@ class _Search:
         return 0, 0
 
     def _mill_retract(self, axis: int) -> Retract:
-        """Return the retract of a mill along the tool axis: Z on the face, or X on the side."""
+        """Return the retract of a milling tool along its axis: Z for face milling, X for side milling."""
         low, high = self.cut_record.machine_x_range_by_tool[self.position.tool_number]
         offset = self.cut_record.tool_offsets[self.position.tool_number][0]
         far = low - offset if self.x < 0.0 else high - offset
@@ -457,7 +457,7 @@ class _Search:
         return face if face < inf else float(np.nanmax(self.cut_record.z[own]))
 
     def _mill_axis(self) -> int:
-        """Return FACE or SIDE, as determined from the plane switching, the next rapid or the entry."""
+        """Return FACE or SIDE, the surface being milled, from the cuts, the next rapid or the entry."""
         cut, row = self.cut_record, self.row
         near = slice(max(0, row - _BACK), row + _AHEAD)
         own = cut.move_kind[near][cut.tool_number[near] == self.position.tool_number]

@@ -1,8 +1,8 @@
 """Reconstruction of the state at a program line by interpreting the program up to that line.
 
-The positions at Cycle Start and the inputs of the run are unknown. A second pass with another start
-position and other inputs therefore runs in parallel until the states of both passes agree. While the states
-differ, no line is suitable for a restart.
+The positions at Cycle Start and the inputs of the run are unknown. Therefore, a second pass with another
+start position and other inputs runs in parallel. While the states of both passes differ, no line is
+suitable for a restart.
 """
 
 from __future__ import annotations
@@ -71,10 +71,11 @@ class OmniturnSearch:
     def find_restart(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
     ) -> RestartPoint | RestartRefusal:
-        """Return the restart point of a line at its ``visit``-th execution, or the refusal of the restart.
+        """Return the restart point of a line, or the refusal of the restart with its reason.
 
-        A ``visit`` of 0 selects the interrupted pass, or the first pass without an interruption.
-        ``interruption`` is the interruption of the program.
+        ``visit`` selects the execution of the line, from 1. With 0, it is the interrupted execution, or the
+        first execution if the program was not interrupted. ``interruption`` is the interruption of the
+        program.
         """
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
@@ -137,10 +138,10 @@ class OmniturnSearch:
         return StoppablePass(self._program, setup)
 
     def _run_to_visit(self, line_pass: StoppablePass, line: int, nth: int) -> tuple[str, bool]:
-        """Run to the ``nth`` visit of a line.
+        """Run to the ``nth`` execution of a line.
 
-        Returns the reason why the state is unknown, and whether an axis has moved. The reason is empty if
-        the state is known.
+        Returns the reason why the state is unknown, or an empty string if it is known. Also returns whether
+        an axis has moved.
         """
         moved = False
         for number in range(nth):
@@ -167,9 +168,9 @@ class OmniturnSearch:
         return make_lathe_restart(line, walk.checkpoint, self.cut_record, visit, broken)
 
     def _find_nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
-        """Return the nearest line that a pass confirms as suitable, or 0 if no such line is found.
+        """Return the nearest suitable line, confirmed by a pass up to it, or 0 if no line is found.
 
-        Only a few lines are tried upward, because each of these lines needs another pass.
+        Only a few lines are tried backward, because each of these lines needs another pass.
         """
         for _ in range(_DOWN if direction > 0 else _UP):
             line = self.line_suitability.find_nearest(line, direction)
@@ -189,10 +190,10 @@ class OmniturnSearch:
         )
 
     def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
-        """Run to the line, and return why it is unsuitable, or an empty string if it is suitable.
+        """Run both passes to the line, and return the reason why the line is unsuitable.
 
-        If ``position_known`` is False, the position may still depend on the start position, because later
-        blocks may determine the position.
+        The result is an empty string for a suitable line. If ``position_known`` is False, the position may
+        still depend on the start position, because later blocks may determine the position.
         """
         if line < self._at:
             self._begin_anew()
@@ -207,7 +208,7 @@ class OmniturnSearch:
         return self._why_not(line, self._walk, known=known, moved=self._moved)
 
     def _stop(self, line: int) -> int:
-        """Return the line of the next comparison of both passes.
+        """Return the line at which the states of both passes are compared next.
 
         While the state is unknown, the passes are compared at each line and at each input.
         """
@@ -344,7 +345,7 @@ def make_lathe_restart(
 
 
 def make_skipped_cuts_message(line: int, first: int, last: int) -> Message:
-    """Return the message that the line follows skipped cuts on the lines ``first`` to ``last``."""
+    """Return the message that the restart would skip the cuts on the lines ``first`` to ``last``."""
     which = (
         Message("line {line}", line=first)
         if first == last

@@ -45,7 +45,7 @@ class SpindleLock(PlainValue):
 
 
 class SpindlePositioning(PlainValue):
-    """Action that stops the spindle at an angle and holds it there (M19 of Klartext, SPOS).
+    """Action that stops the spindle at an angle and holds it in position (M19 of Klartext, SPOS).
 
     ``angle`` is in degrees from the spindle index. ``sense`` is the direction of rotation: 1 as for M3, -1
     as for M4, or 0 for the shorter distance.
@@ -96,7 +96,7 @@ class ToolChange(PlainValue):
 
 
 class WorkShift(PlainValue):
-    """Action of G10 that adds to the work shift for the next T, in mm with X as a radius."""
+    """Action of G10 that adds to the work shift, in mm with X as a radius, from the next T on."""
 
     __slots__ = __match_args__ = ("x", "z")
 

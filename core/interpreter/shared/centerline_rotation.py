@@ -1,4 +1,4 @@
-"""Rotation of C while the tool is on the spindle centerline, until the path leads outward along X.
+"""Rotation of C while the tool is on the spindle centerline, before a move outward along X.
 
 All dialects with a virtual mill use this module.
 """

@@ -1,7 +1,7 @@
-"""State from which a pass starts: the first line, or a saved pass (MDI, restart, block search).
+"""State from which a pass can start: the first line, or a state saved by another pass.
 
-The state of a dialect is in the parts of its interpreter. A saved pass copies these parts completely, so
-that it includes the state of every function.
+MDI, restart and block search start from a saved state. Each part of an interpreter contains its own share
+of the state. A saved pass copies these parts completely, so that it includes the state of every function.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _numbers = count(1)
 
 
 class StateLine(NamedTuple):
-    """One line of the modal state in the terms of the control; ``key`` identifies its group."""
+    """One line of the modal state as displayed; ``key`` identifies its group of functions."""
 
     key: str
     value: str
@@ -53,20 +53,20 @@ class SavedPass(Generic[PartsType]):
         return hash(self._name)
 
     def copy_parts(self, *instead: object) -> PartsType:
-        """Return a copy of the saved parts with other shared objects.
+        """Return a copy of the saved parts, in which some of the shared objects are replaced.
 
-        In the copy, the objects in ``instead`` replace the first of the shared objects.
+        The objects in ``instead`` replace the same number of shared objects, starting with the first one.
         """
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
 
 
 class FlowLevel(NamedTuple):
-    """The main program or one active subroutine, with positions as line indices from 0.
+    """The main program or one active subroutine, with lines as indices from 0.
 
-    ``return_index`` is the line at which execution continues after a call, or the next line.
-    ``remaining_repeats`` contains a pair for each active loop, from the outermost to the innermost. The
-    pair is the line of LS and the number of remaining repeats.
+    ``return_index`` is the line at which execution continues after a subroutine that this level has called.
+    If no call is active, it is the next line. ``remaining_repeats`` contains a pair for each active loop,
+    from the outermost to the innermost. The pair is the line of LS and the number of remaining repeats.
     """
 
     return_index: int
@@ -112,7 +112,7 @@ class Checkpoint(NamedTuple):
 
 
 class StraightLeg(NamedTuple):
-    """A straight move to a machine position in mm, with None for an axis that does not move."""
+    """A straight move to a machine position in mm; an axis that does not move is None."""
 
     x: float | None
     z: float | None

@@ -1,4 +1,4 @@
-"""Passes of canned cycles: passes of equal depth, or roughing passes along a contour."""
+"""Roughing and finishing passes of canned cycles, at equal depths or along a contour."""
 
 from __future__ import annotations
 
@@ -53,11 +53,12 @@ class ContourClearanceError(Exception):
 
 
 class RoughingPlanner:
-    """Planner of roughing passes.
+    """Planner of the passes that rough a contour.
 
     ``add_pass`` adds passes of increasing depth to ``moves``, and ``add_finishing_pass`` adds a cut along
-    the contour. The tool feeds into a span from the end of the previous pass. Between spans, it moves at
-    ``rapid`` mm/s, with the distance ``lift`` in mm above the remaining material.
+    the contour. A span is a section of a pass with material to cut; the tool feeds into it from the end of
+    the previous pass. Between spans, the tool moves at ``rapid`` mm/s, ``lift`` mm above the remaining
+    material.
     """
 
     def __init__(self, area: RoughingArea, rapid: float, lift: float) -> None:
@@ -107,9 +108,9 @@ class RoughingPlanner:
         self._check(here, self.moves[begun:])
 
     def _approach(self, to: Point, *, front: bool) -> None:
-        """Add the moves to the start of the path.
+        """Add the moves to the start of the contour.
 
-        The tool reaches the front end from in front of the area, and the back end from above.
+        The tool approaches the front end from in front of the area, and the back end from above.
         """
         length = min(to[1], 0.0) if front else to[1]
         self._move_above(length)
@@ -154,9 +155,9 @@ class RoughingPlanner:
             self._go(depth - self._lift, self._at[1])
 
     def _clear_depth(self, a: float, b: float) -> float:
-        """Return the depth at which the tool can move between two positions.
+        """Return the greatest depth at which the tool can move freely between two positions.
 
-        The depth is ``lift`` above the deepest pass that covers the whole distance.
+        This depth is ``lift`` above the deepest pass that covers the whole distance.
         """
         low, high = min(a, b), max(a, b)
         for depth, spans in reversed(self._done):
@@ -209,10 +210,10 @@ def _covering(spans: list[ZSpan], low: float, high: float) -> bool:
 
 
 class ContourFrame(NamedTuple):
-    """The frame of a contour, relative to the start point of the cycle.
+    """The coordinate frame of a contour, with its origin at the start point of the cycle.
 
-    ``x_sign`` and ``z_sign`` are +1 or -1. With ``is_reversed``, the tool is on the left of the reversed
-    contour.
+    ``x_sign`` and ``z_sign`` are +1 or -1. ``is_reversed`` means that the contour must be reversed so that
+    the tool is on its left.
     """
 
     start: Point

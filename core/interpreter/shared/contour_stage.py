@@ -37,7 +37,7 @@ def make_element(block: Block) -> Element:
 
 
 class AdjustedMoveFactory(ABC):
-    """Factory of the blocks for adjusted moves; each dialect implements its own factory."""
+    """Factory of the blocks for moves that a stage has changed; each dialect has its own factory."""
 
     @property
     @abstractmethod
@@ -46,7 +46,7 @@ class AdjustedMoveFactory(ABC):
 
     @abstractmethod
     def replace_element(self, block: Block, element: Element) -> Block:
-        """Return the block with its move changed to another element of the same kind."""
+        """Return the block with its line or arc replaced by another element of the same kind."""
 
     @abstractmethod
     def insert_move(self, block: Block, element: Element) -> Block:
@@ -94,7 +94,7 @@ MarkerType = TypeVar("MarkerType")
 
 @dataclass(slots=True)
 class BufferedMove(Generic[CornerType, MarkerType]):
-    """A buffered move with a corner, and the blocks between this move and the next move."""
+    """A buffered move that ends with a corner, and the blocks without motion that follow it."""
 
     block: Block
     corner: CornerType
@@ -204,7 +204,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
 
     @abstractmethod
     def _report_straight(self, buffered: BufferedMove[CornerType, MarkerType], after: Block) -> None:
-        """Report that both moves have the same direction."""
+        """Report that both moves have the same direction, so they do not form a corner."""
 
     @abstractmethod
     def _make_size_error(
@@ -226,11 +226,11 @@ _END_CLEARANCE_RATIO = 0.5
 
 
 def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
-    """Return whether the center of a tool nose comes too close to the contour.
+    """Return whether the tool nose comes too close to the contour and would gouge it.
 
     The nose has the radius ``nose_radius_mm``. The elements of the contour start with the nearest element.
     Near the end of the contour, an approach that is not perpendicular always comes closer than the radius.
-    At this point, only ``_END_CLEARANCE_RATIO`` times the radius is required.
+    Here, only ``_END_CLEARANCE_RATIO`` times the radius is required.
     """
     if path.length < SAME_POINT_TOLERANCE_MM:
         return False
@@ -281,7 +281,7 @@ class ContourStage(ABC):
         self._at: Point | None = None  # position of the tip at the end of the yielded blocks
 
     def _add_move(self, move: ContourMove, element: Element) -> list[OffsetPiece]:
-        """Add a move to the contour, and return the pieces that are final.
+        """Add a move to the contour, and return the moves that later moves can no longer change.
 
         Raises ProgramError if the move cannot be offset.
         """
@@ -290,7 +290,10 @@ class ContourStage(ABC):
         return self._sure(self._offset.add(element))
 
     def _remaining_pieces(self) -> list[OffsetPiece]:
-        """Return the remaining pieces after the last move. Raises ProgramError if a move cannot be offset."""
+        """Return the moves that are still buffered after the last move of the contour.
+
+        Raises ProgramError if a move cannot be offset.
+        """
         return self._sure(self._offset.finish_contour())
 
     def _sure(self, pieces: Iterator[OffsetPiece]) -> list[OffsetPiece]:
@@ -344,7 +347,7 @@ class ContourStage(ABC):
         return block
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
-        """Return the path around an outside corner; by default, the path is the given arc."""
+        """Return the path of the nose center around an outside corner; by default, the given arc."""
         del block
         return [element]
 

@@ -42,7 +42,7 @@ FrameType = TypeVar("FrameType", bound=FlowFrame[Any])
 
 
 class ControlFlow(Generic[FrameType]):
-    """The position in a program.
+    """The execution position in a program and its subprograms.
 
     ``next_index`` is the index of the next line, and ``end_index`` is the index at which execution ends.
     """
@@ -120,7 +120,7 @@ class EndlessLoopDetector:
         self._kept: object = None
 
     def is_repeated_state(self, flow: ControlFlow[FrameType], *held: object) -> bool:
-        """Return whether a backward jump occurs in the same state as an earlier jump.
+        """Return whether a backward jump repeats an earlier state, so that the loop is endless.
 
         ``held`` contains all values, other than the position, on which later jumps can depend.
         """

@@ -50,7 +50,7 @@ def merge_repeated_findings(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def _form(finding: Diagnostic) -> object:
-    """Return a key that is equal for findings that differ only in location and numbers."""
+    """Return a key for merging findings: equal if two findings differ only in location and numbers."""
     text = "" if finding.code in REPEATABLE_CODES else _DIGITS.sub("", finding.message)
     return finding.code, finding.severity, text
 

@@ -2,7 +2,7 @@
 
 Most blocks of a long program are straight moves with the same state. A ``StraightMoveSeries`` stores such
 blocks as arrays, because creating an object per block would take too long. ``SectionEndDetector`` finds the
-blocks that start from a standstill, both in a run and in its forecast.
+blocks before which all axes must be at rest, both in a run and in its forecast.
 """
 
 from __future__ import annotations
@@ -49,15 +49,18 @@ _POSSIBLE_RAPID_KINDS = frozenset({BlockKind.PLANE, BlockKind.PLANE_LINE})
 class Block:
     """One elementary block, which is never modified.
 
-    Lengths are in mm, X is a radius, and C is in degrees. ``x``, ``z`` and ``c`` are the end point in the
-    program frame, including secondary offset and nose compensation. ``x0``, ``z0`` and ``c0`` are the start
-    point in the same frame. The machine position is the sum of the point and ``offset_x``, ``offset_z`` and
-    ``modal.offset_c``. ``feed`` is in mm/s, or in mm/rev with ``per_rev``. For a rapid, it is the rapid
-    rate in mm/s. For a move of only C, it is in degrees/s.
+    Lengths are in mm, X is a radius, and C is in degrees.
 
-    ``rpm`` is the commanded spindle speed at the end of the block, which is negative under M04 and 0 if the
-    spindle is stopped. If C rotates at its own speed, ``rpm`` is the signed speed of C. ``modal`` is the
-    state after the block and is the checkpoint for a restart.
+    - ``x``, ``z``, ``c`` are the end point in the program frame, after secondary offset and nose
+      compensation.
+    - ``x0``, ``z0`` and ``c0`` are the start point in the same frame.
+    - The machine position is the sum of the point and ``offset_x``, ``offset_z`` and ``modal.offset_c``.
+    - ``feed`` is in mm/s, or in mm/rev with ``per_rev``. For a rapid, it is the rapid rate in mm/s.
+    - For a move of only C, ``feed`` is in degrees/s.
+    - ``rpm`` is the commanded spindle speed at the end of the block, negative under M04 and 0 at
+      standstill.
+    - If C rotates at its own speed, ``rpm`` is the signed speed of C.
+    - ``modal`` is the state after the block and is the checkpoint for a restart.
     """
 
     n: int  # count from 1, in the order of execution
@@ -113,7 +116,7 @@ class Block:
         return (self.mx, self.mz, self.mc) if self.travel is None else self.travel.end
 
     def reach(self) -> tuple[float, float, float, float]:
-        """Return (min x, max x, min z, max z) of the block without its start point.
+        """Return the extent of the block, without its start point, as (min x, max x, min z, max z).
 
         The values are in mm in the program frame. The start point belongs to the previous block. Arcs and
         moves of a virtual mill include all points of their path.
@@ -129,7 +132,7 @@ class Block:
         return self.x, self.x, self.z, self.z
 
     def compute_machine_bounds(self) -> tuple[tuple[float, float], ...]:
-        """Return the (min, max) machine positions of each axis, without the start point.
+        """Return the (min, max) machine positions of each axis in the block, without its start.
 
         The axes are in the machine's order.
         """
@@ -142,9 +145,9 @@ class Block:
 
     @property
     def length(self) -> float:
-        """Return the path length to which the feed applies, in mm.
+        """Return the length of the block to which the feed applies, in mm.
 
-        The length is in degrees if only rotary axes or C move.
+        If only rotary axes or C move, the length is in degrees.
         """
         if self.travel is not None:
             return self.travel.length
@@ -240,7 +243,10 @@ class StraightMoveSeries(Sequence[Block]):
         return [self.texts[line - 1] for line in self.line.tolist()]
 
     def feeds(self) -> Iterator[tuple[ModalState, float]]:
-        """Return an iterator over the state and feed of each block; it is endless if F does not vary."""
+        """Return an iterator over the modal state and the feed of each block.
+
+        The iterator is endless if all blocks have the same feed.
+        """
         modal, feed = self.pattern.modal, self.pattern.feed
         if self.feed is None:
             return repeat((modal, feed))
@@ -277,12 +283,11 @@ def needs_spindle_at_speed(block: Block) -> bool:
 
 
 class SectionEndDetector:
-    """Detector of the ends of path sections in the elementary blocks of one pass.
+    """Detector of the blocks before which all axes must stop; between them are the path sections.
 
     The blocks must be passed in order. A standstill is required before every action, before the first block
-    that needs a new spindle speed, and before and after each thread pass. A thread pass is a thread or a
-    chain of threads with its pull-out. All other blocks are executed without a standstill and form one path
-    section.
+    that needs a new spindle speed, and before and after each thread pass. A thread pass is a screw thread
+    or a chain of threads with its pull-out. All other blocks are executed without a standstill.
     """
 
     def __init__(self) -> None:

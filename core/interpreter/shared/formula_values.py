@@ -19,8 +19,8 @@ def compute_formula(
 ) -> float:
     """Return the value of a formula.
 
-    ``get_parameter`` is called for the value of each parameter. If an operation has no result, the function
-    raises the error that ``make_missing_error`` returns.
+    ``get_parameter`` returns the value of a parameter. If an operation has no result, such as a division by
+    0, the function raises the error that ``make_missing_error`` returns.
     """
     if isinstance(formula, Number):
         return formula.value

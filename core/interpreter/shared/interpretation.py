@@ -78,9 +78,9 @@ class InterpreterPass(ABC):
         """
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Generate the same blocks as ``generate_blocks``, but combine straight moves into series.
+        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series.
 
-        Moves are combined only where possible.
+        Some dialects do not combine moves. By default, all blocks are generated individually.
         """
         return self.generate_blocks()
 
@@ -101,7 +101,7 @@ class InterpreterPass(ABC):
 
     @property
     def blocking_reason(self) -> str:
-        """Return the reason why another pass cannot continue from the current line, or an empty string.
+        """Return the reason why another pass cannot start at this line, or an empty string.
 
         For example, buffered moves may depend on later lines.
         """
@@ -182,9 +182,9 @@ class LinePass(InterpreterPass, Generic[LineType]):
 
     @abstractmethod
     def _can_stop(self, line: LineType) -> bool:
-        """Return whether block search may stop before this line.
+        """Return whether block search may end before this line.
 
-        Block search stops only before lines of the main file that have a function.
+        Block search ends only before executable lines of the main file.
         """
 
     @abstractmethod
@@ -213,10 +213,10 @@ class LinePass(InterpreterPass, Generic[LineType]):
 def generate_lathe_approach(
     pass_start: PassStart, modal: ModalState, start: Sequence[float], compute_rpm: Callable[[float], float]
 ) -> Iterator[Block]:
-    """Yield the blocks of the approach.
+    """Yield the blocks of the approach to a restart line on a lathe.
 
     The blocks are numbered so that later blocks have the same numbers as in a full run. ``start`` is the
-    present machine position. ``compute_rpm`` returns the commanded spindle speed at a radius in the program
+    current machine position. ``compute_rpm`` returns the commanded spindle speed at a radius in the program
     frame.
     """
     point, offsets = pass_start.checkpoint, (modal.offset_x, modal.offset_z, modal.offset_c)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ToolOffset:
-    """The machine position at which the tool tip is at part zero, in mm with X as a radius."""
+    """The machine position at which the tip of a tool is at part zero, in mm with X as a radius."""
 
     x: float = 0.0
     z: float = 0.0

@@ -59,9 +59,9 @@ class MachineRequirement(NamedTuple):
 
     @property
     def builder_m_code(self) -> int:
-        """Return the number of the required M function that this machine lacks.
+        """Return the number of the machine builder's M function that this machine lacks.
 
-        Returns 0 for other requirements.
+        Returns 0 if the requirement is not an M function.
         """
         number = self.function.removeprefix(BUILDER_M_PREFIX)
         return int(number) if self.function != number and number.isdigit() else 0

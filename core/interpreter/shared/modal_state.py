@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 class VirtualMill(NamedTuple):
     """The frame of the virtual mill, and the current position in this frame, in mm.
 
-    Z is a radius on the side of the part. ``polar_angle_rad`` is the continuous polar angle of the position
-    in radians. ``is_newly_active`` is True until the first move or F; H is allowed only until then.
+    In milling on the side of the part, Z is a radius. ``polar_angle_rad`` is the polar angle of the
+    position in radians, counted without wrapping. ``is_newly_active`` is True until the first move or F; H
+    is allowed only until then.
     """
 
     frame: FacePlane | SidePlane
@@ -117,10 +118,10 @@ class ModalState(NamedTuple):
 
     @property
     def drawing_zero_x(self) -> float:
-        """Return machine X of the drawing zero in mm: the sum of tool offset and settable offset."""
+        """Return machine X of the drawing's zero point in mm: tool offset plus settable offset."""
         return self.zero_offset_x if self.edge == 0 else self.tool_x + self.zero_offset_x
 
     @property
     def drawing_zero_z(self) -> float:
-        """Return machine Z of the drawing zero in mm: the sum of tool offset and settable offset."""
+        """Return machine Z of the drawing's zero point in mm: tool offset plus settable offset."""
         return self.zero_offset_z if self.edge == 0 else self.tool_z + self.zero_offset_z

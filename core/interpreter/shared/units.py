@@ -1,4 +1,4 @@
-"""Conversion between program units, millimeters and message texts."""
+"""Conversion between program units and millimeters, and formatting of values for messages."""
 
 from __future__ import annotations
 

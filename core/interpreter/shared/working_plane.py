@@ -1,4 +1,4 @@
-"""Data of the working plane in a block of a mill."""
+"""The working plane of a mill, and the position of a block in this plane."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ RotaryAngles = tuple[float | None, float | None, float | None]
 class PlaneSystem:
     """The coordinate system of a working plane with a tool, in mm and degrees.
 
-    Blocks share a plane system until the plane or the tool changes. ``transform`` converts points of the
-    system to machine X, Y and Z. ``frame`` (rows) and ``datum`` are the axes and the origin of the system
-    in the workpiece system. ``is_tilted`` is True if a PLANE block defined the system, and
-    ``plane_block_line`` is the line of this block or 0. ``target_angles`` are Q120, Q121 and Q122.
-    ``blank_corners`` are the corners of BLK FORM in the workpiece system.
+    Blocks share a plane system until the plane or the tool changes.
+
+    - ``transform`` converts points of the system to machine X, Y and Z.
+    - ``frame`` (rows) and ``datum`` are the axes and the origin of the system in the workpiece system.
+    - ``is_tilted`` is True if a PLANE block defined the system.
+    - ``plane_block_line`` is the line of this PLANE block, or 0 without a PLANE block.
+    - ``target_angles`` are Q120, Q121 and Q122.
+    - ``blank_corners`` are the corners of BLK FORM in the workpiece system.
     """
 
     transform: FrameTransform
@@ -52,11 +55,11 @@ class PlaneSystem:
 
 @dataclass(frozen=True, slots=True)
 class PlanePosition:
-    """The position of one block in the system that is active at the end of the block.
+    """The position at the end of one block, in the plane system that is active there.
 
     ``start`` and ``end`` are points of that system. ``machine_position`` is machine X, Y and Z of the end,
-    in mm. ``rotary_angles`` are the displayed angles A, B and C (0 to 360 degrees on a modulo axis), with
-    None for each axis that the machine lacks.
+    in mm. ``rotary_angles`` are the displayed angles A, B and C (0 to 360 degrees on a modulo axis). The
+    value of an axis that the machine lacks is None.
     """
 
     start: Vector

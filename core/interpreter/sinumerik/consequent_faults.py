@@ -25,7 +25,7 @@ def depends_on_state(finding: Diagnostic) -> bool:
 
 
 class MissingAxes:
-    """The missing axes that were already reported in this pass."""
+    """Record of the axes that a program uses but the machine lacks, to report each axis only once."""
 
     def __init__(self) -> None:
         self._missing_axes: set[str] = set()

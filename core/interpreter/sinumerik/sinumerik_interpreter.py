@@ -229,7 +229,7 @@ class Interpreter(LinePass[LexedBlock]):
         self._execute_program_end(line, is_program_end=ends)
 
     def _check_control(self, line: LexedBlock) -> None:
-        """Raise ProgramError for a function that the control specified in the machine file lacks."""
+        """Raise ProgramError for a function that the machine file's control does not have."""
         control = self._setup.limits.control_model
         if found := find_missing_function(control, line):
             name, column = found
@@ -242,9 +242,9 @@ class Interpreter(LinePass[LexedBlock]):
             raise line.make_error(column, "not-in-control", text, hint)
 
     def _call(self, line: LexedBlock, *, modal: bool = False) -> Iterator[Block]:
-        """Yield the blocks of a cycle, or enter a subprogram.
+        """Yield the blocks of a called cycle, or enter the called subprogram.
 
-        MCALL only stores the call. Raises ProgramError for an invalid call.
+        With MCALL, the call is only stored. Raises ProgramError for an invalid call.
         """
         if line.is_modal_call and not modal:
             self._state.modal_call_line = line if line.called_name else None
@@ -280,7 +280,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._call(called, modal=True)
 
     def _modal_call(self, statement: Statement) -> LexedBlock | None:
-        """Return the line of the MCALL that is executed after this block.
+        """Return the line of the modal call (MCALL) that must be executed after this block.
 
         Returns None if no MCALL is active or the block has no motion.
         """
@@ -298,7 +298,7 @@ class Interpreter(LinePass[LexedBlock]):
             self._flow.end_subprogram()
 
     def _blocks_with_corners(self, statement: Statement) -> Iterator[Block]:
-        """Yield the blocks of a statement after all complete corners are inserted."""
+        """Yield the blocks of a statement with corners and compensation, as far as they are final."""
         number = statement.line.number
         place = self._flow.get_displayed_line(number)
         if TRANSFORMATION_GROUP in statement.g_words:
@@ -320,7 +320,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._compensation.accept_block(cut)
 
     def _flush(self) -> Iterator[Block]:
-        """Yield the buffered blocks if no move follows their corner."""
+        """Yield the buffered blocks, because no move follows that could form a corner with them."""
         if self._active_transformation is not None:
             yield from self._active_transformation.flush_corner()
             return

@@ -169,7 +169,7 @@ class State:
             self.modal = modal
 
     def derive_offsets(self) -> None:
-        """Set the offsets in the modal state from the edge, the settable offset and the programmed frame."""
+        """Update the offsets in the modal state from cutting edge, settable offset and programmed frame."""
         one, other, edge = self.settable, self.programmed_frame, self.edge
         self.set_modal(
             self.modal._replace(
@@ -306,7 +306,7 @@ class State:
 
 
 def check_positive(statement: Statement, word: Word, value: float, description: str) -> float:
-    """Return a number, or raise ProgramError if it is not above 0."""
+    """Return the number if it is above 0. Raises ProgramError if it is 0 or negative."""
     if value > 0.0:
         return value
     raise statement.make_error(

@@ -1,4 +1,4 @@
-"""Statements, which contain the words of a block sorted by function and checked for conflicts."""
+"""Statement of SINUMERIK: the words of one block, sorted by function and checked for conflicts."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ _ENDS = frozenset({2, 17, 30})
 
 @dataclass(slots=True)
 class Statement:
-    """One block, with its words sorted by function.
+    """One block with its words sorted by function.
 
-    ``g_words`` contains the G functions by group, ``m_words`` the M functions by number, and ``words`` the
-    other words by name. ``assignments`` contains the assignments. ``named_functions`` contains the
-    functions without a G number by name.
+    - ``g_words`` contains the G functions by group, and ``m_words`` contains the M functions by number.
+    - ``words`` contains the other words by name.
+    - ``assignments`` contains the assignments to R parameters and variables.
+    - ``named_functions`` contains the functions without a G number by name.
     """
 
     line: LexedBlock
@@ -40,12 +41,15 @@ class Statement:
     live_tool_words: list[Word] = field(default_factory=list)  # words of spindle 2, the live tool
 
     def get_g_code(self, group: str) -> int | None:
-        """Return the G code of this group, or None if the group is empty or contains a named function."""
+        """Return the number of the G code of this group, or None if the block has no G code of the group.
+
+        Also returns None for a function of the group that has a name instead of a number.
+        """
         word = self.g_words.get(group)
         return None if word is None or word.value is None else int(word.value)
 
     def get_named_function(self, group: str) -> str:
-        """Return the named function of this group, or an empty string if it does not contain one."""
+        """Return the named function of this group, or an empty string if the block does not contain one."""
         word = self.g_words.get(group)
         return "" if word is None or word.value is not None else word.name
 

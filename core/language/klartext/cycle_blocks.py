@@ -1,7 +1,7 @@
 """Parsers of CYCL DEF, CYCL CALL, CONTOUR DEF and PATTERN DEF.
 
-Cycles numbered 200 or higher have Q parameters. Older cycles have numbered lines. Contours and machining
-points are data that cycles use.
+Cycles numbered 200 or higher have Q parameters. Older cycles consist of numbered lines, such as CYCL DEF
+1.2. CONTOUR DEF and PATTERN DEF define the contours and points that cycles machine.
 """
 
 from __future__ import annotations

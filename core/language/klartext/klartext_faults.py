@@ -1,6 +1,6 @@
-"""Klartext errors, and the codes that are rejected with a message that suggests an alternative.
+"""Klartext errors, and rejection of unsupported codes with advice on an alternative.
 
-The code of an error is the message of the original control if this message is known.
+If the message of the original control is known, it is the code of the error.
 """
 
 from __future__ import annotations
@@ -46,16 +46,13 @@ DATUM_TABLE_MISSING = "Datum table missing"
 
 
 def make_klartext_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
-    """Return a ProgramError whose message starts with the code.
-
-    The code is the message of the original control.
-    """
+    """Return a ProgramError whose message starts with ``code``, the message of the original control."""
     text = message if message.startswith(code) else Message("{code}: {message}", code=code, message=message)
     return make_program_error(line, column, code, text, hint)
 
 
 class MissingValueError(ProgramError):
-    """Error for reading a parameter without a value.
+    """Error for the use of a Q parameter that has no value.
 
     ``parameter`` is the kind (Q, QL or QR) and the number of the parameter.
     """

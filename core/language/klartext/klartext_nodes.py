@@ -71,7 +71,8 @@ class ToolCall:
 class PathFunction:
     """A path function such as ``L X+10 IY-5 R0 F200 M3`` or ``APPR CT X+0 Y+0 CCA90 R+5 RL``.
 
-    ``words`` contains the other words PR and PA (polar radius and angle), R, CCA and LEN.
+    ``words`` contains the words that are neither axis words, compensation, feed nor M functions: PR and PA
+    (polar radius and angle), R, CCA and LEN.
     """
 
     axes: tuple[AxisWord, ...] = ()

@@ -32,7 +32,7 @@ ROTATION_PATTERN = re.compile(r"DR\s*([+-])(?![0-9Q])")
 
 
 class _Form(NamedTuple):
-    """The words of a path function in addition to axes, compensation, feed and M functions.
+    """The words that a path function allows in addition to axes, compensation, feed and M functions.
 
     ``required_words`` are the words that must not be missing.
     """
@@ -128,9 +128,9 @@ def read_paraxial_move(cursor: LineCursor, column: int) -> PathFunction:
 
 
 def _check_paraxial(cursor: LineCursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
-    """Raise ProgramError if a block with R+ or R- does not have exactly one axis.
+    """Raise ProgramError if a block with the compensation R+ or R- does not move exactly one axis.
 
-    R+ and R- change the length of a move along one axis by the tool radius.
+    R+ and R- lengthen or shorten a move along one axis by the tool radius.
     """
     if kind in {"+", "-"} and len(axes) != 1:
         text = Message("R{kind} is allowed only in a block that moves one axis.", kind=kind)

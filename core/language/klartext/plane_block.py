@@ -80,7 +80,10 @@ _WORDS: dict[str, Callable[[LineCursor], tuple[AxisWord, ...]]] = {
 def _read_all_words(
     cursor: LineCursor, names: tuple[str, ...], pattern: re.Pattern[str]
 ) -> tuple[AxisWord, ...]:
-    """Return the words in the order of the manual. Raises ProgramError if a word is missing."""
+    """Read the words that a PLANE block requires, and return them in the order of the manual.
+
+    Raises ProgramError if a word is missing.
+    """
     found = read_words_by_name(cursor, pattern)
     missing = [name for name in names if name not in found]
     if missing:

@@ -350,12 +350,11 @@ def read_material(cursor: LineCursor, column: int) -> IgnoredBlock:
 
 
 def read_function_block(cursor: LineCursor, column: int) -> TcpmSwitch | IgnoredBlock | CycleLine:
-    """Read the block after ``FUNCTION``.
+    """Read the block after ``FUNCTION``: TCPM, DWELL, or a function without effect on this control.
 
-    The block is TCPM, DWELL, or a function without effect on this control. Raises ProgramError for AXIS
-    SPAT, PATHCTRL VECTOR and a REFPNT other than TIP-TIP, because the same words would then program a
-    different motion. Also raises ProgramError for a syntax error and for any function that TurnDesk does
-    not support.
+    Raises ProgramError for a syntax error and for functions that TurnDesk does not support. It also rejects
+    AXIS SPAT, PATHCTRL VECTOR and a REFPNT other than TIP-TIP, because they would program a different
+    motion.
     """
     if cursor.read_keyword("TCPM"):
         while not cursor.is_at_end:

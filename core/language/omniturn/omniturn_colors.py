@@ -1,4 +1,7 @@
-"""Syntax coloring of OmniTurn lines with the lexer of the interpreter, including plane switching."""
+"""Syntax coloring of OmniTurn lines with the lexer of the interpreter.
+
+Lines of a coordinate transformation (plane switching) are also colored.
+"""
 
 from __future__ import annotations
 

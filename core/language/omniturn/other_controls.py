@@ -205,7 +205,10 @@ _FANUC = (
 
 
 def recognize_control(lines: Sequence[str]) -> Diagnostic | None:
-    """Return a warning with the control for which a program was written, or None for an OmniTurn program."""
+    """Return a warning that names the control for which a program was written.
+
+    Returns None for an OmniTurn program.
+    """
     codes = [_COMMENT.sub("", line).replace(" ", "").upper() for line in lines[:_MAX_LINES]]
     control = next((name for name, form in _CONTROL_MARKERS if any(map(form.search, codes))), "")
     if not control and sum(any(map(form.search, codes)) for form in _FANUC) > 1:

@@ -1,6 +1,7 @@
-"""Lines of plane switching, which are statements in parentheses from (~PLXC) or (~PLZC) to (END).
+"""Lines of a coordinate transformation (plane switching), written as statements in parentheses.
 
-The checker of the original control does not know these statements, so programs write them as comments.
+They extend from (~PLXC) or (~PLZC) to (END). The checker of the original control does not know these
+statements, so programs write them like comments.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _HINT = "Between (~PLXC) or (~PLZC) and (END), write only (X Y Z F), (G02 or G03
 
 
 class PlaneLine(NamedTuple):
-    """One line of plane switching.
+    """One line of a coordinate transformation (plane switching).
 
     ``name`` is PLXC, PLZC or END, or empty for a statement with ``words``. ``arc_code`` is 2 for G02, 3 for
     G03 and 0 otherwise. The numbers of the words are in program units.
@@ -38,17 +39,17 @@ class PlaneLine(NamedTuple):
 
 
 def parse_plane_entry(text: str) -> PlaneLine | None:
-    """Return the line if it starts plane switching, or None for any other line."""
+    """Return the line if it starts a coordinate transformation (plane switching), otherwise None."""
     match = _ENTRY.fullmatch(text) if "~" in text else None
     return PlaneLine(match[1].upper(), {}) if match else None
 
 
 def is_missing_tilde(text: str, following_lines: Iterable[str]) -> bool | None:
-    """Return whether a line that starts plane switching lacks its ~.
+    """Return whether a line such as (PLXC) was meant to start plane switching but lacks its ~.
 
     The control treats a line without ~ as a comment. True means that the next line in ``following_lines``
-    is a plane statement. False means that the line may be a comment. Returns None if the line does not
-    start plane switching.
+    is a statement of plane switching. False means that the line may be a comment. Returns None for any
+    other line.
     """
     if _BARE_ENTRY.fullmatch(text) is None:
         return None

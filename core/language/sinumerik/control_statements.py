@@ -72,11 +72,14 @@ class CaseBranch(NamedTuple):
 class ControlStatement(NamedTuple):
     """One program control line.
 
-    ``condition`` belongs to IF, CASE, WHILE and UNTIL. ``target`` of a jump is a label or a block number
-    such as N123. ``identifier``, ``start_value`` and ``end_value`` are the variable, the start and the end
-    of FOR. PROC uses ``identifier``, ``parameters`` and ``has_save``. ``message_parts`` contains the texts
-    and formulas of MSG. REPEAT executes the lines from ``target`` to ``end_label`` another ``repeat_count``
-    times. ``else_jump`` is a further IF … GOTO in the block. ``column`` counts from 1.
+    - ``condition`` belongs to IF, CASE, WHILE and UNTIL.
+    - ``target`` of a jump is a label or a block number such as N123.
+    - ``identifier``, ``start_value`` and ``end_value`` are the variable, the start and the end of FOR.
+    - PROC uses ``identifier``, ``parameters`` and ``has_save``.
+    - ``message_parts`` contains the texts and formulas of MSG.
+    - REPEAT executes the lines from ``target`` to ``end_label`` another ``repeat_count`` times.
+    - ``else_jump`` is a further IF … GOTO in the block.
+    - ``column`` counts from 1.
     """
 
     keyword: ControlKeyword

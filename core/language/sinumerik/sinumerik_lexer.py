@@ -172,7 +172,7 @@ class _Scanner:
                 index = self._skip(index, Message("{name} is not a valid word", name=text[index]), hint)
 
     def _plain(self, match: re.Match[str]) -> int:
-        """Read a letter with a plain number."""
+        """Read a word that consists of one letter and a number without a formula."""
         letter, number = match.groups()
         word = Word(letter, float(number), match.start(1) + 1, letter + number)
         if wrong := find_range_error(word):

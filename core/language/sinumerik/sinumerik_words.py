@@ -24,7 +24,7 @@ MAX_LINE_LENGTH = 512
 
 
 class PositionForm(StrEnum):
-    """Meaning of the position in one word; with PLAIN, G90 or G91 determines the meaning."""
+    """How a word specifies its position, such as AC or IC; for PLAIN, G90 or G91 decides."""
 
     PLAIN = ""
     AC = "AC"
@@ -58,14 +58,14 @@ class Word(NamedTuple):
 
 
 class LexedBlock(NamedTuple):
-    """One block of a program, split into words.
+    """One block of a program, split into words; a block with ``errors`` must not be executed.
 
-    ``number`` is the line of the block, from 1. ``block_name`` is the name of the block in alarms, which is
-    its N or : number, its label or its line. ``skip_level`` is the level of ``/`` (0 without a digit), or
-    None. ``called_name`` is the name of a subprogram or cycle, which is executed ``execution_count`` times
-    with ``arguments`` (None without parentheses). With ``is_modal_call`` (MCALL), the call is executed
-    after each following move. ``text`` is the code as written, without number, label and comment. A block
-    with ``errors`` must not be executed.
+    - ``number`` is the line of the block, from 1. ``text`` is its code without number, label and comment.
+    - ``block_name`` names the block in alarms: its N or : number, its label or its line.
+    - ``skip_level`` is the level of ``/`` (0 without a digit), or None without ``/``.
+    - ``called_name`` is the name of a subprogram or cycle, executed ``execution_count`` times.
+    - ``arguments`` are the arguments of this call, or None without parentheses.
+    - With ``is_modal_call`` (MCALL), the call is executed after each following move.
     """
 
     number: int

@@ -73,7 +73,7 @@ INSERT_TOOLS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 @dataclass(slots=True)
 class AirCutChecks:
-    """Checks for missing cuts, to be called for each move in program order.
+    """Checks for feeds that cut no material although a cut is expected, called in program order.
 
     Call ``check_feed`` or ``check_rapid`` after each move has been cut, and ``record_pause`` between moves.
     """
@@ -94,14 +94,11 @@ class AirCutChecks:
     _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
     def record_pause(self) -> None:
-        """Record a wait or a switched output.
-
-        Such a pause may be the purpose of the current tool position.
-        """
+        """Record a wait or a switched output, which may be why the tool is at its current position."""
         self._went_in = None
 
     def check_rapid(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
-        """Yield a fault if the feeds before a rapid cut nothing, or if earlier rapids cut nothing."""
+        """Yield a fault if the feeds before this rapid, or earlier rapids into the part, cut nothing."""
         if tool != self._tool:
             self._tool, self._went_in = tool, None
         yield from self._end_of_feeds()
@@ -213,10 +210,10 @@ class AirCutChecks:
         return self.stock is not None and move.points[-1][0] < self.stock.front_z_mm - NEAR_MATERIAL_MM
 
     def _is_exit_feed(self, move: TipMove, cutter: Cutter, *, is_after_rapid: bool) -> bool:
-        """Return whether a tool feeds forward out of the part on a turned surface.
+        """Return whether a tool feeds along a turned surface forward out of the part.
 
-        This typically results from a missing minus sign. A boring tool is checked only if it starts at the
-        face, because it feeds out of its bore.
+        Such a feed is typically caused by a missing minus sign. A boring tool is checked only if it starts
+        at the face, because it normally feeds out of its bore.
         """
         if self.stock is None or cutter.is_drill:
             return False
@@ -262,7 +259,7 @@ class AirCutChecks:
 
 
 def is_near_material(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
-    """Return whether the edge is near material at any of the given positions."""
+    """Return whether the cutting edge is near material at any of the given positions."""
     around = (
         (0.0, -NEAR_MATERIAL_MM),
         (0.0, NEAR_MATERIAL_MM),
@@ -311,7 +308,7 @@ def _check_feed_rate(move: TipMove, shape: ToolShape, tool: int, *, has_holder: 
 
 
 def _feed_limit(shape: ToolShape, *, has_holder: bool) -> tuple[float, float, float]:
-    """Return the usual maximum feed, the factor at which the tool breaks, and a safe feed.
+    """Return the usual maximum feed, the multiple of it at which the tool breaks, and a safe feed.
 
     Feeds are in mm/rev; a maximum of 0 means no limit.
     """
@@ -352,7 +349,7 @@ def _feed_message(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Me
 
 
 def _is_z_move(move: TipMove) -> bool:
-    """Return whether a move is longer along Z than across Z."""
+    """Return whether a move travels further along Z than along X."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) > abs(r1 - r0)
 
@@ -381,12 +378,11 @@ def _check_blade_turning(move: TipMove, cut: Cut, shape: ToolShape, tool: int) -
 def _check_depth(
     move: TipMove, cut: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, is_stock_specified: bool
 ) -> Iterator[Found]:
-    """Check the depth of a cut against the edge length and, for a boring tool, against the bar.
+    """Check the depth of a cut against the length of the cutting edge and, for boring, against the bar.
 
-    The check uses the mean depth, because a finishing pass that ends at a shoulder briefly cuts the whole
-    shoulder. For a cut across Z, the mean is calculated along Z. A pass that is deeper at any point than
-    the edge length is an error. A mean depth that no insert of this shape, or no such bar, can cut is also
-    an error.
+    The mean depth is checked, because a finishing pass that ends at a shoulder briefly cuts the whole
+    shoulder. For a cut across Z, the mean is calculated along Z. An error is reported if the depth exceeds
+    the edge length at any point, or if no insert of this shape, or no such bar, can cut the mean depth.
     """
     along, text = _is_z_move(move), move.modal.format_length
     deep = _mean_depth(cut, is_z_move=along)
@@ -423,7 +419,7 @@ def _check_depth(
 
 
 def _mean_depth(cut: Cut, *, is_z_move: bool) -> float:
-    """Return the mean depth along r in mm, or the mean depth along Z for a cut across Z.
+    """Return the mean depth of a cut in mm, along r, or along Z for a cut across Z.
 
     The pieces of an arc are cut one after the other.
     """

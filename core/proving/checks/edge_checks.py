@@ -184,7 +184,7 @@ class EdgeChecks:
             )
 
     def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """Check for an arc on the bar side of the deepest part-off, beyond the end of the part."""
+        """Check for an arc between the deepest part-off position and the bar, where no finished part is."""
         if self.part_off_z is None or move.kind is not BlockKind.ARC or shape.kind not in INSERT_TOOLS:
             return
         front = max(z for z, _ in move.points)
@@ -248,16 +248,16 @@ def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
 
 
 def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
-    """Return whether the spindle turns against the rake of a front tool that is mounted face up.
+    """Return whether the spindle turns in the wrong direction for a front tool that is mounted face up.
 
-    A tool that is mounted upside down cuts along Z opposite to its hand and is not checked.
+    A tool that is mounted upside down, and therefore cuts along Z opposite to its hand, is not checked.
     """
     upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
     return shape.kind in INSERT_TOOLS and upright and not shape.is_rear_tool and rpm < 0.0
 
 
 def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """Check that a non-rotating round tool is on the axis when it cuts."""
+    """Check that a drill or other non-rotating round tool is on the spindle axis when it cuts."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = Message(
@@ -291,7 +291,10 @@ def _arc_turn_angle(move: TipMove) -> float:
 def _check_edge_hollow(
     move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
-    """Check for a small quarter circle at the face that starts along Z and is therefore concave."""
+    """Check for a concave quarter arc at the face where a convex edge rounding is more likely.
+
+    Such an arc is small and starts along Z.
+    """
     if not (cutter.has_holder and shape.kind is ToolKind.TURNING and cutter.side is CutSide.OUTSIDE):
         return
     if not _QUARTER[0] < _arc_turn_angle(move) < _QUARTER[1] or shape.direction[0] >= 0:
@@ -321,8 +324,8 @@ def _check_cutting_side(
 ) -> Iterator[Found]:
     """Check for cuts with the back of an insert.
 
-    Such cuts are deep backward feeds, and feeds along walls that are too steep for the insert. ``cuts`` are
-    the cuts of the straight pieces of the move.
+    Such cuts are deep feeds opposite to the cutting direction, and feeds along walls that are too steep for
+    the insert. ``cuts`` are the cuts of the straight pieces of the move.
     """
     forward, across = shape.direction
     if not forward or not across:

@@ -42,7 +42,7 @@ MM_PER_INCH = 25.4
 
 
 def is_cutting_move(block: Block) -> bool:
-    """Return whether a move would cut material and is therefore not a rapid or a fast feed."""
+    """Return whether a move is slow enough to cut material, that is, not a rapid or a fast feed."""
     return block.kind in _PATH_KINDS and (
         block.per_rev or block.feed < _QUICK or block.kind is BlockKind.THREAD
     )
@@ -50,7 +50,7 @@ def is_cutting_move(block: Block) -> bool:
 
 @dataclass(slots=True)
 class CuttingChecks:
-    """Checks to which the blocks of a program are passed in their order.
+    """Checks of the machine states that a cut requires, for blocks that are passed in program order.
 
     ``findings`` returns the results. A fault that persists gives one finding, at its first block. For
     languages other than OmniTurn, only the tool and the spindle are checked, because their frames and
@@ -313,9 +313,9 @@ class CuttingChecks:
 
 
 def _iter_distinct_moves(series: StraightMoveSeries) -> Iterator[Block]:
-    """Yield the first move of a series.
+    """Yield the moves of a series that the checks need: the first move, and the first move that cuts.
 
-    If the first move is too fast to cut, also yield the first move that cuts.
+    If the first move already cuts, only this move is yielded.
     """
     yield series[0]
     if series.feed is not None and not is_cutting_move(series[0]):

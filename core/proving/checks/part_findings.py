@@ -153,8 +153,8 @@ class PartFindings:
     def _leaves_thread(self, move: TipMove, cutter: Cutter) -> bool:
         """Return whether a rapid leaves the groove of a thread pass directly away from the material.
 
-        The end position of the pass is not exactly known, so the material that the edge touches is inside
-        the groove.
+        Contact with material is then not a fault. The end position of the pass is not exactly known, so the
+        material that the edge touches is inside the groove.
         """
         if not move.is_fast or self._before is None or self._before.kind is not BlockKind.THREAD:
             return False
@@ -233,7 +233,7 @@ class PartFindings:
     def _check_rubbing(self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
         """Check for an insert that rapids back along the surface that it has just turned.
 
-        The insert must be specified.
+        Only a specified insert is checked.
         """
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         before, shape = self._before, self.find_shape(tool)
@@ -411,7 +411,7 @@ def _is_cross_drilling(move: MillMove) -> bool:
 
 
 def _find_severity(entry: PartCheck, assumptions: tuple[str, ...], silenced: str) -> Severity:
-    """Return the severity of a finding. A finding that depends on an assumption is at most a warning."""
+    """Return the severity of a finding, which is at most a warning if it depends on an assumption."""
     if silenced:
         return Severity.NOTE
     return Severity.WARNING if assumptions else entry.severity
@@ -450,9 +450,10 @@ def _execute_move(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list
 
 
 def _combine_cuts(move: TipMove, cuts: Iterable[Cut]) -> Cut:
-    """Return the total cut of a move.
+    """Return the total cut of a move from the cuts of its straight pieces.
 
-    In a thread, further revolutions deepen the cut. On other paths, the pieces are cut one after the other.
+    In a screw thread, further revolutions deepen the cut. On other paths, the pieces are cut one after the
+    other.
     """
     met = NO_CUT
     for cut in cuts:

@@ -1,4 +1,4 @@
-"""Checks of threads and taps: run-up and end of a pass, depth and pitch, and reversal of a tap."""
+"""Checks of screw threads and taps: run-up, end of a pass, depth, pitch, and reversal of a tap."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ UNKNOWN_LIMITS = DriveLimits()
 
 @dataclass(slots=True)
 class ThreadChecks:
-    """Checks of threads, to be called for each move in program order.
+    """Checks of screw threads, to be called for each move in program order.
 
     Call ``record_material`` before each cut and ``check_move`` after it. ``has_releasing_holder`` returns,
     for a T number, whether the tap holder reverses or releases the tap automatically.
@@ -190,7 +190,10 @@ class ThreadChecks:
             yield Found("thread-run-up", words)
 
     def _edge_depth(self, move: TipMove, part: TurnedPart) -> float:
-        """Return the depth in mm of the edge below the surface before the first pass, or 0."""
+        """Return the greatest depth in mm of the edge below the surface before the first pass.
+
+        The result is 0 if this surface is not known, or if the edge is not below it.
+        """
         if self._crest is None:
             return 0.0
         _, first, radii, inwards = self._crest

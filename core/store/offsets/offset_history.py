@@ -86,7 +86,7 @@ def _step_to_undo(
 
 
 def invert_changes(rows: Sequence[OffsetChange]) -> ChangesByNumber:
-    """Return the opposite of the given changes, from the new values to the old values."""
+    """Return the changes that undo the given changes, from the new values back to the old values."""
     return {row.number: (row.new, row.old) for row in rows}
 
 

@@ -53,9 +53,9 @@ class ChangeReason(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class HistoryTable:
-    """A history table, with the column of the row number and the columns of a row.
+    """The definition of a history table: its row-number column and the columns of an offset row.
 
-    Each column of a row occurs twice, with the values before and after a change.
+    Each column of an offset row occurs twice, with the values before and after a change.
     """
 
     name: str
@@ -482,7 +482,10 @@ def _change(log: HistoryTable, row: Sequence[Any]) -> OffsetChange:
 
 
 def _make_row_side(kind: str, values: list[FieldValue | None]) -> OffsetRow | None:
-    """Return the offset row before or after a change, or None if the offset was not set."""
+    """Return the offset row before or after a change, made from its columns in the history.
+
+    The result is None if the offset was not set at that time.
+    """
     if values[0] is None:
         return None
     return _row(OffsetKind(kind), values[: len(FIELDS_BY_KIND[OffsetKind(kind)])])

@@ -28,8 +28,8 @@ MAX_NOTE_LENGTH = 80
 class JobRow(NamedTuple):
     """One job of the queue.
 
-    ``base_part_count`` is the part count of the program from which the job counts, or None if the job is
-    not active. ``part_count`` is the current part count of the program.
+    ``base_part_count`` is the part count of the program at which the job started counting, or None if the
+    job is not active. ``part_count`` is the current part count of the program.
     """
 
     id: int
@@ -98,7 +98,7 @@ def read_jobs(
 
 
 def _job(connection: sqlite3.Connection, row: JobRow, held: PendingCounts) -> JobRow:
-    """Return a job with its current part count.
+    """Return a database row of the queue as a job with its current part count.
 
     If a reset of the count has not been written to disk yet, the parts made before the reset still count
     for the job.
@@ -165,7 +165,7 @@ def remove_job(connection: sqlite3.Connection, job_id: int) -> None:
 
 
 def clear(connection: sqlite3.Connection, *, remove_all: bool) -> int:
-    """Remove the finished and damaged jobs, or all jobs, and return the number of removed jobs."""
+    """Remove the completed and damaged jobs, or all jobs, and return the number of removed jobs."""
     whole = {row.id: row for row in read_jobs(connection)}
     numbers = [number for (number,) in connection.execute("SELECT id FROM jobs")]
     gone = [each for each in numbers if remove_all or each not in whole or whole[each].is_done]
@@ -287,7 +287,7 @@ class JobQueue:
         return self._store.write(lambda c: remove_job(c, job_id))
 
     def clear_jobs(self, *, remove_all: bool) -> Future[int]:
-        """Remove the finished and damaged jobs, or all jobs.
+        """Remove the completed and damaged jobs, or all jobs.
 
         The result is the number of removed jobs.
         """

@@ -171,10 +171,7 @@ def _select_intact_rows(connection: sqlite3.Connection, rows: list[Any]) -> list
 
 
 def read_last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
-    """Return the ID of the newest change of each offset, by kind, number and axis.
-
-    Changes of wear are included.
-    """
+    """Return the ID of the newest change of each offset or wear, by kind, number and axis."""
     rows = connection.execute(
         "SELECT kind, number, 'x', max(id) FROM offset_changes"
         " WHERE old_x IS NOT new_x OR coalesce(old_wear_x, 0) IS NOT coalesce(new_wear_x, 0)"

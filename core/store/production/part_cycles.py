@@ -93,7 +93,7 @@ def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
 
 
 def programs(connection: sqlite3.Connection) -> set[str]:
-    """Return the names of the programs with at least one started part."""
+    """Return the names of all programs with which at least one part was started."""
     return {name for (name,) in connection.execute("SELECT DISTINCT program FROM part_cycles")}
 
 

@@ -1,9 +1,9 @@
-"""Parts of HAL files that several boards use: C on the spindle drive, and Mesa's Ethernet cards.
+"""Shared parts of HAL files: C axis on the spindle drive, and Ethernet cards from Mesa.
 
 For C, a pid component closes a position loop with the spindle encoder. A drive with a speed input (±10 V,
-EtherCAT) receives the spindle command or, as C, the output of the pid component. A drive that also has a
-step input is switched by a terminal, and the pid component then controls its steps. All supported Mesa
-cards use hm2_eth with its watchdog, its encoders and pid components.
+EtherCAT) receives the spindle speed or, as C, the output of the pid component. If the drive also has a step
+input, a terminal switches it to this input for C, and the pid component controls the step rate. All
+supported Mesa cards use hm2_eth with its watchdog, its encoders and pid components.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _SIMULATED = 100.0  # 1/s, for a simulated spindle.
 
 
 def get_c_turn_pins(file: HalFile) -> tuple[str, ...]:
-    """Return the additional pins on the signal of the spindle revolutions."""
+    """Return the pin through which C reads the spindle revolutions, or no pins without C."""
     return (C_TURN_PIN,) if file.lathe.c_axis is not None else ()
 
 
@@ -139,9 +139,9 @@ CARD_NOTES = (
 
 
 def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
-    """Load hostmot2 for an Ethernet card, which the thread reads first and writes last.
+    """Load hostmot2 for an Ethernet card; each thread cycle first reads and last writes the card.
 
-    The pins ``further`` also report that inputs of the card are stale.
+    ``further`` lists additional pins that report stale inputs of the card.
     """
     lathe = file.lathe
     file.add_load(f"loadrt threads name1={lathe.servo_thread} period1={lathe.period_s * 1e9:.0f}")
@@ -168,9 +168,9 @@ def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> No
 
 
 def _list_drive_faults(file: HalFile) -> list[str]:
-    """Connect each hal.axes.X.fault that is a signal to a gate, and return the gates.
+    """Combine each axis's drive fault with the loss of the card, and return the "or" gates.
 
-    The gate is on after a drive fault or after the loss of the card.
+    Only faults that the machine file names as signals are combined.
     """
     gates = []
     for axis in file.lathe.axes:
@@ -191,7 +191,7 @@ def _list_drive_faults(file: HalFile) -> list[str]:
 
 
 def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
-    """Load one ``pid`` component per axis, to run after the setpoints."""
+    """Load one ``pid`` component per axis, which runs after the setpoints are calculated."""
     names = [f"pid.{axis.name.lower()}" for axis in axes]
     if names:
         file.add_load(f"loadrt pid names={','.join(names)}")

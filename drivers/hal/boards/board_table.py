@@ -259,14 +259,14 @@ def _channel_rules(file: MachineFileReading, kind: str, path: str) -> Iterator[F
 
 
 def _spindle_is_c(file: MachineFileReading) -> bool:
-    """Return whether the C axis is the spindle drive and HAL controls the spindle."""
+    """Return whether HAL controls the spindle and its drive is also the C axis."""
     values = file.values
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     return not own and values.has_text("spindle.driver", "hal")
 
 
 def _check_spindle_as_c(file: MachineFileReading, kind: str, path: str) -> Iterator[FileFinding]:
-    """Yield findings about C on the spindle drive: its gain, its steps, and keys that must be removed."""
+    """Yield findings about wrong gain, step or drive keys when the C axis is the spindle drive."""
     values = file.values
     yield from _check_required(file, kind, path, _SPINDLE_C_KEYS)
     if kind in (PARPORT, MESA_STEP):

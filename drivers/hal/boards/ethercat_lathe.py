@@ -20,7 +20,7 @@ _INPUT_PDO = (("6041", 16, "cia-statusword", "u32"), ("6061", 8, "opmode-display
 
 
 def build_ethercat_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file for axis drives in CSP mode, a spindle in CSV mode, one EL1008 and one EL2008."""
+    """Build the HAL file for CSP axis drives, a CSV spindle drive, and EL1008 and EL2008 terminals."""
     hint = "a bus terminal: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
     file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position mode", _terminal, hint)
     file.check_notes += [
@@ -196,7 +196,7 @@ def build_bus_xml(lathe: LatheData) -> str:
 
 
 def _slave_lines(position: int, vendor: str, product: str, name: str) -> Iterator[str]:
-    """Yield the lines of one drive, in which halPin names the pins that the HAL file connects."""
+    """Yield the XML lines of one drive; their halPin attributes name the pins used in the HAL file."""
     ids = f'vid="{int(vendor, 16):08X}" pid="{int(product, 16):08X}"'
     yield f'    <slave idx="{position}" type="generic" {ids} name="{name}" configPdos="true">'
     yield '      <dcConf assignActivate="300" sync0Cycle="*1" sync0Shift="0"/>'

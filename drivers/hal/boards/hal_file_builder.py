@@ -105,7 +105,7 @@ _READ_FUNCTIONS = re.compile(
 
 @dataclass(slots=True)
 class HalFile:
-    """A HAL file that is being built.
+    """HAL file that is being built.
 
     ``find_terminal`` returns the terminal of a board pin, or None if the pin has no terminal.
     """
@@ -161,9 +161,9 @@ class HalFile:
     def connect_key(
         self, key: str, signal: str, *pins: str, label: str = "", is_required: bool = False
     ) -> str:
-        """Connect the pins of the key ``path``, and return their signal.
+        """Connect the pins that belong to a key of the machine file, and return their signal.
 
-        The machine file may specify the signal, one of the pins, or a terminal of the board. A terminal is
+        The key may name the signal itself, one of the pins, or a terminal of the board. A terminal is
         connected to the pins.
         """
         self._done.add(key)
@@ -211,7 +211,7 @@ class HalFile:
         self.wiring_rows.append(WiringRow(found.label, name, signal, (path,)))
 
     def add_signal(self, path: str, name: str) -> None:
-        """Create a signal that has no pin and is set manually."""
+        """Create a signal without a pin, which the user sets by hand."""
         self._done.add(path)
         self.sections[-1].lines.append(f"newsig {name} bit")
         self.wiring_rows.append(WiringRow("", "-", name, (path,)))
@@ -264,14 +264,14 @@ class HalFile:
         )
 
     def claim_terminal(self, pin: str, path: str) -> None:
-        """Reserve a driven terminal, and add a finding if it is already used."""
+        """Reserve a terminal that the file drives; add a finding if it is already in use."""
         first = self._claimed.setdefault(pin, path)
         if first != path:
             why = Message("expected an unused pin; {first} already uses this pin", first=first)
             self.findings.append(FileFinding(path, format_toml_value(pin), why))
 
     def connect_remaining(self) -> None:
-        """Connect the remaining names of the machine file to their terminals."""
+        """Connect the machine-file keys that have not been connected yet to their terminals."""
         self.start_section("Inputs and outputs")
         for path in self.lathe.terminal_names:
             if path not in self._done:

@@ -74,10 +74,7 @@ def build_mesa_step_file(lathe: LatheData) -> HalFile:
 
 
 def _configure_field_io(file: HalFile) -> None:
-    """Monitor the serial link to the field I/O.
-
-    The inputs of the field I/O also freeze if transfers fail.
-    """
+    """Monitor the card's serial link to its field I/O, because its inputs freeze if transfers fail."""
     file.add_load("loadrt conv_u32_float names=field-errors")
     file.add_load("loadrt wcomp names=field-lost")
     file.first_calls[1:1] = ["field-errors", "field-lost"]
@@ -158,7 +155,7 @@ def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
 
 
 def _connect_spindle_c(file: HalFile, axis: LatheAxis) -> None:
-    """Configure C on the spindle drive, with step commands and the spindle encoder as feedback."""
+    """Configure the C axis on the spindle drive, with step commands and spindle encoder feedback."""
     load_c_components(file, shares_input=False)
     file.start_section(
         f"C: step generator {file.lathe.board_table.axes[axis.name].channel} for the spindle drive, "

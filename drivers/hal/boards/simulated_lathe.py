@@ -13,7 +13,7 @@ _SWITCHES = 0.3  # Seconds for the collet to close and to open.
 
 
 def build_simulated_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file with axes that lag their setpoints and a ramped spindle.
+    """Build a HAL file without hardware, in which the axes lag their setpoints and the spindle ramps.
 
     Inputs are set manually.
     """
@@ -77,7 +77,7 @@ def _spindle(file: HalFile) -> None:
 
 
 def _add_manual_signals(file: HalFile) -> None:
-    """Create inputs and outputs as signals.
+    """Create a signal for each input and output, which replaces the wiring.
 
     For example, ``halcmd sets in-guard 1`` operates a switch.
     """

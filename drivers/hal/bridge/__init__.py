@@ -1,1 +1,1 @@
-"""Code that runs under the system's Python and requires only LinuxCNC's ``hal`` module."""
+"""Bridge to HAL, which runs under the system's Python and needs only LinuxCNC's ``hal`` module."""

@@ -1,7 +1,7 @@
-"""The process of the bridge, which halrun starts as ``/usr/bin/python3 bridge_process.py FILE``.
+"""Process of the HAL bridge, started by halrun as ``/usr/bin/python3 bridge_process.py FILE``.
 
-FILE is the configuration. The process checks that HAL has every pin of the machine file, connects its own
-pins, and plays setpoints until the driver ends.
+FILE is the configuration. The process checks that HAL has every pin of the machine file, and connects its
+own pins. It then plays setpoints until the driver ends.
 """
 
 from __future__ import annotations
@@ -144,10 +144,7 @@ def _serve(sock: socket.socket, bridge: HalBridge, now: Callable[[], float]) -> 
 
 
 def _tell(sock: socket.socket, bridge: HalBridge) -> None:
-    """Send a report.
-
-    If the driver is not reading, this report is skipped.
-    """
+    """Send a state report to the driver, or skip this report if the driver is not reading."""
     try:
         sock.send(bridge.encode_report())
     except BlockingIOError:

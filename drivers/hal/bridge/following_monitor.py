@@ -1,4 +1,4 @@
-"""The monitor of the following errors of the axes, from the samples of HAL."""
+"""Monitor of the axes' following errors, which are calculated from HAL samples."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from drivers.hal.bridge.row_streams import HalPins
 
 
 class FollowingMonitor:
-    """A monitor that detects axes whose following error exceeds its window for too long."""
+    """Monitor of following errors, which detects an axis that exceeds its limit for too long."""
 
     def __init__(self, config: BridgeConfig, pins: HalPins) -> None:
         self._config, self._pins = config, pins
         self._over = [0.0] * len(config.axes)  # Seconds outside the window.
 
     def reset(self) -> None:
-        """Reset the times for which the axes have been outside their windows."""
+        """Reset the times for which the following errors have exceeded their limits."""
         self._over = [0.0] * len(self._config.axes)
 
     def find_faulty_axes(self, command: Sequence[float], actual: Sequence[float]) -> Iterator[str]:

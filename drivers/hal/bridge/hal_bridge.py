@@ -45,7 +45,7 @@ _STANDSTILL_MM_PER_S = 1e-3  # mm/s
 
 
 class HalBridge:
-    """The bridge between one driver and one HAL, used by one thread."""
+    """Bridge between the driver and HAL; only one thread may use it."""
 
     def __init__(
         self,
@@ -255,7 +255,7 @@ class HalBridge:
             )
 
     def _target(self) -> tuple[float, ...]:
-        """Return the position of the last written row."""
+        """Return the axis positions of the last setpoint row that was written to HAL."""
         return self.setpoint_player.get_motion_at(self.row_streams.last_row_due_s)[0]
 
     def _lost_power(self) -> None:
@@ -274,7 +274,7 @@ class HalBridge:
         return "link-fault" in self.config.bits and bool(self.pins["link-fault"])
 
     def _open_chain(self) -> None:
-        """Switch off the spindle and the outputs, so that they remain off when the chain is closed again."""
+        """Command the spindle and outputs off, so that closing the E-stop chain does not restart them."""
         self.spindle_pins.switch_off()
         self._output_pins.switch_off()
 
@@ -353,7 +353,10 @@ class HalBridge:
         self._recall(0.5 * (t + until), until)
 
     def _brake_axes(self) -> float:
-        """Brake to rest on the path as soon as rows can be recalled, and return the end time in seconds."""
+        """Replace the setpoints by a braking ramp, and return the end time of the ramp in seconds.
+
+        The ramp starts at the first setpoint row that can still be recalled.
+        """
         t = self.row_streams.find_earliest_recall_time()
         pieces = self.setpoint_player.brake_to_rest(t, [axis.amax for axis in self.config.axes])
         self._braked = list(
@@ -384,7 +387,7 @@ class HalBridge:
         self._chain_pins.close_chain(self._now())
 
     def _update_power(self, now: float) -> None:
-        """End the reset pulse of the chain, and switch on the power.
+        """End the reset pulse of the E-stop chain when it is due, and switch on the drives.
 
         The power is switched on when HAL plays the current axis positions.
         """
@@ -416,9 +419,10 @@ class HalBridge:
         self._chain_pins.close_chain(self._now())
 
     def _handle_hold_c(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Set C's setpoint to the position of the spindle.
+        """Engage the C axis at the current spindle position, or release it.
 
-        The drive is switched to C when HAL plays this setpoint.
+        To engage C, its setpoint is set to this position. The drive is switched to C when HAL plays this
+        setpoint.
         """
         if head.get("on") is not True:
             self.spindle_pins.release_c()
@@ -432,12 +436,12 @@ class HalBridge:
             self.spindle_pins.request_position_mode(self.row_streams.last_row_due_s)
 
     def _handle_home(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Ignore the limit switch of an axis while the axis is homing."""
+        """Record that an axis starts or ends homing; its limit switch is ignored while it is homing."""
         name = text(head, "axis")
         (self._homing.add if head.get("on") is True else self._homing.discard)(name)
 
     def _handle_index(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Request the index of an encoder.
+        """Request the next index of an encoder, or cancel the request.
 
         The pin of the request turns off when the index passes.
         """

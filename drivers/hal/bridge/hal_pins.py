@@ -126,9 +126,9 @@ def is_pin_on(pin_name: str, pins: Mapping[str, HalPin], signals: Mapping[str, H
 
 
 def _has_wrong_direction(expected: ExpectedPin, pin: HalPin, signals: Mapping[str, HalSignal]) -> bool:
-    """Return whether the direction of a pin is wrong.
+    """Return whether a pin has the wrong direction.
 
-    An input that another pin drives may also be read.
+    An input pin may also be read if another pin drives its signal.
     """
     if expected.is_driven:
         return pin.direction == _OUT

@@ -11,19 +11,19 @@ _RESET_PULSE_S = 0.05  # Duration of the reset pulse in s.
 
 
 class OutputPins:
-    """The pins of the outputs."""
+    """HAL pins of the machine's outputs."""
 
     def __init__(self, config: BridgeConfig, pins: HalPins) -> None:
         self._config, self._pins = config, pins
 
     def set_output(self, head: PacketHead) -> None:
-        """Set one output to the state in a packet."""
+        """Set one output to the state that a packet from the driver contains."""
         name, on = text(head, "name"), head.get("on") is True
         if name in self._config.outputs:
             self._pins[f"out.{name}"] = on
 
     def set_safe(self) -> None:
-        """Set all outputs that have a safe state to this state."""
+        """Set all outputs to their safe states; outputs without a safe state do not change."""
         for name, safe in self._config.outputs.items():
             if safe is not None:
                 self._pins[f"out.{name}"] = safe
@@ -43,7 +43,7 @@ class ChainPins:
         self._reset_until = self._watch_from = -INFINITY
 
     def close_chain(self, now: float) -> None:
-        """Restart the watchdog and start the reset pulse if this is necessary to close the chain."""
+        """Close the E-stop chain: restart the watchdog and start the reset pulse, if this is necessary."""
         if not self._pins["alive"]:
             self._watch_from = now + _WATCHDOG_RESTART_S
         if not self._pins["chain-ok"]:

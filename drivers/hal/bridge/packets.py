@@ -1,6 +1,6 @@
 """Packets between the driver and its bridge, and the configuration of the bridge.
 
-A packet consists of the length of a JSON head, the head, and a sequence of doubles.
+A packet consists of the length of a JSON header, the header, and a sequence of doubles.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def pack_packet(head: Mapping[str, object], numbers: Iterable[float] = ()) -> by
 
 
 def unpack_packet(data: bytes) -> tuple[PacketHead, Sequence[float]]:
-    """Return the head and the numbers of a packet.
+    """Return the header and the numbers of a packet.
 
     Raises ValueError or struct.error for invalid data.
     """
@@ -38,7 +38,7 @@ def unpack_packet(data: bytes) -> tuple[PacketHead, Sequence[float]]:
 
 
 def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
-    """Yield the numbers of all pieces in sequence."""
+    """Yield the times, positions, velocities and accelerations of all motion pieces as one sequence."""
     for piece in pieces:
         yield from (
             piece.start_time_s,
@@ -50,7 +50,7 @@ def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
 
 
 def parse_pieces(numbers: Sequence[float], axis_count: int) -> list[MotionPiece]:
-    """Return the pieces that a sequence of numbers contains."""
+    """Return the motion pieces from a sequence of numbers that ``flatten_pieces`` has created."""
     width = 2 + 3 * axis_count
     made = []
     for at in range(0, len(numbers), width):
@@ -63,9 +63,9 @@ def parse_pieces(numbers: Sequence[float], axis_count: int) -> list[MotionPiece]
 def build_packets(
     head: Mapping[str, object], pieces: Sequence[MotionPiece], axis_count: int
 ) -> Iterable[bytes]:
-    """Yield packets for any number of pieces.
+    """Yield the packets that transfer any number of motion pieces.
 
-    The head of every packet except the last contains ``more``.
+    The header of every packet except the last contains ``more``.
     """
     most = MAX_PACKET_NUMBERS // (2 + 3 * axis_count)
     for first in range(0, len(pieces), most):
@@ -75,20 +75,20 @@ def build_packets(
 
 
 def number(head: Mapping[str, object], key: str, default: float = 0.0) -> float:
-    """Return a number from the head of a packet, or ``default`` if it is missing."""
+    """Return the number with the name ``key`` in a packet header, or ``default`` if it is missing."""
     value = head.get(key)
     return float(value) if isinstance(value, int | float) else default
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """Return a string from the head of a packet, or an empty string if it is missing."""
+    """Return the string named ``key`` in a packet header, or an empty string if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, slots=True)
 class BridgeAxis:
-    """An axis of the bridge, with its deceleration and the window and time for its following error."""
+    """Axis of the bridge, with its deceleration and the limit and duration for a following error."""
 
     name: str
     amax: float

@@ -1,8 +1,9 @@
-"""Rows of setpoints in HAL, in two streams: one is played, and the other receives replacement rows.
+"""Setpoint rows for HAL in two streams: HAL plays one, the other receives replacement rows.
 
-The change between the streams is requested some rows ahead of the servo thread. Without real-time priority,
-the thread may have passed this row before it reads the request. The change is then requested at a later
-row. This is possible while both streams contain the same rows, as they do at the start of a continued path.
+The change between the streams is requested for a row that the servo thread has not reached yet. Without
+real-time priority, the thread may have passed this row before it reads the request. The change is then
+requested for a later row. This is possible while both streams contain the same rows, as at the start of a
+continued path.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ _MARGIN = 4  # Minimum rows between the request of a change and its row.
 
 
 class RowStream(Protocol):
-    """The methods of ``hal.stream`` that the bridge uses."""
+    """Interface of LinuxCNC's ``hal.stream``, with the methods that the bridge uses."""
 
     @property
     def row_count(self) -> int:
@@ -65,7 +66,7 @@ class _PendingRow(NamedTuple):
 
 
 class RowStreams:
-    """A pair of streams that numbers its rows and recalls rows that have not been played."""
+    """Pair of setpoint streams, in which rows that HAL has not played yet can be replaced."""
 
     def __init__(self, streams: tuple[RowStream, RowStream], pins: HalPins) -> None:
         self._streams = streams
@@ -111,7 +112,7 @@ class RowStreams:
         return self.played_row_due_s
 
     def find_first_recallable_row(self, time_s: float) -> int | None:
-        """Return the first row from ``time_s`` on that can be recalled, or None if it is too late.
+        """Return the first row due at ``time_s`` or later, or None if it can no longer be recalled.
 
         ``time_s`` is in seconds.
         """
@@ -124,7 +125,7 @@ class RowStreams:
     def matches_locked_rows(self, time_s: float, make_row: RowFunction) -> bool:
         """Return whether the rows that can no longer be recalled equal those of ``make_row``.
 
-        Only the rows from ``due_time_s`` on are compared.
+        Only the rows from ``time_s`` on are compared.
         """
         until = self.played_row_number + _MARGIN
         rows = [each for each in (*self._past, *self._due) if each.row_number <= until]
@@ -143,13 +144,13 @@ class RowStreams:
 
     @property
     def is_changing(self) -> bool:
-        """Return whether a pending change between the streams is too close to be modified."""
+        """Return whether HAL is about to change streams, so that the request can no longer be modified."""
         return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
     def recall_rows(self, time_s: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
-        """Replace all rows from ``due_time_s`` on, and return False without a change if it is too late.
+        """Replace all rows due from ``time_s`` on; return False, without a change, if it is too late.
 
-        Up to the time ``unchanged_until`` in seconds, the replacement follows the same path.
+        Until ``unchanged_until``, a time in seconds, the replacement follows the same path.
         """
         first = self.find_first_recallable_row(time_s)
         if first is None or self.is_changing:
@@ -199,9 +200,9 @@ class RowStreams:
         self._pins["switch-at"] = float(first - 1)
 
     def finish_change(self, is_second_playing: bool) -> bool:
-        """Complete a change according to the stream that is played.
+        """Complete a requested change of streams, based on the stream that HAL plays.
 
-        Returns False if this is not the requested stream.
+        Returns False if HAL does not play the expected stream.
         """
         plays = int(is_second_playing)
         if self._change is None or self.played_row_number < self._change:

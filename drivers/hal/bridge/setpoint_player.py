@@ -1,4 +1,4 @@
-"""A setpoint player with a queue that ends at rest, and a cam over the revolutions of the spindle."""
+"""Setpoint player: a queue that ends at rest, or a cam, a path over spindle revolutions."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ MotionState = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 def make_row_function(pieces: list[MotionPiece]) -> Callable[[float], SetpointRow]:
-    """Return a function that returns the row of setpoints at a given time, without the spindle."""
+    """Return a function that converts a time into a setpoint row without spindle following."""
     queue = PieceQueue(pieces[0].positions)
     queue.replace_pieces_from(pieces[0].start_time_s, pieces)
     return lambda t: _rest_row(queue, t)
 
 
 def _rest_row(queue: PieceQueue, t: float) -> SetpointRow:
-    """Return the row with the given axis positions and zero travel per revolution."""
+    """Return a setpoint row for axes that do not follow the spindle (zero travel per revolution)."""
     return tuple([each for p in queue.get_commanded_state(t)[0] for each in (p, 0.0)])
 
 
@@ -64,9 +64,9 @@ class PlayerCam(NamedTuple):
 
 
 class SetpointPlayer:
-    """A player that returns a row of setpoints for any time.
+    """Setpoint player, which returns the setpoint row for any time.
 
-    A row contains, for each axis, the position without the spindle and the travel per revolution.
+    For each axis, a row contains the position at spindle position 0 and the travel per revolution.
     """
 
     def __init__(self, axes: int) -> None:
@@ -81,7 +81,7 @@ class SetpointPlayer:
         self.queue.reset_to(position)
 
     def splice_pieces(self, pieces: list[MotionPiece]) -> None:
-        """Play the given pieces by time from their start on, and end the cam."""
+        """Replace the setpoints by time-based motion pieces from their start on, and end the cam."""
         if self.cam is not None:
             self.queue.reset_to(pieces[0].positions)
         self.cam = self.cam_end_time_s = None
@@ -94,7 +94,7 @@ class SetpointPlayer:
         pieces: list[MotionPiece],
         following_pieces: Sequence[MotionPiece],
     ) -> None:
-        """Follow the spindle with the given pieces.
+        """Make the axes follow the spindle along the given motion pieces.
 
         Earlier pieces of the same cam remain.
         """
@@ -111,9 +111,9 @@ class SetpointPlayer:
         )
 
     def brake_to_rest(self, time_s: float, deceleration: Sequence[float]) -> list[MotionPiece]:
-        """Brake straight to rest from ``time_s`` on, and return the pieces of the deceleration.
+        """Brake on a straight line from ``time_s`` on, and return the motion pieces of the deceleration.
 
-        No pieces are returned at rest.
+        No pieces are returned if the axes are at rest.
         """
         state = self.get_motion_at(time_s)
         if self.cam is not None:
@@ -158,7 +158,10 @@ class SetpointPlayer:
         return _rest_row(self.queue, time_s)
 
     def read_gear_state(self) -> tuple[float, float] | None:
-        """Return the direction and speed of the spindle on the cam, or None without an active cam."""
+        """Return the spindle direction of the cam (1 or -1) and the speed in this direction in rev/s.
+
+        Without an active cam, the result is None.
+        """
         if self.cam is None or self.cam_end_time_s is not None:
             return None
         return self.cam.direction_sign, self.cam.direction_sign * self.spindle_predictor.speed_rev_per_s
@@ -182,7 +185,7 @@ class SetpointPlayer:
         )
 
     def _leave_cam(self, cam: PlayerCam, t: float) -> None:
-        """End the cam: rest, or continue by time if pieces follow the cam."""
+        """End the cam: the axes rest, or continue with time-based pieces if such pieces follow the cam."""
         rest, _ = cam.path_queue.get_commanded_state(INFINITY)
         self.cam_end_time_s = t
         self.queue.reset_to(rest)

@@ -10,7 +10,10 @@ _ORIENT_OFF_S = 0.005  # Seconds for which the orient pin is off before a new an
 
 
 class SpindlePins:
-    """The pins of one spindle. ``c_position`` is the position of C in HAL's count when it was engaged."""
+    """HAL pins of the spindle.
+
+    ``c_position`` is the position of the C axis in HAL's count when it was engaged.
+    """
 
     def __init__(self, config: BridgeConfig, pins: HalPins) -> None:
         self._config, self._pins = config, pins
@@ -29,7 +32,7 @@ class SpindlePins:
         return self.c_position if self._c_from == INFINITY else None
 
     def update(self, now: float) -> None:
-        """Change to position mode and orient the spindle when each action is due."""
+        """Change to position mode, and orient the spindle, as soon as each action is due."""
         if self._c_from <= now:
             self._c_from = INFINITY
             self._pins["spindle.position_mode"] = 1
@@ -38,7 +41,7 @@ class SpindlePins:
             self._pins["spindle.orient"] = 1
 
     def set_speed(self, head: PacketHead) -> None:
-        """Set the commanded speed. The spindle does not turn while the chain is open."""
+        """Set the commanded speed; the spindle does not turn while the E-stop chain is open."""
         rpm, on = number(head, "rpm"), head.get("on") is True
         if on and not self._pins["chain-ok"]:
             return
@@ -51,7 +54,7 @@ class SpindlePins:
                 self._pins[f"spindle.{name}"] = value
 
     def request_position_mode(self, time_s: float) -> None:
-        """Change the drive to position mode at a time."""
+        """Request that the drive changes to position mode at time ``time_s``."""
         self._c_from = time_s
 
     def release_c(self) -> None:
@@ -61,7 +64,7 @@ class SpindlePins:
             self._pins["spindle.position_mode"] = 0
 
     def orient_spindle(self, head: PacketHead, now: float) -> None:
-        """Orient the spindle, with the orient pin off first, because its rising edge latches the angle."""
+        """Orient the spindle: turn the orient pin off and then on, as its rising edge latches the angle."""
         self._release_angle()
         if head.get("on") is not True or not self._pins["chain-ok"]:
             return

@@ -1,1 +1,1 @@
-"""MTConnect SHDR adapter, which reports values and accepts no commands."""
+"""MTConnect adapter (SHDR protocol), which reports values and accepts no commands."""

@@ -1,8 +1,7 @@
 """Connections to MTConnect agents: SHDR lines, unsent data per agent, and the listening socket.
 
-The lines have the format of the reference agent: ``time|key|value|key|value``. Each condition is on a
-separate line. The format follows the tokenizer, token mapper and adapter of the C++ agent. SHDR has no
-escape characters.
+Lines have the form ``time|key|value|key|value``, as the reference agent in C++ expects them. Each condition
+is on a separate line. SHDR has no escape characters.
 """
 
 from __future__ import annotations
@@ -55,7 +54,7 @@ def format_utc_time(time: datetime) -> str:
 
 
 def make_pong(heartbeat_s: float) -> bytes:
-    """Return the reply to a PING.
+    """Return the PONG line that replies to the PING of an agent.
 
     ``heartbeat_s`` is in seconds. The reply contains it in milliseconds, limited to the range from 1 ms to
     just under half an hour.
@@ -64,7 +63,7 @@ def make_pong(heartbeat_s: float) -> bytes:
 
 
 def format_value(item: DataItem, value: ItemValue) -> str:
-    """Return the value of an item as text for an SHDR line."""
+    """Return the value of a data item as text for an SHDR line."""
     if value is None:
         return UNAVAILABLE
     if isinstance(value, str):
@@ -73,10 +72,10 @@ def format_value(item: DataItem, value: ItemValue) -> str:
 
 
 def replace_separators(text: str) -> str:
-    """Return the text with its separators and quotation marks replaced, so that it is one value.
+    """Return the text with separators and quotation marks replaced, so that an agent reads one value.
 
-    Otherwise a leading quotation mark or ``--multiline--`` would make the agent read the data that follow
-    as part of the value.
+    Otherwise, after a leading quotation mark or ``--multiline--``, an agent would treat the data that
+    follow as part of the value.
     """
     text = _CONTROL.sub(" ", text).replace("|", "/").replace("--multiline--", "- multiline -")
     text = text.encode("utf-8", "replace").decode("utf-8")[:MAX_VALUE_LENGTH].strip()
@@ -84,12 +83,12 @@ def replace_separators(text: str) -> str:
 
 
 def make_values_line(time_text: str, pairs: Mapping[str, str]) -> str:
-    """Return the line with the samples and events of one instant."""
+    """Return the SHDR line with the samples and events of one instant."""
     return "|".join((time_text, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
 def make_active_line(time_text: str, key: str, active_condition: ActiveCondition) -> str:
-    """Return the line for a condition that becomes active or changes its text.
+    """Return the SHDR line for a condition that becomes active or changes its text.
 
     The fields for severity and qualifier are empty.
     """
@@ -100,15 +99,15 @@ def make_active_line(time_text: str, key: str, active_condition: ActiveCondition
 
 
 def make_cleared_line(time_text: str, key: str, code: str = "") -> str:
-    """Return the line that ends one code of a condition.
+    """Return the SHDR line that clears one native code of a condition.
 
-    If ``code`` is empty, the line ends the whole condition.
+    If ``code`` is empty, the line clears the whole condition.
     """
     return f"{time_text}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
 
 
 def make_unknown_line(time_text: str, key: str) -> str:
-    """Return the line for a condition whose state is not known."""
+    """Return the SHDR line for a condition whose state is not known."""
     return f"{time_text}|{key}|{UNAVAILABLE}||||\n"
 
 
@@ -130,14 +129,14 @@ class SentState:
         self._shown = dict.fromkeys(self._values, UNAVAILABLE)
 
     def make_complete_state(self, time: str) -> str:
-        """Return the lines of the complete state for a new agent."""
+        """Return the SHDR lines with the complete state for a newly connected agent."""
         lines = [make_values_line(time, self._shown)]
         for key, active in self._conditions.items():
             lines += _whole_condition(time, key, active)
         return "".join(lines)
 
     def report_changes(self, report: MachineReport, time: str) -> str:
-        """Return lines with the values that a report changes, and store these values as sent."""
+        """Return SHDR lines with the changes in a report, and store the changed values as sent."""
         new = dict(self._new_values(report))
         lines = [make_values_line(time, new)] if new else []
         for key, before in self._conditions.items():
@@ -162,7 +161,7 @@ class SentState:
 def _differs(item: DataItem, before: ItemValue, now: ItemValue) -> bool:
     """Return whether a value has changed enough to be sent.
 
-    A sample must change by more than a minimum, except for a change from or to 0.
+    A sample must change by more than its minimum change, except for a change from or to 0.
     """
     if isinstance(before, str) or isinstance(now, str) or before is None or now is None:
         return before != now
@@ -180,7 +179,7 @@ def _whole_condition(at: str, key: str, active: tuple[ActiveCondition, ...] | No
 def _changed_condition(
     time: str, key: str, before: tuple[ActiveCondition, ...] | None, now: tuple[ActiveCondition, ...] | None
 ) -> list[str]:
-    """Return the lines of new and changed codes of a condition, followed by those of ended codes."""
+    """Return the SHDR lines of a condition: new and changed codes first, then cleared codes."""
     if not now or before is None:
         return _whole_condition(time, key, now)
     codes = {each.native_code for each in now}
@@ -201,21 +200,21 @@ PING_TIMEOUT_S = 5.0  # seconds within which an additional agent must send PING
 
 
 class AgentLostError(Exception):
-    """Error if an agent has disconnected or does not respond.
+    """Error raised if an agent has disconnected or does not respond.
 
     The message states the reason.
     """
 
 
 class AgentDisconnectedError(AgentLostError):
-    """Error if an agent has closed its connection."""
+    """Error raised if the connection to an agent is closed."""
 
 
 class AgentLink:
     """Connection to an agent on a non-blocking socket.
 
-    The ``heartbeat_s`` parameter is the requested PING interval in seconds. ``waiting_since`` is the time
-    in seconds since when the agent has waited for a free connection, or None if the agent receives data.
+    ``heartbeat_s`` is the requested PING interval in seconds. ``waiting_since`` is the time in seconds at
+    which the agent began to wait for a free connection, or None if the agent receives data.
     """
 
     def __init__(
@@ -264,7 +263,7 @@ class AgentLink:
         del self._out[:sent]
 
     def read_data(self, now_s: float) -> None:
-        """Read received data, reply to each PING, and count other lines.
+        """Read received data, reply to each PING, and count all other lines as ignored.
 
         Raises AgentLostError if the connection ends, if a line is longer than ``MAX_LINE_LENGTH`` bytes, or
         if too much unsent data is already queued for the reply.
@@ -293,7 +292,7 @@ class AgentLink:
             self.ignored_line_count += 1
 
     def check_timeout(self, now_s: float) -> None:
-        """Raise AgentLostError if the PING of an agent is overdue.
+        """Raise AgentLostError if the next PING of the agent is overdue.
 
         A PING is overdue if the agent has stopped sending PING, or if the agent waits for a free connection
         and has never sent one.
@@ -363,7 +362,7 @@ def accept_connection(listener: socket.socket) -> socket.socket:
 
 
 def _tune(wire: socket.socket) -> None:
-    """Configure a socket so that it detects a lost peer and sends lines without delay."""
+    """Configure a socket to detect a lost peer and to send lines without delay."""
     wire.setblocking(False)
     wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     wire.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

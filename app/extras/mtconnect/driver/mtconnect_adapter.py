@@ -1,4 +1,4 @@
-"""MTConnect adapter, and the device model (``Devices.xml``) of the data items.
+"""MTConnect adapter, and the device model (``Devices.xml``) that describes its data items.
 
 Each agent receives the complete state first, and then the changes. Values are in millimeters. The device
 model has no ``nativeUnits``, so the agent does not convert the values.
@@ -41,7 +41,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(slots=True)
 class ConnectionCounts:
-    """Counts of connections and ignored lines since the adapter was opened."""
+    """Numbers of connections and ignored lines since the adapter was opened."""
 
     accepted_count: int = 0
     rejected_count: int = 0  # connections beyond the limit
@@ -55,10 +55,10 @@ def get_utc_now() -> datetime:
 
 
 class MtconnectAdapter:
-    """Adapter that reports the machine to agents.
+    """Adapter that reports the machine state to MTConnect agents.
 
-    The owner calls ``run_once`` repeatedly. The constructor parameter ``read_report`` is a function that
-    returns the current state of the machine.
+    The owner calls ``run_once`` repeatedly. ``read_report`` is a function that returns the current state of
+    the machine.
     """
 
     def __init__(
@@ -168,7 +168,7 @@ class MtconnectAdapter:
         self._tell(link, self._sent.make_complete_state(format_utc_time(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
-        """Serve a waiting agent, or disconnect the agent if no connection can be freed.
+        """Start sending data to a waiting agent, or disconnect it if no connection can be freed.
 
         If all connections are in use, the first connection that has never sent a PING is closed.
         """
@@ -220,7 +220,7 @@ _BREATH = 0.005  # seconds between two turns, which limits the load by a floodin
 
 
 class AdapterThread:
-    """Thread that runs the adapter until it is closed.
+    """Thread that runs the MTConnect adapter until the adapter is closed or fails.
 
     If the adapter fails, all agents are disconnected.
     """
@@ -244,7 +244,7 @@ class AdapterThread:
         self._thread.start()
 
     def close(self) -> None:
-        """Disconnect the agents and stop the thread within ``CLOSE_TIMEOUT_S`` seconds."""
+        """Disconnect the agents and stop the thread, waiting at most ``CLOSE_TIMEOUT_S`` seconds."""
         self._closing.set()
         if self._thread.is_alive():
             self._thread.join(CLOSE_TIMEOUT_S)
@@ -271,7 +271,7 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 
 
 def make_devices_xml(device: Component, description_text: str, creation_time: datetime) -> str:
-    """Return the XML document of the device model.
+    """Return the device model as an XML document.
 
     ``description_text`` is for human readers. The uuid depends only on the device name. Raises DriverError
     if agents do not accept the device name.
@@ -295,9 +295,9 @@ def make_devices_xml(device: Component, description_text: str, creation_time: da
 
 
 def _header(time: datetime) -> Element:
-    """Return the header element that the schema requires.
+    """Return the header element that the MTConnect schema requires.
 
-    An agent replaces the values of the header.
+    An agent replaces the values in the header with its own.
     """
     return Element(
         "Header",

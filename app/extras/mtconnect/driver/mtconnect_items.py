@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Category(StrEnum):
-    """Category of a data item in MTConnect."""
+    """Category of an MTConnect data item: sample, event or condition."""
 
     SAMPLE = "SAMPLE"
     EVENT = "EVENT"
@@ -17,11 +17,11 @@ class Category(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DataItem:
-    """Data item that the adapter reports.
+    """MTConnect data item that the adapter reports.
 
-    ``key`` is the name of the item in SHDR lines, and ``units`` are the units of the sent values. Values of
-    samples are rounded to ``decimal_places`` decimals. A change is sent only if it exceeds
-    ``minimum_change`` plus ``relative_change`` times the value.
+    - ``key`` is the name of the item in SHDR lines, and ``units`` are the units of the sent values.
+    - Values of samples are rounded to ``decimal_places`` decimals.
+    - A change is sent only if it exceeds ``minimum_change`` plus ``relative_change`` times the value.
     """
 
     key: str
@@ -37,7 +37,7 @@ class DataItem:
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """Component of the machine with its items and sub-components."""
+    """Component of the MTConnect device model, with its data items and sub-components."""
 
     component_type: str
     name: str
@@ -45,7 +45,7 @@ class Component:
     sub_components: tuple[Component, ...] = ()
 
     def iterate_items(self) -> Iterator[DataItem]:
-        """Yield the items of the component and of all its sub-components."""
+        """Yield the data items of the component and of all its sub-components."""
         yield from self.items
         for part in self.sub_components:
             yield from part.iterate_items()
@@ -67,7 +67,7 @@ class MachineLayout:
 
 
 def make_machine_items(layout: MachineLayout, device_name: str) -> Component:
-    """Return the device with all its items.
+    """Return the MTConnect device with all its data items.
 
     Units are millimeters, degrees, mm/s, rpm and percent.
     """

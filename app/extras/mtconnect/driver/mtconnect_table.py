@@ -1,4 +1,4 @@
-"""Table [mtconnect] of the machine file with the settings of the adapter."""
+"""Table [mtconnect] of the machine file, with the settings of the MTConnect adapter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from core.table_schema import DriverDeclaration, DriverTable
 
 @make_key_table
 class MtconnectTable:
-    """Settings of the adapter: address, PING interval ``heartbeat`` in s, and device name."""
+    """Settings of the MTConnect adapter: address, port, device name and ``heartbeat``.
+
+    ``heartbeat`` is the PING interval in seconds.
+    """
 
     enabled: bool = declare_key(default=False, meaning="true: TurnDesk serves an MTConnect adapter.")
     bind: str = declare_key(

@@ -1,7 +1,7 @@
-"""Linux input devices (evdev): finding them by name or USB number, opening and reading them.
+"""Linux input devices (evdev): find them by name or USB number, open them and read their events.
 
-The events have the format of the kernel. Each packet contains ``struct input_event`` entries. A special
-entry marks lost events.
+The kernel sends events as ``struct input_event`` entries, grouped into packets. The entry SYN_DROPPED marks
+lost events.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class InputEvent(NamedTuple):
 class EventPacket(NamedTuple):
     """Packet of events that occurred at the same time.
 
-    ``has_lost_events`` means that earlier events were lost, so counts are not reliable.
+    ``has_lost_events`` means that earlier events were lost, so handwheel counts are not reliable.
     """
 
     events: tuple[InputEvent, ...]
@@ -85,7 +85,7 @@ class PacketParser:
 
 
 class AxisRange(NamedTuple):
-    """Range of an axis from ``minimum`` to ``maximum``, with the current ``value``."""
+    """Range of a device axis from ``minimum`` to ``maximum``, with the current ``value``."""
 
     minimum: int
     maximum: int
@@ -102,7 +102,10 @@ UDEV_RULES_PATH = "/etc/udev/rules.d/70-turndesk-pendant.rules"
 
 
 class EventSource(Protocol):
-    """Open device. It provides its current state, and its events as bytes of ``struct input_event``."""
+    """Interface of an open input device, which provides its current state and its events.
+
+    Events are bytes of ``struct input_event``.
+    """
 
     def read(self) -> bytes:
         """Return the bytes received since the last call, or empty bytes.
@@ -123,7 +126,7 @@ class EventSource(Protocol):
         ...
 
     def read_axis_ranges(self) -> Mapping[int, AxisRange]:
-        """Return the ranges and positions of all axes by code.
+        """Return the ranges and current values of all device axes by axis code.
 
         Raises OSError if the device is disconnected.
         """
@@ -136,9 +139,9 @@ class EventSource(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class DeviceEntry:
-    """Device that is listed in /sys.
+    """Input device node that is listed in /sys.
 
-    All nodes of one device have the same ``stem``.
+    All nodes of one physical device have the same ``stem``.
     """
 
     node: str
@@ -151,7 +154,7 @@ class DeviceEntry:
 
 
 def list_devices(sysfs_folder: Path = SYSFS) -> list[DeviceEntry]:
-    """Return all connected input devices."""
+    """Return the entries of all connected input devices."""
     found = []
     for path in sorted(sysfs_folder.glob("event*")):
         with contextlib.suppress(OSError):  # The device was unplugged in the meantime.
@@ -282,7 +285,7 @@ class KernelDevice:
     """Implementation of ``EventSource`` for a device node.
 
     The node is opened exclusively, so key presses do not reach the screen. Time stamps are on the monotonic
-    clock. The constructor raises DriverError if the device cannot be opened.
+    clock. Raises DriverError if the device cannot be opened.
     """
 
     def __init__(self, entry: DeviceEntry, folder: Path = NODES) -> None:
@@ -329,7 +332,7 @@ class KernelDevice:
         return frozenset(i for i in range(KEYS) if bits[i // 8] >> (i % 8) & 1)
 
     def read_axis_ranges(self) -> Mapping[int, AxisRange]:
-        """Return the range of every axis by code (EVIOCGABS)."""
+        """Return the range of every device axis by axis code (EVIOCGABS)."""
         axis_ranges = {}
         for code in range(AXES):
             if (ABS, code) in self._able:

@@ -1,4 +1,4 @@
-"""Pendant of the operator station: thread, buttons and its ``core.ports`` implementations.
+"""Pendant of the operator station: reader thread, buttons, and implementations of ``core.ports``.
 
 The thread finds and reads the device, and searches for it again after it was unplugged. The pendant adds
 stops, feed hold and handwheel counts. A press that arrives late has no effect until the button is released
@@ -32,10 +32,10 @@ CLOSE_TIMEOUT_S = 1.0  # seconds that closing waits for the thread
 
 @dataclass(frozen=True, slots=True)
 class PendantState:
-    """State of the pendant.
+    """State of the pendant at one instant.
 
-    ``inputs`` have the names of the machine file. ``missing_reason`` is the reason why TurnDesk does not
-    read the pendant, or an empty string.
+    ``input_states`` are by input name in the machine file. ``missing_reason`` is the reason why TurnDesk
+    does not read the pendant, or an empty string.
     """
 
     input_states: Mapping[str, bool]
@@ -47,9 +47,9 @@ class PendantState:
 class PendantReader:
     """Reader of a pendant.
 
-    The ``open_device`` parameter opens the nodes of the device, or raises DriverError. The ``read_clock``
-    parameter reads the clock of the events. ``start`` reads the device in a separate thread. A test can
-    call ``process_events`` without a thread.
+    ``open_device`` opens the nodes of the device, or raises DriverError. ``read_clock`` reads the clock of
+    the event time stamps. ``start`` reads the device in a separate thread. A test can call
+    ``process_events`` without a thread.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class PendantReader:
         self._thread: threading.Thread | None = None
 
     def get_state(self) -> PendantState:
-        """Return the current state.
+        """Return the current state of the pendant.
 
         This method can be called from any thread.
         """
@@ -113,7 +113,10 @@ class PendantReader:
                 self._ending.wait(_AGAIN)
 
     def process_events(self, timeout_s: float) -> None:
-        """Wait up to ``timeout_s`` for events and process them. If the device is missing, search for it."""
+        """Wait for events and process them. If the device is missing, search for it instead.
+
+        ``timeout_s`` is the maximum waiting time in seconds.
+        """
         self._looked = self.read_clock()
         if not self._nodes:
             self._open()
@@ -266,10 +269,10 @@ _REPEAT = 2  # value of an automatic key repeat
 class PendantButtons:
     """Buttons and handwheel of the pendant.
 
-    ``control_by_name`` maps names of the machine file to controls. ``stop_inputs`` are the names of the
-    inputs whose presses take effect even if they arrive late. ``pressed_names`` are the names of the
-    pressed buttons. ``wheel_counts`` is the handwheel count. ``has_absolute_wheel`` means that the wheel
-    reports positions instead of steps.
+    - ``control_by_name`` maps names of the machine file to controls.
+    - ``stop_inputs`` are the inputs whose presses take effect even if they arrive late.
+    - ``pressed_names`` are the pressed buttons, and ``wheel_counts`` is the handwheel count.
+    - ``has_absolute_wheel`` means that the wheel reports positions instead of steps.
     """
 
     control_by_name: Mapping[str, PendantControl]
@@ -285,7 +288,7 @@ class PendantButtons:
     _at: int | None = None  # position of a wheel that reports positions
 
     def set_initial_state(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
-        """Set the current state of the device.
+        """Set the current state of the buttons and axes after the device was opened.
 
         Buttons that are already pressed have no effect, except stop buttons.
         """
@@ -308,9 +311,9 @@ class PendantButtons:
         self._at = None
 
     def apply_packet(self, packet: EventPacket, now_s: float) -> None:
-        """Apply the events of a packet.
+        """Apply the events of a packet to the buttons and the handwheel.
 
-        ``now_s`` is the current time in seconds on the clock of the events.
+        ``now_s`` is the current time in seconds on the clock of the event time stamps.
         """
         for event in packet.events:
             late = now_s - event.time_s > MAX_EVENT_AGE_S

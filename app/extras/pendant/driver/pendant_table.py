@@ -1,8 +1,8 @@
 """Table [pendant] of the machine file, which describes the USB device.
 
-The buttons of the device are inputs with addresses that begin with ``pendant.``. Names and numbers of keys,
-buttons, wheels and axes are those of the kernel (linux/input-event-codes.h). A key that has no name in this
-module is written with its number, such as ``KEY_0x1d3``.
+The buttons of the device are inputs with addresses that begin with ``pendant.``. Keys, buttons, wheels and
+axes have their Linux names and numbers (linux/input-event-codes.h). A key without a name in this module is
+written with its number, such as ``KEY_0x1d3``.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _pendant_inputs(file: MachineFileReading) -> Mapping[str, str]:
-    """Return the addresses of the pendant inputs by their path in the machine file."""
+    """Return the addresses of the pendant inputs, keyed by the input's path in the machine file."""
     return {path: at for path, at in file.separate_device_inputs.items() if at.startswith(PENDANT_PREFIX)}
 
 
@@ -196,7 +196,7 @@ def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
 
 
 def _wheel(file: MachineFileReading) -> str:
-    """Return the address of the handwheel on the pendant, or an empty string if it is elsewhere."""
+    """Return the address of the handwheel, or an empty string if it is not on the pendant."""
     path = f"{_WHEEL}.at"
     at = file.values.text(path) if file.values.has_values(path) else ""
     return at if at.startswith(PENDANT_PREFIX) else ""

@@ -1,4 +1,4 @@
-"""Bar work: bar feed loop, parting off to the center or to a bore, and the blade for plunges."""
+"""Shapes for bar work: a bar feed loop, parting off, and the positioning of a grooving blade."""
 
 from __future__ import annotations
 
@@ -55,13 +55,16 @@ def _width(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
 
 
 def _corner(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the touched-off corner from the tool data; an unknown tool has the corner at the chuck."""
+    """Return the corner of the blade used for touch-off, according to the tool data.
+
+    If the tool is unknown, the result is the corner nearest to the chuck.
+    """
     shape = settings.tool(number(values, "T"))
     return RIGHT if shape is not None and shape.direction[0] > 0 else LEFT
 
 
 def get_tool_side(filled_shape: FilledShape) -> float:
-    """Return -1 if the tool works at negative X, otherwise 1."""
+    """Return the sign of X on the tool's side of the axis: -1 for a rear tool, otherwise 1."""
     return -1.0 if filled_shape.get_text("SIDE") == REAR else 1.0
 
 
@@ -72,7 +75,7 @@ BLADE_CORNER_FIELD = ShapeField(
 
 
 class BladeWriter:
-    """Writer of moves that position one corner of a blade.
+    """Writer of moves that position one corner of a grooving or parting blade.
 
     ``start`` is the radius from which the blade approaches.
     """
@@ -320,7 +323,10 @@ BAR_LOOP_SHAPE = Shape(
 
 
 def check_chuck(settings: ProgramSettings, word: str) -> Iterator[FieldError]:
-    """Yield an error for this field if a SINUMERIK program cannot open the chuck of this machine."""
+    """Yield an error if a SINUMERIK program cannot open the chuck of this machine.
+
+    ``word`` is the name of the field for which the error is reported.
+    """
     if settings.shop.chuck_codes is None:
         yield FieldError(
             word,

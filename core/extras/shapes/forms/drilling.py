@@ -38,7 +38,10 @@ def _across(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
 
 
 def _peck(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
-    """Return a peck depth of one drill diameter for a hole deeper than three diameters, otherwise 0."""
+    """Propose a peck depth of one drill diameter for a hole deeper than three diameters.
+
+    For a shallower hole, the result is 0 (no pecking).
+    """
     across, deep = number(values, "DIA"), number(values, "DEEP")
     return round(across, 3) if across and deep - number(values, "START") > 3.0 * across else 0.0
 

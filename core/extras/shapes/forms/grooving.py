@@ -1,6 +1,7 @@
-"""Groove shape, which is cut by plunges of a blade.
+"""Groove shape, cut by plunging with a blade.
 
-The walls are square or sloped, the edges may be chamfered, and several grooves may be cut at one pitch.
+The walls are square or sloped, and the edges may be chamfered. A shape may contain several equally spaced
+grooves.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def _plunges(filled: FilledShape) -> int:
 
 
 def _slants(filled_shape: FilledShape) -> tuple[float, float]:
-    """Return the slopes of the wall at the face and of the wall at the chuck, per unit of depth."""
+    """Return the Z travel per unit of depth for the face-side wall and for the chuck-side wall."""
     return math.tan(math.radians(filled_shape.get_number("FANGLE"))), math.tan(
         math.radians(filled_shape.get_number("CANGLE"))
     )
@@ -84,7 +85,7 @@ def _groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _loop(filled_shape: FilledShape, code: CodeWriter, outer: float, first: float) -> None:
-    """Write a loop with incremental moves that cuts several grooves, with one plunge for each."""
+    """Write a loop of incremental moves that cuts several equal grooves, one plunge per groove."""
     deep = get_tool_side(filled_shape) * (outer - filled_shape.get_number("BOTTOM") / 2.0)
     code.write_rapid(z=first)
     code.append_lines(
@@ -128,9 +129,9 @@ def _one_groove(filled: FilledShape, blade: BladeWriter, outer: float, chuck: fl
 def _slanted_groove(
     filled_shape: FilledShape, blade: BladeWriter, outer: float, chuck: float, free: float
 ) -> None:
-    """Write plunges, then cuts down each wall and along the bottom.
+    """Write the moves of a groove with sloped walls: plunges, both walls and the bottom.
 
-    The plunges are limited by the corners of the blade.
+    The plunges end before the corners of the blade reach a wall.
     """
     feed, top, bottom = (
         filled_shape.get_number("FEED"),

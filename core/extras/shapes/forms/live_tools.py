@@ -171,7 +171,10 @@ CROSS_HOLES_SHAPE = Shape(
 def _flat_path(
     filled_shape: FilledShape, settings: ProgramSettings
 ) -> tuple[float, list[tuple[float, float]]]:
-    """Return the entry X, and the path of the tool center around the flats as seen from the front."""
+    """Return the X of the approach, and the path of the cutter center around the flats.
+
+    The points of the path are (x, y) as seen from the front of the part.
+    """
     many, radius = int(filled_shape.get_number("FLATS")), filled_shape.get_number("DIA") / 2.0
     away = filled_shape.get_number("ACROSS") / 2.0 + radius
     outside = filled_shape.get_number("FROM") / 2.0 + radius

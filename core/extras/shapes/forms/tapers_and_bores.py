@@ -1,4 +1,4 @@
-"""Taper, edge and bore shapes, whose contours are defined by a few values."""
+"""Shapes for tapers, edges and bores, whose contours are defined by a few dimensions."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Facing and turning shapes.
+"""Shapes for facing and turning.
 
-Turning along a profile consists of roughing with G75 and a pass along the contour.
+Turning along a profile consists of roughing with G75 and a finishing pass along the contour.
 """
 
 from __future__ import annotations
@@ -74,9 +74,10 @@ They are not fields, and proposals use them.
 
 
 def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
-    """Return LOWEST and HIGHEST of a contour, ignoring moves square across the face.
+    """Return the smallest and the largest turned diameter of a contour (LOWEST and HIGHEST).
 
-    The result is empty if roughing along Z cannot cut the contour.
+    Moves square across the face are ignored. The result is empty if roughing along Z cannot cut the
+    contour.
     """
     there = resolve_points(rows)
     turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > POINT_TOLERANCE for r in (a[1], b[1])]
@@ -86,7 +87,10 @@ def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
 
 
 def _stock_and_end(values: FieldValues) -> tuple[float, float]:
-    """Return the diameters of the stock and of the deepest cut; if unknown, they are equal."""
+    """Return the diameter of the stock and the diameter of the deepest cut.
+
+    If one of them is unknown, both are equal.
+    """
     low = number(values, LOWEST) or number(values, "SMALL")
     high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
     if text(values, "SIDE") == INSIDE or "DIAM" in values:
@@ -97,7 +101,7 @@ def _stock_and_end(values: FieldValues) -> tuple[float, float]:
 
 
 def _depth(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose a roughing depth if the stock requires more than two finishing passes, otherwise 0."""
+    """Propose a roughing depth, or 0 if two finishing passes are enough to remove the stock."""
     stock, end = _stock_and_end(values)
     depth = propose_roughing_depth(settings, number(values, "T"), max(stock, end), is_inside=end > stock)
     return (
@@ -136,7 +140,7 @@ def write_spindle_start(
 ) -> None:
     """Write the tool call, the spindle start and the approach.
 
-    Constant surface speed is included if a surface speed is specified.
+    If a surface speed is specified, the lines also start constant surface speed.
     """
     code.cutting_edge = filled_shape.get_number("COMP") or 1.0
     code.write_tool_start(filled_shape.get_number("T"), filled_shape.get_number("RPM"), x, z)
@@ -147,7 +151,7 @@ def write_spindle_start(
 
 
 def write_spindle_end(filled_shape: FilledShape, code: CodeWriter) -> None:
-    """Write the retract to the tool change position, and the return to a constant rpm."""
+    """Write the retract to the tool change position and the switch back to constant rpm."""
     code.write_retract()
     if filled_shape.get_number("SURF"):
         code.write_constant_rpm()
@@ -164,9 +168,9 @@ def write_contour(
     *,
     is_inside: bool,
 ) -> None:
-    """Write the tool call, the spindle start, the contour and the retract.
+    """Write all lines of a contour shape: tool call, spindle start, contour and retract.
 
-    Roughing is included if a depth is specified.
+    If a roughing depth is specified, roughing passes precede the contour.
     """
     there = resolve_points(rows)
     clear_radius = _calculate_clear_radius(filled_shape, settings, there, is_inside=is_inside)
@@ -198,7 +202,7 @@ def _calculate_clear_radius(
     *,
     is_inside: bool,
 ) -> float:
-    """Return the radius, clear of the material, at which roughing begins and the contour ends."""
+    """Return the radius, clear of the stock, at which roughing starts and the contour ends."""
     free, radii = _BESIDE[settings.metric], [r for _, r in there]
     if is_inside:
         hole = filled_shape.get_number("HOLE") / 2.0 or min(radii)
@@ -239,9 +243,9 @@ def _contour_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[F
 
 
 def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) -> Iterator[FieldError]:
-    """Yield an error if the contour leads into the material at its first point.
+    """Yield an error if the contour leads into the stock at its first point.
 
-    The return path of roughing would cross such a contour.
+    The return moves of the roughing passes would cross such a contour.
     """
     side = -1.0 if is_inside else 1.0
     if (
@@ -258,7 +262,7 @@ def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) 
 
 
 def check_compensation(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if G41 is used in a subroutine, where it would not work."""
+    """Yield an error if nose compensation (G41) is used in a subroutine, where it has no effect."""
     if filled_shape.get_number("COMP") and settings.is_subroutine and settings.dialect is Dialect.OMNITURN:
         yield FieldError(
             "COMP",
@@ -381,7 +385,7 @@ def _face(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> No
 
 
 def _past_axis(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return an end diameter that is two nose radii past the axis, because stopping earlier leaves a pip."""
+    """Propose an end diameter two nose radii past the axis, because an earlier end leaves a pip."""
     shape = settings.tool(number(values, "T"))
     nose = shape.nose_radius / settings.mm if shape is not None else 0.0
     return -math.ceil(2000.0 * (nose or 0.4 / settings.mm)) / 1000.0

@@ -1,6 +1,6 @@
-"""Writer of the program lines of a shape and of a bar feed loop.
+"""Writer of the program lines of shapes, and of bar feed loops.
 
-The lines contain words, rapids, cuts and feeds of this control.
+``CodeWriter`` writes the words, rapids, cuts and feeds of the OmniTurn language.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from core.language.source import Dialect
 
 
 class BarFeedLoop(NamedTuple):
-    """A bar feed loop that makes ``part_count`` parts of the length ``part_length``.
+    """A loop that feeds the bar and makes ``part_count`` parts of the length ``part_length``.
 
-    The bar is fed at ``feed_rate`` per minute to the tool ``stop_tool``, which leaves ``facing_stock`` on
-    the face. If ``feeds_each_part`` is True, the bar is fed for each part, otherwise only once.
-    ``subroutine_number`` is the number of the part's subroutine.
+    The bar is fed at ``feed_rate`` per minute against the tool ``stop_tool``. ``facing_stock`` is the stock
+    left on the face. If ``feeds_each_part`` is True, the bar is fed for each part, otherwise only once.
+    ``subroutine_number`` is the number of the subroutine that machines the part.
     """
 
     part_count: int
@@ -34,7 +34,7 @@ class BarFeedLoop(NamedTuple):
 
     @property
     def feed_length(self) -> float:
-        """Return the length by which each feed advances the bar."""
+        """Return the length by which the bar advances at each feed."""
         return self.part_length if self.feeds_each_part else self.part_count * self.part_length
 
 
@@ -44,9 +44,9 @@ def write_bar_feed_loop(code: CodeWriter, loop: BarFeedLoop) -> None:
 
 
 def _omniturn(code: CodeWriter, bars: BarFeedLoop) -> None:
-    """Write the loop with LS … LF.
+    """Write the loop with LS … LF, the OmniTurn loop words.
 
-    G97 is only written for its comment, because a comment is not permitted inside a loop.
+    The G97 line carries the comment of the loop, because a comment is not permitted inside the loop.
     """
     call, loop = f"P{bars.subroutine_number}", f"LS{bars.part_count}"
     code.append_lines("G97", loop) if bars.feeds_each_part else code.append_lines("G97")
@@ -91,17 +91,18 @@ def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
 
 
 def _write_stop_move(code: CodeWriter, bars: BarFeedLoop) -> None:
-    """Write the move that brings the stop to the end of the bar."""
+    """Write the move that positions the stop tool at the end of the bar."""
     code.write_rapid(0.0, code.settings.clear)
     code.write_rapid(z=bars.facing_stock - bars.feed_length)
 
 
 class ContourTurning(NamedTuple):
-    """Turning of a contour: roughing passes, followed by one pass along the contour.
+    """Data for turning a contour: roughing passes, then one pass along the contour.
 
-    ``roughing_depth`` is the depth of a pass, or 0 for no roughing. The contour ends at ``clear_radius``,
-    which is clear of the material. ``compensation_offset`` is the number of the nose compensation, or 0.
-    ``roughing_label`` is a number for the contour in languages that label contours.
+    ``roughing_depth`` is the depth of cut of a roughing pass; 0 means no roughing. The contour ends at
+    ``clear_radius``, which is clear of the stock. ``compensation_offset`` is the offset number of the nose
+    compensation; 0 means no compensation. ``roughing_label`` is a number for the contour in languages that
+    label contours.
     """
 
     points: Sequence[ContourPoint]
@@ -116,10 +117,10 @@ class ContourTurning(NamedTuple):
 
 
 class TappingCycle(NamedTuple):
-    """Tapping on the axis from ``start_z`` to ``end_z`` with ``pitch`` at ``rpm``.
+    """Data for tapping on the axis from ``start_z`` to ``end_z`` with ``pitch`` at ``rpm``.
 
-    ``spindle_code`` is the M code that starts the spindle. If ``is_rigid`` is True and the language permits
-    it, the spindle turns in step with Z; otherwise a floating holder is used.
+    ``spindle_code`` is the M code that starts the spindle. If ``is_rigid`` is True and the language
+    supports it, the tap is rigid (spindle synchronized with Z). Otherwise a floating holder is used.
     """
 
     start_z: float
@@ -151,19 +152,22 @@ class CodeWriter:
         self.lines += lines
 
     def clear_modal_state(self) -> None:
-        """Clear the tracked modal state because lines were added unchanged."""
+        """Clear the tracked modal state, so that the next line repeats all words that it needs.
+
+        Call the method after lines were added unchanged.
+        """
         self._rapid, self._feed = False, ""
 
     # --- Words
 
     def format_x(self, radius: float, letter: str = "X") -> str:
-        """Return the word for a radius, converted to a diameter if the program uses diameters."""
+        """Return the X word for a radius, as a diameter if the program uses diameters."""
         s = self.settings
         value = 2.0 * radius if s.diameter else radius
         return letter + format_short_number(round_length(value, is_metric=s.metric, is_diameter=s.diameter))
 
     def format_z(self, value: float, letter: str = "Z") -> str:
-        """Return the word for a length along Z, or for another length that is never a diameter."""
+        """Return the word for a length that is never a diameter, such as a position along Z."""
         return letter + format_short_number(round_length(value, is_metric=self.settings.metric))
 
     def format_point(self, x: float | None, z: float | None) -> str:
@@ -173,7 +177,7 @@ class CodeWriter:
     # --- Moves
 
     def add_comment(self, comment: str) -> list[str]:
-        """Return the lines, with a comment added to the first line."""
+        """Return the written lines with a comment added to the first one."""
         return [f"{self.lines[0]}({comment})", *self.lines[1:]]
 
     def write_tool_start(
@@ -192,7 +196,7 @@ class CodeWriter:
             self.write_rapid(z=z)
 
     def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
-        """Write a rapid to a point; None omits an axis."""
+        """Write a rapid to a point. An axis whose coordinate is None does not move."""
         self.append_lines(("" if self._rapid else "G00") + self.format_point(x, z))
         self._rapid = True
 
@@ -223,12 +227,12 @@ class CodeWriter:
         self.append_lines(self.format_feed(feed) or f"F{format_short_number(feed, 6)}")
 
     def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
-        """Write a straight line of a contour, with the corner to the next element."""
+        """Write a straight line of a contour, with the chamfer or radius at its end."""
         corner = self.format_z(chamfer, "C") if chamfer else self.format_z(radius, "R") if radius else ""
         self.append_lines(self.format_feed(0.0) + self.format_point(x, z) + corner)
 
     def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
-        """Write an arc from the last point.
+        """Write an arc that starts at the last point of the contour.
 
         A convex arc is like the rounded shoulder of a shaft, and a concave arc is like a fillet.
         """
@@ -248,9 +252,9 @@ class CodeWriter:
     # --- Contours and holes
 
     def write_contour_turning(self, turning: ContourTurning) -> None:
-        """Write roughing with G75, then the contour.
+        """Write the roughing passes with G75, then the pass along the contour.
 
-        Roughing is included only if it is specified, and so is nose compensation.
+        Roughing and nose compensation are written only if they are specified.
         """
         there = resolve_points(turning.points)
         first = there[0]
@@ -277,7 +281,7 @@ class CodeWriter:
             self.write_cut(x=turning.clear_radius)
 
     def write_contour(self, points: Sequence[ContourPoint]) -> None:
-        """Write the lines of a contour; the tool has already reached its first point."""
+        """Write the lines of a contour from its first point, which the tool has already reached."""
         for (_, before), (row, here) in pairwise(zip(points, resolve_points(points), strict=True)):
             x = (
                 here[1]
@@ -295,12 +299,15 @@ class CodeWriter:
                 self.write_line(x, z, row.chamfer, row.radius)
 
     def cancel_compensation(self, offset: float) -> None:
-        """Cancel the nose compensation if a contour has used this offset."""
+        """Write the end of nose compensation, if the contour used compensation.
+
+        ``offset`` is the offset number; 0 means that no compensation was used.
+        """
         if offset:
             self.append_lines("G40")
 
     def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
-        """Write a hole from the current position to ``end``, with pecks or in one pass.
+        """Write the drilling of a hole from the current position to ``end``, in pecks or in one pass.
 
         ``start`` is the depth of an existing hole.
         """
@@ -328,7 +335,7 @@ class CodeWriter:
         self.append_lines(f"G96S{format_short_number(surface, 0)}", f"G77S{format_short_number(max_rpm, 0)}")
 
     def write_constant_rpm(self) -> None:
-        """Write the return to constant rpm, before another tool is called."""
+        """Write the switch back to constant rpm before the next tool call."""
         self.append_lines("G97")
 
 
@@ -374,9 +381,9 @@ def round_length(value: float, *, is_metric: bool, is_diameter: bool = False) ->
 
 
 def round_depth_up(radius: float, *, is_metric: bool) -> float:
-    """Return a depth rounded up to the resolution of the control.
+    """Return a depth of cut rounded up to the resolution of the control.
 
-    In passes of equal chip area, a slightly smaller depth would require one more pass.
+    With passes of equal chip area, a depth that is rounded down would require one more pass.
     """
     step = _STEPS[is_metric]
     return math.ceil(radius / step - 1e-6) * step
@@ -399,7 +406,10 @@ def decode_comment_number(text: str) -> float | None:
 
 
 def encode_thread_name(name: str) -> str:
-    """Encode a thread size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
+    """Encode a thread size in letters and digits for a comment.
+
+    Examples: 1/2 is 1S2, 1-1/8 is 1A1S8, and M10X1.25 is M10X1P25.
+    """
     return name.translate(_NAME)
 
 

@@ -12,7 +12,7 @@ RAPID_RATE_IN_MIN = 50.0  # in/min, clear of the part in the plane
 
 
 class RadialHoles(NamedTuple):
-    """Radial holes around a part.
+    """A row of radial holes around a part, all at the same Z.
 
     There are ``hole_count`` holes at ``hole_z``, starting at ``start_angle_deg`` in steps of
     ``angle_step_deg``. Each hole is drilled from the radius ``clearance_radius`` to the radius
@@ -29,11 +29,11 @@ class RadialHoles(NamedTuple):
 
 
 class FaceMilling(NamedTuple):
-    """Milling around the end of a part, repeated at each depth.
+    """Data for milling around the end of a part, repeated at each depth.
 
-    ``path`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is the X at Y 0
-    that is clear of the part; the tool returns to it after each round. If ``is_closed`` is True, the path
-    leads around the part, and the tool moves directly to its first point, which is also clear of the part.
+    ``path`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is an X at Y 0
+    that is clear of the part. If ``is_closed`` is False, the tool returns to it after each round. If
+    ``is_closed`` is True, the path leads around the part, and its first point is also clear of the part.
     """
 
     entry_x: float
@@ -44,10 +44,11 @@ class FaceMilling(NamedTuple):
 
 
 class CylinderSlots(NamedTuple):
-    """Slots in a cylinder, each ``length_z`` long in Z and ``angle_span_deg`` degrees wide around it.
+    """Slots in the side of a cylinder.
 
-    ``diameter`` is the diameter of the cylinder. ``bottom_radii`` contains the radius of the mill's end for
-    each pass; the passes alternate in direction. ``clearance_radius`` is a radius clear of the part.
+    Each slot is ``length_z`` long in Z and spans ``angle_span_deg`` degrees around the cylinder.
+    ``diameter`` is the diameter of the cylinder. ``bottom_radii`` contains the radius of the slot bottom
+    for each pass. The passes alternate in direction. ``clearance_radius`` is a radius clear of the part.
     """
 
     diameter: float
@@ -61,9 +62,9 @@ class CylinderSlots(NamedTuple):
 
 
 class LiveToolWriter:
-    """Writer of lines for a live tool in OmniTurn.
+    """Writer of program lines for a live tool in OmniTurn.
 
-    M19 holds the spindle, CA and CI turn it, and ~PLXC and ~PLZC select the planes.
+    M19 stops and locks the spindle as C axis. CA and CI rotate it, and ~PLXC and ~PLZC select the planes.
     """
 
     def __init__(self, code: CodeWriter, rpm: float) -> None:
@@ -78,7 +79,7 @@ class LiveToolWriter:
         return f"F{format_short_number(RAPID_RATE_IN_MIN * 25.4 / self._setting.mm, 0)}"
 
     def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
-        """Write the approach, the stop and hold of the spindle, and the start of the live tool."""
+        """Write the approach, the change from spindle to C axis, and the start of the live tool."""
         self._code.write_tool_start(tool, 0.0, x, z)
         self._code.append_lines("M05", f"M{self._setting.shop.live_tool_codes[0]:02d}", "M19")
 
@@ -93,7 +94,7 @@ class LiveToolWriter:
             self._code.append_lines(f"{word}{format_short_number(degrees, 3)}", wait)
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
-        """Write the moves of indexed drilled holes, as a loop if there are several holes."""
+        """Write the moves that drill holes at indexed C angles, as a loop if there are several holes."""
         code = self._code
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         self._angle("CA", holes.start_angle_deg)
@@ -109,7 +110,7 @@ class LiveToolWriter:
         self._released()
 
     def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
-        """Write the moves that mill around the face in the plane XC, from the side of negative X."""
+        """Write the moves that mill around the face in the XC plane, starting at negative X."""
         code, rate = self._code, f"F{format_short_number(faces.feed_rate)}"
         entry, (first, *rest) = format_short_number(faces.entry_x, 4), faces.path
         begin = f"X{format_short_number(first[0], 4)}Y{format_short_number(first[1], 4)}"
@@ -128,7 +129,7 @@ class LiveToolWriter:
         self._released()
 
     def write_slots(self, tool: float, slots: CylinderSlots) -> None:
-        """Write the moves that mill slots in the plane ZC, starting at each angle of C."""
+        """Write the moves that mill slots in the ZC plane, one slot for each start angle of C."""
         code, rate = self._code, format_short_number(slots.feed_rate)
         around = slots.angle_span_deg / 360.0 * math.pi * slots.diameter
         self._write_live_tool_start(tool, -slots.clearance_radius, slots.start_z)
@@ -153,7 +154,7 @@ class LiveToolWriter:
 
 
 def _wait(degrees: float, c_rpm: float) -> float:
-    """Return the dwell in seconds that C needs to reach its position.
+    """Return the dwell in seconds that the C axis needs for a rotation by ``degrees``.
 
     The dwell is necessary because the drive does not report that C is in position.
     """
@@ -161,7 +162,10 @@ def _wait(degrees: float, c_rpm: float) -> float:
 
 
 class SinumerikLiveToolWriter(LiveToolWriter):
-    """Writer of lines for a live tool in SINUMERIK. M5 stops the spindle before C moves or a plane begins."""
+    """Writer of program lines for a live tool in SINUMERIK.
+
+    M5 stops the spindle before C moves and before a coordinate transformation begins.
+    """
 
     def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
         self._code.write_tool_start(tool, 0.0, x, z)
@@ -177,15 +181,15 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         return f"{name}{'' if len(name) == 1 else '='}{format_sinumerik_number(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
-        """Write the words that switch X between radius and diameter.
+        """Write DIAMON or DIAMOF, which switch X to diameters or to radii.
 
-        TRANSMIT measures X and Y in the same unit.
+        TRANSMIT needs radii, because it measures X and Y in the same unit.
         """
         if self._setting.diameter:
             self._code.append_lines("DIAMON" if degrees else "DIAMOF")
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
-        """Write the moves of each hole, with its absolute angle of C."""
+        """Write the moves that drill the holes, each at its absolute C angle."""
         code = self._code
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         for k in range(holes.hole_count):
@@ -196,7 +200,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         self._released()
 
     def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
-        """Write the moves that mill around the face with TRANSMIT, from the side of positive X."""
+        """Write the moves that mill around the face with TRANSMIT, starting at positive X."""
         code, rate = self._code, f"F{format_sinumerik_number(faces.feed_rate)}"
         self._write_live_tool_start(tool, faces.entry_x, self._setting.near)
         self._words(degrees=False)
@@ -220,7 +224,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
     def write_slots(self, tool: float, slots: CylinderSlots) -> None:
         """Write the moves that mill slots with TRACYL.
 
-        Y is measured around the part from C0, in the opposite direction of C.
+        Y is measured around the part, starting at C0 and opposite to the direction of C.
         """
         code, degree = self._code, math.pi * slots.diameter / 360.0
         self._write_live_tool_start(tool, slots.clearance_radius, slots.start_z)

@@ -1,6 +1,6 @@
-"""Program lines of a shape in SINUMERIK: separated words, leading zeros, and drilling cycles.
+"""Program lines of shapes in SINUMERIK, with spaces between words and with drilling cycles.
 
-Grooves use G1, or CYCLE93 if the form specifies the second cutting edge of the blade.
+Grooves are cut with G1, or with CYCLE93 if the form specifies the second cutting edge of the blade.
 """
 
 from __future__ import annotations
@@ -20,7 +20,10 @@ _TURNS = {"M03": "M3", "M04": "M4"}
 
 
 class SinumerikCodeWriter(CodeWriter):
-    """Writer of SINUMERIK lines under G18, G90 and G95. It repeats the motion word only in contours."""
+    """Writer of SINUMERIK lines for programs with G18, G90 and G95.
+
+    Every line repeats its motion word, except the lines of a contour.
+    """
 
     supports_loops = False
 
@@ -29,18 +32,21 @@ class SinumerikCodeWriter(CodeWriter):
         self._motion = ""
 
     def clear_modal_state(self) -> None:
-        """Clear the tracked modal state because lines were added unchanged."""
+        """Clear the tracked modal state, so that the next line repeats all words that it needs.
+
+        Call the method after lines were added unchanged.
+        """
         super().clear_modal_state()
         self._motion = ""
 
     def add_comment(self, comment: str) -> list[str]:
-        """Return the lines, with a comment added to the first line."""
+        """Return the written lines with a comment added to the first one."""
         return [f"{self.lines[0]} ; {comment}", *self.lines[1:]]
 
     # --- Words
 
     def format_x(self, radius: float, letter: str = "X") -> str:
-        """Return the word for a radius, converted to a diameter if the program uses diameters."""
+        """Return the X word for a radius, as a diameter if the program uses diameters."""
         return add_leading_zero(super().format_x(radius, letter))
 
     def format_z(self, value: float, letter: str = "Z") -> str:
@@ -74,7 +80,7 @@ class SinumerikCodeWriter(CodeWriter):
             self.write_rapid(z=z)
 
     def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
-        """Write a rapid to a point; None omits an axis."""
+        """Write a rapid to a point. An axis whose coordinate is None does not move."""
         self._move("G0", self.format_point(x, z))
 
     def write_cut(
@@ -97,14 +103,14 @@ class SinumerikCodeWriter(CodeWriter):
         self.append_lines(self._fresh(feed) or f"F{format_sinumerik_number(feed, 6)}")
 
     def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
-        """Write a straight line of a contour, with the corner to the next element."""
+        """Write a straight line of a contour, with the chamfer or radius at its end."""
         corner = (
             self.format_z(chamfer, "CHR=") if chamfer else self.format_z(radius, "RND=") if radius else ""
         )
         self._move("G1", self.format_point(x, z), corner)
 
     def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
-        """Write an arc from the last point.
+        """Write an arc that starts at the last point of the contour.
 
         A convex arc is like the rounded shoulder of a shaft, and a concave arc is like a fillet.
         """
@@ -122,8 +128,8 @@ class SinumerikCodeWriter(CodeWriter):
     def write_contour_turning(self, turning: ContourTurning) -> None:
         """Write CYCLE95 for roughing if it is specified, then one pass along the contour.
 
-        CYCLE95 finds the contour between two labels. The cycle removes material up to the outermost point
-        of its contour, so the contour includes the move away from the part.
+        CYCLE95 finds the contour between two labels. The cycle removes stock only up to the outermost point
+        of its contour, so the contour includes the retract move.
         """
         there, name = resolve_points(turning.points), f"CONTOUR_{turning.roughing_label or 1.0:.0f}"
         (z, x), feed = there[0], self._fresh(turning.feed)
@@ -168,7 +174,7 @@ class SinumerikCodeWriter(CodeWriter):
             self.append_lines(off)
 
     def cancel_compensation(self, offset: float) -> None:
-        """Write nothing, because the move away from the contour has already canceled the compensation."""
+        """Write nothing, because the retract move of the contour already cancels the compensation."""
 
     def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
         """Write CYCLE81 or CYCLE83 under G17, for drilling along Z."""
@@ -192,7 +198,7 @@ class SinumerikCodeWriter(CodeWriter):
         self.clear_modal_state()
 
     def write_tapping(self, tool: float, cycle: TappingCycle) -> None:
-        """Write CYCLE840, or CYCLE84 with the spindle as C axis, under G17."""
+        """Write CYCLE840 for a floating holder, or CYCLE84 for rigid tapping, under G17."""
         self.write_tool_start(
             tool, 0.0 if cycle.is_rigid else cycle.rpm, 0.0, cycle.start_z, cycle.spindle_code
         )
@@ -240,5 +246,5 @@ class SinumerikCodeWriter(CodeWriter):
         )
 
     def write_constant_rpm(self) -> None:
-        """Write the return to constant rpm, before another tool is called."""
+        """Write the switch back to constant rpm before the next tool call."""
         self.append_lines("G97")

@@ -64,10 +64,10 @@ def _metric() -> Iterator[float]:
 
 
 def find_tap_drill(minimum: float, maximum: float, *, is_metric: bool) -> tuple[str, float] | None:
-    """Return the name and size of the drill for a hole between two limits, or None.
+    """Return the name and size of the standard drill for a hole between two limits.
 
-    Limits and size are in mm or inches. The drill is the largest within the limits that is not above their
-    middle, because drills cut oversize, or else the smallest one within the limits.
+    Limits and size are in mm or inches. Because drills cut oversize, the largest drill up to the middle of
+    the limits is preferred, or else the smallest drill within the limits. Return None if no drill fits.
     """
     sold = {f"{size:g}": size for size in _metric()} if is_metric else _INCH
     fits = sorted((size, name) for name, size in sold.items() if minimum <= size <= maximum)
@@ -205,9 +205,9 @@ def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
 
 
 def _called(name: str, size: float, series: ThreadSeries, settings: ProgramSettings) -> str:
-    """Return the name of a drill.
+    """Return the name of a drill, followed by its size if the name is in another unit.
 
-    If the name is in another unit, the size in the program's unit is added.
+    The size is in the program's unit.
     """
     size = convert_length(size, series, is_metric=settings.metric)
     shown = format_short_number(size, 3 if settings.metric else 4)

@@ -245,8 +245,8 @@ def _middle(pair: tuple[float, float]) -> float:
 def _v_root(pitch_diameter: float, pitch: float, nose: float, *, is_inside: bool) -> float:
     """Return the final diameter of a tool tip with the radius ``nose``.
 
-    The diameter is at half the sharp V, minus the tip truncation. Without a nose radius the profile is
-    standard: a truncation of H/6 outside (rounded root) and, inside, a flat of P/8, i.e. H/8.
+    The tip is at half the height of the sharp V thread, minus the tip truncation. If ``nose`` is 0, the
+    profile is standard: a truncation of H/6 outside (rounded root) and of H/8 inside (flat of P/8).
     """
     high = V60_HEIGHT_FACTOR * pitch
     lack = nose or high / (8.0 if is_inside else 6.0)
@@ -288,7 +288,7 @@ def _unified(
 
 
 def _minor_tolerance(d: float, p: float, grade: int) -> float:
-    """Return the tolerance of an internal minor diameter by size and class, according to B1.1 section 5.8."""
+    """Return the tolerance of the minor diameter of an internal thread (ASME B1.1, section 5.8)."""
     formula = 0.05 * math.pow(p, 2 / 3) + 0.03 * p / d - 0.002
     if grade < 3:
         if d >= 0.25:
@@ -377,7 +377,7 @@ _PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
 def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: bool) -> ThreadLimits:
     """Return the limits of a parallel pipe thread according to ISO 228-1.
 
-    The standard has one class for internal threads.
+    For internal threads, the standard has only one tolerance class.
     """
     d, p, turns = size.diameter, size.pitch, round(25.4 / size.pitch)
     wide, basic_pitch, basic_minor = _PIPE_PITCH[turns], d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p

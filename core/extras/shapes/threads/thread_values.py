@@ -46,7 +46,10 @@ def get_series(values: FieldValues) -> ThreadSeries:
 
 
 def find_thread_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits | None:
-    """Return the thread limits for series, size and class in the series' unit, or None if unknown."""
+    """Return the limits for the entered series, size and class, or None if they are unknown.
+
+    The limits are in the unit of the series.
+    """
     series, inside = get_series(values), text(values, "SIDE") == INSIDE
     found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
@@ -61,7 +64,10 @@ def find_thread_limits(values: FieldValues, settings: ProgramSettings) -> Thread
 
 
 def make_diameter_proposal(limit_name: str) -> ValueProposal:
-    """Return a function that proposes a standard diameter; ``limit_name`` is ``crest`` or ``root``."""
+    """Return a function that proposes the standard crest or root diameter of a thread.
+
+    ``limit_name`` is ``crest`` or ``root``.
+    """
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         known = find_thread_limits(values, setting)
@@ -77,7 +83,7 @@ def make_diameter_proposal(limit_name: str) -> ValueProposal:
 
 
 def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the pitch that belongs to the thread size."""
+    """Propose the pitch that the standard specifies for the thread size."""
     series = get_series(values)
     found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
@@ -115,18 +121,18 @@ def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue
 
 
 def propose_pass_count(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose a number of passes for the pitch, from 4 for the finest to 16 for the coarsest pitch.
+    """Propose a number of threading passes, from 4 for the finest to 16 for the coarsest pitch.
 
-    Insert makers recommend these numbers.
+    Insert manufacturers recommend these numbers.
     """
     pitch = number(values, "PITCH") * settings.mm / 25.4
     return float(min(16, max(4, round(4 + 80 * pitch)))) if pitch else None
 
 
 def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
-    """Return the included flank angle in degrees.
+    """Return the included flank angle of the thread in degrees.
 
-    This is the angle of the series; if it is unknown, the angle in the tool data, or else 60.
+    The angle is taken from the series, otherwise from the tool data. If both are unknown, it is 60 degrees.
     """
     shape = settings.tool(number(values, "T"))
     point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
@@ -153,7 +159,7 @@ def propose_threading_rpm(values: FieldValues, settings: ProgramSettings) -> Fie
 
 
 def propose_run_up(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the distance within which the axis reaches the lead, at least two pitches."""
+    """Propose the run-up distance in which the axis reaches its feed rate, at least two pitches."""
     lead, turns = number(values, "PITCH") * number(values, "STARTS"), number(values, "RPM")
     if not lead or not turns:
         return None
@@ -171,7 +177,7 @@ G35_LEAD_LIMITS_IN = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G
 
 
 def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield the errors of a thread with respect to its dimensions, the machine's limits and the tool."""
+    """Yield errors for a thread that is inconsistent or that the machine or the tool cannot cut."""
     inside = filled_shape.get_text("SIDE") == INSIDE
     crest, root, pitch = (
         filled_shape.get_number("CREST"),
@@ -223,7 +229,7 @@ def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterat
 def _flank_checks(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the infeed angle is larger than the flank angle.
 
-    Passes would then cut into the flank that the previous pass has left.
+    A pass would then cut into the flank of the previous pass.
     """
     angle, flank = filled_shape.get_number("INFEED"), find_flank_angle(filled_shape.values, settings) / 2.0
     if angle > flank + 1e-9:
@@ -330,7 +336,10 @@ def _by_sheet(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldEr
 
 
 def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if the series does not have this size or class, so that no values are proposed."""
+    """Yield an error if the thread series does not contain the entered size or class.
+
+    Without a standard size and class, no values can be proposed.
+    """
     series, allowed = get_series(filled_shape.values), list_classes_for_side(filled_shape.values)
     size, tolerance = filled_shape.get_text("SIZE"), filled_shape.get_text("CLASS")
     if series is not ThreadSeries.CUSTOM and size and find_thread_size(series, size) is None:
@@ -354,9 +363,9 @@ def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> 
 
 
 def find_coarse_step(filled_shape: FilledShape, settings: ProgramSettings) -> float:
-    """Return the axis step for the G35 or G35F2 that a lead requires, or 0 if neither is required.
+    """Return the axis resolution of the G35 or G35F2 code that a coarse lead requires.
 
-    The step is in the unit of the program.
+    The result is in the program's unit. It is 0 if the lead requires neither code.
     """
     lead = filled_shape.get_number("PITCH") * max(1.0, filled_shape.get_number("STARTS")) * settings.mm / 25.4
     inch = 0.0 if lead <= G35_LEAD_LIMITS_IN[0] else 0.00025 if lead <= G35_LEAD_LIMITS_IN[1] else 0.0005

@@ -56,9 +56,9 @@ from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, 
 
 
 def calculate_first_depth(filled_shape: FilledShape) -> float:
-    """Return the depth of the first pass per side for a constant chip area.
+    """Return the depth per side of the first pass, for passes of equal chip area.
 
-    This is the depth of the thread divided by √N for N passes.
+    The depth is the depth of the thread divided by √N for N passes.
     """
     return calculate_thread_depth(filled_shape) / math.sqrt(max(1.0, filled_shape.get_number("PASSES")))
 
@@ -186,7 +186,7 @@ def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _make_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
-    """Return notes about the measured diameters, and about the cone to be cut before a tapered thread."""
+    """Return notes about the measured diameters and about the taper to turn before threading."""
     known = find_thread_limits(filled_shape.values, settings)
     if known is None:
         return ()

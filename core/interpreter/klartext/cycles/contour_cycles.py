@@ -1,8 +1,8 @@
 """SL cycles for pockets and islands with closed contours (20 to 24) and for open contours (25).
 
-As in the manual, the cycles clear every point of the pocket that the tool can reach. They do not touch any
-point outside the pocket or inside an island. TurnDesk calculates its own tool path, which consists of rings
-from the inside out and a ramp of 3 degrees.
+As specified in the manual, the cycles clear every point of the pocket that the tool can reach. They do not
+cut outside the pocket or inside an island. The tool path is TurnDesk's own: rings from the inside out, and
+a ramp of 3 degrees.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class ClearingData:
         return min(overlap, 1.0) * self.tool.radius_mm
 
     def compute_levels(self, bottom_z_mm: float) -> list[float]:
-        """Return the Z heights of the infeeds in mm, ending with the bottom."""
+        """Return the Z heights of all infeeds in mm, from the top to the bottom of the pocket."""
         return compute_levels(
             self.tool, self.surface_z_mm, bottom_z_mm, lambda: abs(self.tool.read_length_mm(10))
         )
@@ -171,7 +171,7 @@ def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
     """Yield the blocks of cycle 22, which clears the area level by level.
 
-    The allowances of cycle 20 remain on the part. Q401 reduces the feed in full-width cuts.
+    The allowances of cycle 20 remain as stock. Q401 reduces the feed in full-width cuts.
     """
     clearing = ClearingData(tool, area)
     if tool.read_value(18, 0.0):
@@ -195,7 +195,7 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
 def _move_to_depth(
     clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
 ) -> Iterator[Block]:
-    """Yield the moves to the start of a ring at the depth ``z``, along a ramp if necessary."""
+    """Yield the moves to the start of a ring at the depth ``z``, with a plunge if necessary."""
     tool = clearing.tool
     if not cut.moves_at_depth:
         yield from tool.move_above(cut.ramp_loop[0].start, clearing.clearance_z_mm)
@@ -209,7 +209,8 @@ def _ramp(
 ) -> Iterator[Block]:
     """Yield the plunge to the depth ``z``.
 
-    The tool plunges straight down at Q11 if Q19 is 0; otherwise, it plunges along the ring at Q19.
+    If the plunge angle Q19 is 0, the tool plunges straight down at the feed Q11. Otherwise, it ramps down
+    along the ring at the angle Q19.
     """
     tool = clearing.tool
     yield tool.move_to_z(top, clearing.tool.read_cutting_feed(11))
@@ -300,9 +301,9 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 def _add_approach_arcs(
     ring: ElementLoop, room: AreaChecker, offset_mm: float, radius: float, *, is_up_cut: bool
 ) -> tuple[ElementLoop, Arc | None, Arc | None]:
-    """Return the ring with a new start point, and its approach and departure arcs.
+    """Return a ring that starts where approach and departure arcs fit, and both arcs.
 
-    The ring starts where both arcs fit. If no such point exists, both arcs are None.
+    If no such point exists, both arcs are None.
     """
     order = sorted(range(len(ring)), key=lambda at: (isinstance(ring[at], Arc), -ring[at].length))
     for size in (radius / 2.0**tries for tries in range(_MAX_TRIES)):

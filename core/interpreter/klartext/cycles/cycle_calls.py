@@ -1,7 +1,7 @@
-"""Definition of cycles with CYCL DEF, their calls (CYCL CALL, M99, M89), and patterns (220, 221).
+"""Definition of cycles with CYCL DEF, and their calls by CYCL CALL, M99, M89 and patterns.
 
-Cycles numbered 200 or higher read their Q parameters when they are called, so that later assignments have
-an effect.
+Patterns are the cycles 220 and 221. Cycles numbered 200 or higher read their Q parameters when they are
+called, so that later assignments have an effect.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ _DefinitionNode = CycleDefinition | CycleLine | PatternDefinition | ContourDefin
 
 
 class ActiveCycle:
-    """The cycle of the last CYCL DEF, with its calls by CYCL CALL, M99 and M89."""
+    """The cycle of the last CYCL DEF, which CYCL CALL, M99 and M89 call."""
 
     def __init__(self, state: State) -> None:
         self._state = state
@@ -236,13 +236,13 @@ class ActiveCycle:
         yield from _MACHINING[self._number](tool)
 
     def _check_contours(self, contours: ContourSequence, column: int) -> None:
-        """Raise ProgramError if no contour is defined."""
+        """Raise ProgramError if the contour of a contour cycle is not defined."""
         text = "No contour is defined for cycle {number}."
         hint = "List the contour labels in cycle 14 before this block."
         self._state.check_condition(contours, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _check_lines(self, column: int) -> None:
-        """Raise ProgramError if a line is missing in the definition of a cycle numbered below 200."""
+        """Raise ProgramError if the definition of a cycle numbered below 200 is incomplete."""
         number = self._number
         missing = next(
             (part for part in range(1, LAST_LINE_NUMBERS[number] + 1) if part not in self._lines), None
@@ -295,7 +295,7 @@ class ActiveCycle:
         return angle
 
     def _name_contours(self, node: CycleLine) -> None:
-        """Add the contour labels of one line of cycle 14.
+        """Add the contour labels that one line of cycle 14 lists.
 
         Raises ProgramError if the line has no label, or if the cycle has more than 128 labels.
         """

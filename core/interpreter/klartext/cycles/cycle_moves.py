@@ -1,4 +1,4 @@
-"""Common elements of cycles: parameters, moves, rings, dwells and spindle commands."""
+"""Common elements of cycles: parameters, moves, closed tool paths, dwells and spindle commands."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def make_orientation_block(state: State, angle_deg: float) -> Block:
 
 
 class CycleTool:
-    """The tool in a cycle, with positions in program coordinates in mm.
+    """The tool while a cycle is executed, with positions in program coordinates in mm.
 
     ``value`` is a function that returns the programmed value of a cycle parameter, given its Q number.
-    ``column`` is the column of the block at which the cycle is called.
+    ``column`` is the column of the cycle call in its block.
     """
 
     def __init__(self, state: State, number: int, value: Callable[[int], float | None], column: int) -> None:
@@ -61,7 +61,7 @@ class CycleTool:
         self._told_as: CycleParameters = {}
 
     def copy_with_parameters(self, parameters: CycleParameters) -> CycleTool:
-        """Return a copy of the tool for another cycle with other parameters.
+        """Return a copy of the tool for another cycle, with parameters derived from this cycle.
 
         Each parameter is either the number of a parameter of this cycle or a fixed value. Fixed lengths are
         in the program's unit. Parameters that are not listed are undefined.
@@ -110,7 +110,7 @@ class CycleTool:
         return self.read_value(q) * self._state.mm_per_unit
 
     def read_feed(self, q: int) -> float | None:
-        """Return a feed as programmed, or None for a rapid."""
+        """Return a feed parameter as programmed, or None if it specifies a rapid."""
         found = self.read_value(q)
         if found == TOOL_FEED_VALUE and self._state.tool_feed is not None:
             return convert_to_feed_per_minute(
@@ -161,7 +161,7 @@ class CycleTool:
         return None if found is None else found / self._state.transformation.scale_factor
 
     def log_note(self, text: str) -> None:
-        """Log a note that this cycle works differently on this control. The note is logged only once."""
+        """Log once that this cycle works differently on this control."""
         self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
@@ -232,9 +232,9 @@ class CycleTool:
         self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
     def warn_about_unknown_orientation(self) -> None:
-        """Log a warning that the direction of the cutting edge is unknown.
+        """Log a warning that the direction of the cutting edge is unknown in this cycle.
 
-        The spindle cannot be oriented on this machine.
+        The reason is that the spindle of this machine cannot be oriented.
         """
         text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
@@ -247,13 +247,16 @@ class CycleTool:
         return self.move_straight(self.xy_position, z, feed)
 
     def move_above(self, position: Point, clearance_z_mm: float) -> Iterator[Block]:
-        """Yield a rapid over a position at or above ``clearance_z_mm``, and a rapid down to this height."""
+        """Yield a rapid to a point above ``position``, and a rapid down to ``clearance_z_mm``.
+
+        The first rapid is at ``clearance_z_mm`` or higher.
+        """
         yield self.move_to_z(max(clearance_z_mm, self.z_position))
         yield self.move_straight(position)
         yield self.move_to_z(clearance_z_mm)
 
     def make_tap_block(self, z: float, lead_mm: float, *, is_in_hole: bool = False) -> Block:
-        """Return a move into or out of a thread at ``lead_mm`` mm/rev, without feed override.
+        """Return a move into or out of a tapped hole at ``lead_mm`` mm/rev, without feed override.
 
         Raises ProgramError if Z cannot move fast enough.
         """
@@ -327,7 +330,7 @@ class CycleTool:
         return [self.run_spindle(rpm) if rpm else self.stop_spindle()]
 
     def switch_coolant(self, q: int) -> list[Block]:
-        """Return the block that switches the coolant.
+        """Return a list with the block that switches the coolant, or an empty list for no change.
 
         The parameter contains an M function number (8 or 9), or 0 for no change. Raises ProgramError for
         any other value.
@@ -378,7 +381,7 @@ _MIN_LENGTH_MM = 1e-6  # mm
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The position and rotation of a shape in the program's X and Y.
+    """The position and rotation of a pocket, slot or stud in the program's X and Y.
 
     ``center`` is the center of the shape. ``angle_deg`` is the angle of its first side in degrees.
     """
@@ -387,7 +390,10 @@ class Placement:
     angle_deg: float = 0.0
 
     def convert_to_program_point(self, u: float, v: float) -> Point:
-        """Return the program point for distances along the first and second side from the center, in mm."""
+        """Convert a point of the shape to program coordinates, in mm.
+
+        ``u`` and ``v`` are the distances from the center along the first and the second side.
+        """
         c, s = math.cos(math.radians(self.angle_deg)), math.sin(math.radians(self.angle_deg))
         return self.center[0] + c * u - s * v, self.center[1] + s * u + c * v
 
@@ -398,7 +404,7 @@ class Placement:
 
 @dataclass(frozen=True, slots=True)
 class RoundedRectangle:
-    """A rectangle with rounded corners, defined by its half sides and its corner radius in mm."""
+    """A rectangle with rounded corners, defined by half its side lengths and its corner radius in mm."""
 
     half_side_u_mm: float
     half_side_v_mm: float

@@ -38,8 +38,8 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 202 (boring).
 
     The tool bores, stops at the spindle angle Q336, moves off the wall (Q214) and retracts. The spindle
-    runs again after the retract. If the spindle cannot be oriented, it stops at any angle. If the tool must
-    move off the wall, the program then stops so that the operator can turn the edge away from the wall.
+    then restarts. If the spindle cannot be oriented, it stops at any angle. If the tool must move off the
+    wall, the program then stops so that the operator can rotate the cutting edge away from the wall.
     """
     surface, clear, bottom = read_heights(tool)
     rpm, off_wall_direction = tool.running_rpm, read_lateral_direction(tool, (0, 1, 2, 3, 4))
@@ -84,8 +84,8 @@ def read_lateral_direction(tool: CycleTool, directions: tuple[int, ...]) -> tupl
 def run_back_boring(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 204, which bores upward from below the part by the depth Q249.
 
-    The tool passes off-center through the hole with the spindle oriented to Q336. Q252 is the height of the
-    edge above the tip. Q250 is the thickness of the part, and Q251 is the off-center distance.
+    The tool passes through the hole off-center by Q251, with the spindle oriented to Q336. Q252 is the
+    height of the cutting edge above the tip. Q250 is the thickness of the part.
     """
     text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
     hint = "Bore from the other side of the part, or {how_oriented}."
@@ -133,7 +133,7 @@ def drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 203, which breaks the chip Q213 times between full retracts.
+    """Yield the blocks of cycle 203, which breaks chips Q213 times before each full retract.
 
     Q212 reduces each infeed, down to a minimum of Q205.
     """
@@ -163,10 +163,10 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 205, which is like cycle 203 but has a start point and stop distances.
+    """Yield the blocks of cycle 205: cycle 203 with a deepened start point and stop distances.
 
-    Drilling starts at Q379. After a full retract, the rapid stops Q258 to Q259 above the last depth. Q257
-    is the depth between chip breaks.
+    Drilling starts at Q379. After a full retract, the rapid stops above the last depth, at a distance from
+    Q258 to Q259. Q257 is the depth between chip breaks.
     """
     surface, clear, bottom = read_heights(tool)
     feed, begin = tool.read_feed(206), surface - max(tool.read_length_mm(379, 0.0), 0.0)
@@ -262,7 +262,7 @@ def _tapped(
 
 
 def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 208, which mills a helix with the diameter Q335.
+    """Yield the blocks of cycle 208, which mills a hole with the diameter Q335 on a helix.
 
     The pitch of the helix is Q334. A full circle at the bottom finishes the hole.
     """
@@ -294,9 +294,9 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_centering(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 240, which centers to a depth or to a diameter.
+    """Yield the blocks of cycle 240 (centering) to a depth or to a diameter.
 
-    The depth for a diameter is calculated with the point angle of the tool.
+    For a diameter, the depth is calculated from the point angle of the tool.
     """
     if tool.read_value(343, 0.0) == 1.0:
         surface = tool.read_length_mm(203, 0.0)

@@ -23,7 +23,7 @@ _WALLS: CycleParameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 3
 
 
 def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> MillingCycle:
-    """Return a cycle that executes another cycle with these parameters around the center Q216, Q217."""
+    """Return a cycle that executes another cycle at the center Q216, Q217 with these parameters."""
 
     def run(tool: CycleTool) -> Iterator[Block]:
         surface, clear, _ = read_heights(tool)
@@ -35,7 +35,10 @@ def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> 
 
 
 def _round_corners(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 212; if Q220 is 0, the corner radius is the tool radius."""
+    """Yield the blocks of cycle 212, a pocket whose corners are rounded with Q220.
+
+    If Q220 is 0, the corner radius is the tool radius.
+    """
     radius = tool.read_length_mm(220, 0.0) or tool.radius_mm
     yield from _make_centered_cycle(
         mill_rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.mm_per_unit}
@@ -43,7 +46,7 @@ def _round_corners(tool: CycleTool) -> Iterator[Block]:
 
 
 def _older_stud(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 213.
+    """Yield the blocks of cycle 213, a rectangular stud.
 
     The oversize of the blank is Q221, or the tool diameter if Q221 is missing.
     """

@@ -39,7 +39,7 @@ class OlderCycleData:
         return next(iter(self._lines.values())).cycle_number if self._lines else 0
 
     def read_number(self, line_number: int, axis: str = "") -> float:
-        """Return the first number of a line, or the number of its axis word if ``axis`` is given.
+        """Return the first number of a definition line, or the number of its word for ``axis``.
 
         Raises ProgramError if the number is missing.
         """
@@ -60,7 +60,7 @@ class OlderCycleData:
         return value(self._state, word.value.as_formula)
 
     def read_length_mm(self, line_number: int, axis: str = "") -> float:
-        """Return the number of a line or of an axis word, converted to mm."""
+        """Return the first number or an axis word of a definition line, converted to mm."""
         return self.read_number(line_number, axis) * self._state.mm_per_unit
 
     def read_feed(self, line_number: int) -> float | None:
@@ -69,7 +69,7 @@ class OlderCycleData:
         return word_values.evaluate_feed(self._state, line.feed if line else None, self._column)
 
     def read_cutting_feed(self, line_number: int) -> float:
-        """Return the feed of a line per minute, or the active feed if the line has no F.
+        """Return the cutting feed of a definition line per minute, or the active feed without an F word.
 
         Raises ProgramError for a rapid, or if there is no valid feed.
         """
@@ -85,7 +85,7 @@ class OlderCycleData:
         return -1.0 if line is not None and line.rotation_direction == "-" else 1.0
 
     def has_axis_word(self, line_number: int, axis: str) -> bool:
-        """Return whether a line has a word for this axis."""
+        """Return whether a definition line has a word for this axis."""
         return line_number in self._lines and any(
             word.axis == axis for word in self._lines[line_number].words
         )
@@ -132,7 +132,10 @@ def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _slot(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 3, which mills levels along the first side and then around the full width."""
+    """Yield the blocks of cycle 3, a slot milled level by level.
+
+    On each level, the tool mills along the first side and then around the full width.
+    """
     first, second = _sides(data, 4), _sides(data, 5)
     (x, y), clear = tool.xy_position, tool.z_position
     end = x + first[0], y + first[1]
@@ -168,7 +171,7 @@ def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: f
 
 
 def _pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 4, which mills rectangles from the center outward on each level."""
+    """Yield the blocks of cycle 4, a pocket milled in rectangles from the center out on each level."""
     (x, y), clear = tool.xy_position, tool.z_position
     half = (
         abs(data.read_length_mm(4, "X")) / 2.0 - tool.radius_mm,
@@ -198,7 +201,7 @@ def _pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _circular_pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 5, which mills circles from the center outward on each level."""
+    """Yield the blocks of cycle 5, a pocket milled in circles from the center out on each level."""
     (x, y), clear = tool.xy_position, tool.z_position
     radius = abs(data.read_length_mm(4, "R" if data.has_axis_word(4, "R") else "")) - tool.radius_mm
     tool.check_condition(

@@ -41,7 +41,7 @@ _CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
 
 class _MillingParameters:
-    """The parameters of a milling cycle."""
+    """The parameters of a pocket, slot or stud cycle."""
 
     def __init__(self, tool: CycleTool) -> None:
         self.tool = tool
@@ -99,7 +99,8 @@ class _MillingParameters:
 def mill_rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 251, which mills a rectangular pocket.
 
-    The sides are Q218 and Q219, the corner radius is Q220, the rotation is Q224, and the position is Q367.
+    The side lengths are Q218 and Q219, and the corner radius is Q220. Q224 is the rotation, and Q367 is the
+    position of the pocket relative to the tool.
     """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
@@ -116,7 +117,8 @@ def mill_circular_pocket(tool: CycleTool) -> Iterator[Block]:
 def mill_slot(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 253, which mills a slot.
 
-    The length is Q218, the width is Q219, the rotation is Q374, and the position is Q367.
+    The length is Q218, and the width is Q219. Q374 is the rotation, and Q367 is the position of the slot
+    relative to the tool.
     """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     tool.check_condition(
@@ -257,7 +259,7 @@ def _finish_walls(
 def _mill_ring(
     milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, quarter: float, feed: float
 ) -> Iterator[Block]:
-    """Yield the approach to a ring, one pass around the ring, and the departure.
+    """Yield the approach to a closed path, one round along the path, and the departure.
 
     A positive ``quarter`` approaches from the inside, and a negative ``quarter`` approaches from the
     outside.
@@ -309,7 +311,7 @@ def mill_circular_stud(tool: CycleTool) -> Iterator[Block]:
 def _stud(
     tool: CycleTool, placement: Placement, wall: RoundedRectangle, oversize_mm: float
 ) -> Iterator[Block]:
-    """Yield the rings that approach the stud on each level.
+    """Yield the closed paths around a stud on each level, from the blank inward.
 
     ``oversize_mm`` is the oversize of the blank in mm.
     """
@@ -424,7 +426,7 @@ def make_slot_outline(tool: CycleTool, center: Point, start_deg: float, sweep_de
 
 
 def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
-    """Return the center, start angle and sweep of a slot.
+    """Return the center, start angle and sweep of a circular slot.
 
     Q367 determines whether they come from the parameters or from the tool position.
     """

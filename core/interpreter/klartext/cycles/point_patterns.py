@@ -1,4 +1,4 @@
-"""Generation of the points of PATTERN DEF and of cycles 220 and 221, in the order of execution."""
+"""Generation of the points of PATTERN DEF and of cycles 220 and 221, in machining order."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _of_a_part(state: State, part: PatternPart, values: dict[str, float]) -> Ite
 
 
 def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator[tuple[float, float]]:
-    """Yield the points of a grid row by row, in alternating directions, or the border of a frame."""
+    """Yield the points of a grid row by row in alternating directions, or the points of a frame."""
     columns, rows = _count(state, part, values["NUMX"]), _count(state, part, values["NUMY"])
     turn = values.get("ROT", 0.0)
     u = math.radians(turn + values.get("ROTX", 0.0))

@@ -149,7 +149,7 @@ def execute_system_read(state: State, node: SystemRead) -> None:
 
 
 def execute_system_write(state: State, node: SystemWrite) -> None:
-    """Execute FN 17, which does not change the control.
+    """Execute FN 17, which writes a system value without changing the control.
 
     Values of the tool table that do not affect motion are stored, and FN 18 then returns them. A value that
     would change a path is an error, unless the table already contains this value. Raises ProgramError for
@@ -184,7 +184,7 @@ def execute_system_write(state: State, node: SystemWrite) -> None:
 def _cell(state: State, column: int, number: int, index: int) -> float:
     """Return a value of the tool table, with lengths in the program's unit.
 
-    Index 0 selects the active tool.
+    ``index`` is the tool number; 0 selects the active tool.
     """
     tool = index or state.modal.tool
     if (tool, number) in state.system_written_values:

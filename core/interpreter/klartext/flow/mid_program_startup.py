@@ -28,7 +28,7 @@ from core.message import Message
 
 
 class InterpreterParts(NamedTuple):
-    """The state of an interpreter; ``pending_line`` is a line that was read but not yet executed."""
+    """The parts of an interpreter's state; ``pending_line`` is a line that is read but not executed."""
 
     state: State
     path_runner: PathRunner
@@ -38,7 +38,7 @@ class InterpreterParts(NamedTuple):
 
 
 def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...]) -> Checkpoint:
-    """Return the state at the start of the next line, from which another pass can continue."""
+    """Return a checkpoint at the start of the next line, from which another pass can continue."""
     state = parts.state
     x, _, z = state.tip_in_plane
     return Checkpoint(

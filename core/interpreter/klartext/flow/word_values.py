@@ -1,4 +1,4 @@
-"""Evaluation of words: Q parameters, formulas, input ranges, and conversion of lengths to mm."""
+"""Evaluation of program words: Q parameters, formulas, permitted ranges, and lengths in mm."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ CONTROL_Q_PARAMETERS: dict[int, Callable[[State], float]] = {
 
 
 def held(state: State, kind: str, number: int) -> float | None:
-    """Return the value of a parameter, or None if it has no value."""
+    """Return the current value of a Q, QL or QR parameter, or None if it has no value."""
     if kind != "Q":
         return state.ql_and_qr_values.get((kind, number))
     kept = CONTROL_Q_PARAMETERS.get(number)
@@ -44,7 +44,7 @@ def held(state: State, kind: str, number: int) -> float | None:
 
 
 def read_parameter(state: State, kind: str, number: int, column: int) -> float:
-    """Return the value of a parameter. Raises MissingValueError if it has no value."""
+    """Return the value of a Q, QL or QR parameter. Raises MissingValueError if it has no value."""
     found = held(state, kind, number)
     if found is None:
         raise MissingValueError(state.line_number, column, (kind, number))
@@ -97,7 +97,7 @@ def value(state: State, formula: Formula) -> float:
 
 
 def set_parameter(state: State, kind: str, number: int, new_value: float) -> None:
-    """Set the value of a parameter."""
+    """Set the value of a Q, QL or QR parameter."""
     if kind == "Q":
         state.q_values[number] = new_value
     else:
@@ -155,10 +155,12 @@ def evaluate_length_mm(state: State, value: Value | None, description: str) -> f
 def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | None:
     """Return F per minute in mm, or in tenths of an inch in an INCH program, or None for a rapid.
 
-    Without an F word, the active feed is returned. Raises ProgramError if no feed is active, if FAUTO is
-    programmed but the last TOOL CALL has no F, or if the feed is not above 0. Also raises ProgramError if a
-    feed per revolution or per tooth cannot be converted because the spindle is stopped, the number of teeth
-    is unknown, or the result is too high.
+    Without an F word, the active feed is returned. Raises ProgramError in these cases:
+
+    - No feed is active, or the feed is not above 0.
+    - FAUTO is programmed, but the last TOOL CALL has no F.
+    - A feed per revolution or per tooth cannot be converted, because the spindle is stopped,
+      the number of teeth is unknown, or the result is too high.
     """
     found = read_programmed_feed(state, feed, column)
     return (
@@ -169,9 +171,9 @@ def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | N
 
 
 def read_programmed_feed(state: State, feed: FeedWord | None, column: int) -> tuple[float, str] | None:
-    """Return F as programmed and the base of the feed, or None for a rapid.
+    """Return F as programmed and its reference, or None for a rapid.
 
-    The base is U for a feed per revolution, Z for a feed per tooth, or an empty string for a feed per
+    The reference is U for a feed per revolution, Z for a feed per tooth, or an empty string for a feed per
     minute.
     """
     if feed is None:

@@ -105,8 +105,8 @@ def compute_rotary_feed(state: State, feed: float, targets: Mapping[str, float])
     """Return the feed in degrees/s of a move to ``targets`` in which only rotary axes move.
 
     F is normally in degrees/min. Under M116, F is in mm/min of the tip relative to the workpiece. It is
-    then converted with the distance of the tip from the rotary axes at the start. If the tip is on the axis
-    line, F is in degrees/min.
+    then converted with the distance of the tip from the rotary axes at the start of the move. If this
+    distance is 0, F is in degrees/min.
     """
     travel_deg_by_axis = {name: goal - state.rotary_angles[name] for name, goal in targets.items()}
     whole = math.hypot(*travel_deg_by_axis.values())

@@ -1,4 +1,4 @@
-"""Checks of a path function before its move: axes, compensation of LN, spindle and table."""
+"""Checks of a path function before its move: axes, compensation of LN, spindle and table angles."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def check_axes(state: State, node: PathFunction) -> None:
 
 
 def check_surface_normal(state: State, node: PathFunction, *, is_compensated: bool) -> None:
-    """Raise ProgramError for LN with a tool vector, with a tool delta or with radius compensation.
+    """Raise ProgramError for an LN block with a tool vector, tool delta or radius compensation.
 
     The deltas are DL, DR and DR2 of TOOL CALL and of the tool table.
     """
@@ -38,7 +38,7 @@ def check_surface_normal(state: State, node: PathFunction, *, is_compensated: bo
 
 
 def warn_before_cut(state: State, node: PathFunction) -> None:
-    """Warn once if a cut starts with the table not at the angles of the plane or the spindle stopped."""
+    """Warn once if a cut starts with the spindle stopped or the table not at the plane's angles."""
     if all(word.axis not in LINEAR_AXES for word in node.axes) and not node.words:
         return
     if not state.modal.spindle and "spindle" not in state.reported_findings:

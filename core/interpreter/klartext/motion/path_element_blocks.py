@@ -1,4 +1,7 @@
-"""Blocks of path elements: straight moves and arcs in machine coordinates, through the active plane."""
+"""Conversion of path elements to blocks: straight moves and arcs in machine coordinates.
+
+The points are converted through the active plane.
+"""
 
 from __future__ import annotations
 

@@ -102,9 +102,8 @@ def make_elements(
 ) -> Iterator[PathElement]:
     """Yield the elements of a path function that begins at ``start``.
 
-    A path function has one element, or several elements for more than one revolution.
-    ``previous_direction`` is the direction at the end of the previous element. Raises ProgramError if an
-    element is invalid.
+    There is one element, or several for an arc of more than one revolution. ``previous_direction`` is the
+    direction at the end of the previous element. Raises ProgramError if an element is invalid.
     """
     node = _with_direction(state, node)
     order = state.pole_plane if node.function_name in _POLAR_FORMS else XY_ORDER
@@ -126,7 +125,10 @@ _POLAR_FORMS = {"C", "CP"}
 
 
 def _with_direction(state: State, node: PathFunction) -> PathFunction:
-    """Return the path function with the last programmed DR if C, CR or CP has no DR."""
+    """Return the path function with a direction of rotation DR.
+
+    If a C, CR or CP block has no DR, the last programmed DR is used.
+    """
     if node.function_name not in {"C", "CR", "CP"}:
         return node
     state.rotation_direction = node.rotation_direction or state.rotation_direction
@@ -134,9 +136,9 @@ def _with_direction(state: State, node: PathFunction) -> PathFunction:
 
 
 def find_pole_plane(node: Pole, previous_plane: AxisOrder) -> AxisOrder:
-    """Return the plane that the axes of CC define.
+    """Return the plane of the pole, which the axes of CC define.
 
-    If CC names only one axis, the plane remains unchanged if it contains this axis.
+    If CC names only one axis, and the previous plane contains this axis, the plane remains unchanged.
     """
     named = {word.axis for word in node.axes}
     if len(named) < 2:
@@ -299,7 +301,7 @@ _ARCS = {"C": _arc_about_pole, "CR": _arc_by_radius, "CT": _tangential, "CTP": _
 
 
 def _turns_about_pole(state: State, node: PathFunction, made: PathElement) -> Iterator[PathElement]:
-    """Yield the elements of CP, which rotates about the pole by any angle, with a helix if Z also moves."""
+    """Yield the elements of CP, an arc of any angle about the pole, or a helix if Z also moves."""
     order, centre = made.axis_order, read_pole(state, node)
     start = convert_to_plane_order(order, made.start)
     radius = math.dist(start[:2], centre)

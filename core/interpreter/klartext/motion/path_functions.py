@@ -61,7 +61,7 @@ class _InsertedEvent:
 
 @dataclass(slots=True)
 class _Approach:
-    """An APPR block or a block that turns compensation on. The contour starts at the end of this block."""
+    """An APPR block, or a block that turns compensation on; its end is the start of the contour."""
 
     node: PathFunction
     element: PathElement
@@ -72,10 +72,10 @@ _CORNER_HINT = "Put RND or CHF between two contour elements."
 
 
 class PathRunner:
-    """Generator of the blocks of path functions.
+    """Generator of the blocks of path functions, which buffers elements where necessary.
 
-    The argument ``machine_datum`` of ``execute_move`` contains the machine positions to which M91 and M92
-    refer, or is None if the block has neither M91 nor M92.
+    The argument ``machine_datum`` of ``execute_move`` contains the machine positions to which M91 or M92
+    refers. It is None if the block has neither M91 nor M92.
     """
 
     def __init__(self, state: State) -> None:
@@ -89,9 +89,9 @@ class PathRunner:
 
     @property
     def blocking_reason(self) -> str:
-        """Return the reason why elements are buffered, so that no pass can start here.
+        """Return the reason why no other pass can start at the current line, or an empty string.
 
-        The result is an empty string if no elements are buffered.
+        No pass can start while path elements are buffered.
         """
         if self._side:
             return "radius compensation is active"
@@ -99,9 +99,9 @@ class PathRunner:
 
     @property
     def path_end(self) -> Vector:
-        """Return the end of the path in program coordinates, in mm.
+        """Return the end of the programmed path in program coordinates, in mm.
 
-        While compensation is active, it is the end of the contour.
+        While compensation is active, it is the end of the contour, not of the compensated path.
         """
         return self._state.programmed_position if self._end is None else self._end
 
@@ -116,7 +116,7 @@ class PathRunner:
         self._state.pole = first, second
 
     def add_corner(self, node: CornerBlock) -> None:
-        """Add RND or CHF to the buffered element.
+        """Add the corner of RND or CHF to the last element in the buffer.
 
         Raises ProgramError if no element is buffered, if the element does not move in the working plane, or
         if the previous block is also RND or CHF.
@@ -229,7 +229,10 @@ class PathRunner:
         yield from (replace(each, feed=_reduced_feed(state, each)) for each in made)
 
     def _add(self, elements: list[PathElement], *, hold: bool) -> Iterator[Block]:
-        """Append elements to the buffer, and yield all blocks unless an element must remain buffered."""
+        """Append elements to the buffer.
+
+        All buffered blocks are yielded, unless ``hold`` is True because a later element is needed.
+        """
         if self._corner is not None and elements:
             elements[0] = self._insert_corner(elements[0])
         self._waiting += elements
@@ -297,7 +300,7 @@ class PathRunner:
     # --- corners ------------------------------------------------------------------------------------------
 
     def _insert_corner(self, after: PathElement) -> PathElement:
-        """Insert the buffered corner before the element ``after``, and return ``after`` trimmed."""
+        """Insert the buffered RND or CHF before the element ``after``, and return this element shortened."""
         corner, self._corner = self._corner, None
         assert corner is not None
         at = next(i for i in reversed(range(len(self._waiting))) if isinstance(self._waiting[i], PathElement))
@@ -340,7 +343,7 @@ class PathRunner:
     # --- from elements to blocks --------------------------------------------------------------------------
 
     def _release(self) -> Iterator[Block]:
-        """Yield all buffered blocks, without compensation."""
+        """Yield the blocks of all buffered elements and events, without compensation."""
         self._check_no_corner()
         waiting, self._waiting, self._end = self._waiting, [], None
         for index, each in enumerate(waiting):
@@ -360,7 +363,7 @@ class PathRunner:
                 yield from self._enter(each, first, "", 0.0)
 
     def _check_no_corner(self) -> None:
-        """Raise ProgramError if the element after a buffered corner is still missing."""
+        """Raise ProgramError if a buffered RND or CHF still has no following element."""
         corner, self._corner = self._corner, None
         if corner is not None:
             text = Message(
@@ -474,7 +477,7 @@ class PathRunner:
 
 
 def _reduced_feed(state: State, each: PathElement) -> float | None:
-    """Return the feed of an element, which M103 reduces if the element leads downward."""
+    """Return the feed of an element, reduced by the factor of M103 if the element leads downward."""
     if state.plunging_feed_factor is None:
         return each.feed
     down = each.start[2] - each.end[2]
@@ -486,9 +489,9 @@ def _reduced_feed(state: State, each: PathElement) -> float | None:
 
 
 def _replace_points(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
-    """Return the element with its points in the working plane replaced by those of ``flat``.
+    """Return the element with its path in the working plane replaced by ``flat``.
 
-    The element runs from height ``z0`` to height ``z1``, in mm.
+    The element runs from the height ``z0`` to the height ``z1``, in mm.
     """
     arc = flat if isinstance(flat, Arc) else None
     return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)

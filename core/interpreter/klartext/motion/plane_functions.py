@@ -174,7 +174,10 @@ def _spatial(state: State, node: PlaneBlock) -> Matrix:
 
 
 def _relative(state: State, node: PlaneBlock) -> Matrix:
-    """Return the rotation of PLANE RELATIV about an axis of the active plane or of the workpiece system."""
+    """Return the rotation of PLANE RELATIV, about an axis of the active plane.
+
+    If no plane is active, it is about an axis of the workpiece system.
+    """
     (word,) = node.words
     return make_rotation(_ROTATION_AXES[word.axis], _angle(state, word))
 
@@ -304,9 +307,9 @@ def _demand_possible(state: State, node: PlaneBlock) -> None:
 
 
 def _check_tool_axis(state: State, node: PlaneBlock) -> None:
-    """Raise ProgramError if no TOOL CALL has defined a tool axis.
+    """Raise ProgramError if no TOOL CALL has defined a tool axis, which a tilted plane needs.
 
-    Call this function only for a tilted plane, which needs a tool axis.
+    Call this function only for a tilted plane.
     """
     if not state.tool_axis:
         text = "No TOOL CALL has defined a tool axis."
@@ -320,7 +323,10 @@ def _raised(state: State, up: float) -> Vector:
 
 
 def _pivot(state: State, distance: float) -> Vector:
-    """Return the pivot point of MOVE in the machine-parallel system with its origin at the workpiece zero."""
+    """Return the pivot point of a PLANE block with MOVE.
+
+    The point is in the machine-parallel system with its origin at the workpiece zero.
+    """
     place = state.kinematics.make_transform(state.rotary_angles, tool_length=state.tool_length_mm)
     return place.convert_to_frame_point(_raised(state, -distance))
 
@@ -336,10 +342,10 @@ def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
 def _swivel(
     state: State, goal: Mapping[str, float], feed: float | None, pivot: Vector | None, distance: float
 ) -> Block:
-    """Return the block of kind ``plane``.
+    """Return the block of kind ``plane``, which swivels the rotary axes to ``goal``.
 
-    Only the rotary axes move, unless ``pivot`` is given. The linear axes then keep the tool at the pivot
-    point.
+    Only the rotary axes move, unless ``pivot`` is given. The linear axes then follow, so that the tool does
+    not move relative to the pivot point.
     """
     rate = None if feed is None else feed / 60.0
     start = state.rotary_angles
@@ -351,7 +357,10 @@ def _swivel(
 
 
 def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
-    """Log a warning if another PLANE follows a datum shift in a tilted system, which is a common mistake."""
+    """Log a warning if a PLANE block follows a datum shift in a tilted plane.
+
+    The programmer usually did not intend this.
+    """
     if plane is None or state.active_plane is None or state.shift == ORIGIN_POINT:
         return
     text = "The datum was shifted in the tilted coordinate system that is defined on line {line}."
@@ -371,9 +380,10 @@ def set_tcpm_active(state: State, *, is_active: bool) -> None:
 
 
 def move_with_rotary_axes(state: State, element: PathElement) -> Block:
-    """Return a straight move of the tip on the workpiece, with a proportional move of the rotary axes.
+    """Return a straight move of the tip on the workpiece, during which rotary axes move as well.
 
-    The feed is in mm of the tip path, or in degrees if the tip does not move.
+    The rotary axes move in proportion to the path. The feed is in mm of the tip path, or in degrees if the
+    tip does not move.
     """
     first, last = (
         _parallel(state, state.transformation.convert_to_plane(at)) for at in (element.start, element.end)
@@ -406,7 +416,10 @@ def move_with_rotary_axes(state: State, element: PathElement) -> Block:
 
 
 def _parallel(state: State, point: Vector) -> Vector:
-    """Convert a point of the working plane to the machine-parallel system at the workpiece zero, in mm."""
+    """Convert a point of the working plane to the machine-parallel system, in mm.
+
+    The origin of this system is the workpiece zero.
+    """
     frame = (
         state.active_plane.frame if state.active_plane is not None else state.kinematics.workpiece_rotation
     )

@@ -36,9 +36,9 @@ _MAX_CCA = 360.0
 
 
 class CompensatedContour:
-    """Contour with the path of the tool center, offset to one side of the contour.
+    """A contour together with the tool path, which is offset to one side by the tool radius.
 
-    The offset is the tool radius in mm.
+    The tool radius is in mm.
     """
 
     def __init__(self, elements: list[PathElement], side: str, tool_radius_mm: float) -> None:
@@ -74,7 +74,7 @@ class CompensatedContour:
             raise make_klartext_error(at.line_number, at.column, RADIUS_TOO_LARGE, text, hint) from None
 
     def generate_path(self, element: PathElement, start: Vector) -> Iterator[PathElement]:
-        """Yield the tool path along one element from ``start``, including an outside corner at its end."""
+        """Yield the tool path along one element from ``start``, with the outside corner at its end."""
         mine = self._pieces[id(element)]
         z0, z1 = element.start[2], element.end[2]
         if not mine:
@@ -97,7 +97,7 @@ def _along(element: PathElement, flat: Element, z0: float, z1: float) -> PathEle
 
 @dataclass(frozen=True, slots=True)
 class ContourEntry:
-    """A block that leads from the tool position ``start_position`` to the first point of a contour.
+    """An approach from the tool position ``start_position`` to the first point of a contour.
 
     ``compensation_side`` is L, R or an empty string (none). Lengths are in mm in program coordinates.
     """
@@ -174,9 +174,10 @@ def plan_departure_path(
 def _arc_in(
     state: State, entry: ContourEntry, direction: Point, offset_point: Vector, *, tangent: bool
 ) -> Arc:
-    """Return the approach arc, which ends at the offset contour in the direction of the contour.
+    """Return the approach arc, which ends tangentially at the offset contour.
 
-    The arc has the angle CCA, or starts at the end of a line that is tangent to the arc.
+    The arc has the angle CCA. With ``tangent``, it starts instead where a line from the start is tangent to
+    it.
     """
     size, turn = _radius(state, entry)
     left = get_left_normal(direction)
@@ -193,12 +194,12 @@ def _arc_in(
 
 
 def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
-    """Return the radius of the arc of the tool center in mm, and the side of the arc center.
+    """Return the radius of the tool-center arc in mm, and the side on which the arc center is.
 
-    The side is 1 if the arc center is on the left, or -1 if it is on the right. With a positive R, the arc
-    is on the side of the tool. With a negative R, the arc is on the side of the workpiece. Without
-    compensation, the arc center is on the left for a positive R and on the right for a negative R. Raises
-    ProgramError if R is 0, or if a positive R is not larger than the tool radius.
+    The side is 1 for left or -1 for right. With a positive R, the arc is on the side of the tool, and with
+    a negative R, on the side of the workpiece. Without compensation, a positive R means left, and a
+    negative R means right. Raises ProgramError if R is 0, or if a positive R is not larger than the tool
+    radius.
     """
     word = entry.node.find_word("R")
     assert word is not None
@@ -221,7 +222,7 @@ def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
 def _tangent_point(
     state: State, entry: ContourEntry, center: Point, size: float, *, clockwise: bool
 ) -> Point:
-    """Return the point where a line from the start of the entry is tangent to the circle."""
+    """Return the point where a line from the start of the approach is tangent to the approach arc."""
     if math.dist(entry.start_position[:2], center) < size:
         text = "No path is possible for {form} because the tool is inside the arc of this move."
         hint = "Start farther from the contour, or reduce R."
@@ -232,7 +233,7 @@ def _tangent_point(
 
 
 def _offset_point(point: Vector, direction: Point, side: str, radius: float) -> Vector:
-    """Return the position of the tool center perpendicular to a point of the contour."""
+    """Return the tool center that is perpendicular to a contour point, at the distance ``radius``."""
     if not side:
         return point
     left = get_left_normal(direction)

@@ -1,4 +1,4 @@
-"""Target angles of rotary axes in a path function."""
+"""Calculation of the target angles of rotary axes in a path function."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Datum shift, mirroring, rotation and scaling (TRANS, cycles 7, 8, 10 and 11).
+"""Datum shift, mirroring, rotation and scaling (TRANS, or cycles 7, 8, 10 and 11).
 
-Mirroring, rotation and scaling act about the datum. They do not change a programmed datum shift.
+Mirroring, rotation and scaling have the datum as their center. They do not change a programmed datum shift.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ MAX_TABLE_ROW = 999_999.0
 
 
 def execute_datum_shift(state: State, node: DatumShift) -> None:
-    """Execute TRANS DATUM or cycle 7, which shifts the datum.
+    """Shift the datum as programmed by TRANS DATUM or cycle 7.
 
     The shift is in the workpiece system, or in the active plane if a plane is active.
     """

@@ -69,7 +69,10 @@ _ADVICE = {
 
 
 def check(state: State, codes: Sequence[MFunction]) -> None:
-    """Raise ProgramError for M functions that are not available, that conflict, or that M128 forbids."""
+    """Raise ProgramError for M functions that are not available or must not be combined.
+
+    Some M functions conflict in one block, and some are not permitted while M128 is active.
+    """
     limits = state.setup.limits
     known = (
         CODES_BEFORE_MOTION
@@ -228,7 +231,7 @@ def _output(state: State, name: str, on: bool) -> Block:
 
 
 def _retract(state: State, code: MFunction) -> Iterator[Block]:
-    """Yield the retract of M140 along the tool axis, at the programmed feed or at rapid."""
+    """Yield the retract that M140 programs along the tool axis, at feed rate or at rapid."""
     assert code.retract is not None
     up = compute_retract_length(state, code.retract)
     feed = word_values.evaluate_feed(state, code.feed, code.column) if code.feed is not None else None

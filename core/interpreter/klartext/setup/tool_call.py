@@ -27,8 +27,8 @@ from core.tool_edges import FIRST_NAMED_TOOL, NamedTool
 def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterator[Block]:
     """Yield the blocks of TOOL CALL.
 
-    The axes do not move, but the tip position changes with the new tool length. Raises ProgramError before
-    the state changes.
+    The axes do not move, but the tip position changes with the new tool length. If ProgramError is raised,
+    the state has not changed.
     """
     changes = node.tool is not None or node.length is not None or node.radius is not None
     if state.is_tcpm_active and changes:
@@ -165,9 +165,9 @@ def _name_of(state: State, tool: int) -> str:
 
 
 def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float:
-    """Return the spindle speed in rpm for a cutting speed such as S(VC = 120) in m/min at the tool radius.
+    """Return the spindle speed in rpm for a programmed cutting speed, such as S(VC = 120).
 
-    Raises ProgramError if the tool radius is unknown.
+    The cutting speed is in m/min at the tool radius. Raises ProgramError if the tool radius is unknown.
     """
     assert node.cutting_speed is not None
     speed = word_values.number(state, node.cutting_speed, "VC", word_values.MAX_SPEED_RPM, 0.0)

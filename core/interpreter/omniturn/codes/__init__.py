@@ -1,1 +1,1 @@
-"""Table of the OmniTurn codes, its rules, and the pages that are generated from it."""
+"""Table of the OmniTurn codes and their rules, and generators of pages from this table."""

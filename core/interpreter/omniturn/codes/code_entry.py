@@ -1,4 +1,4 @@
-"""Types of the code table: entries, word rules, meanings of F and S, limits, reject conditions."""
+"""Types of the code table: entries, word rules, meanings of F and S, limits and conditions."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class ActionKind(Enum):
 
 
 class FMeaning(Enum):
-    """Meaning of F on the line of a code."""
+    """Meaning of the F word on a line with a code, such as a feed or a time."""
 
     NONE = auto()  # F is not allowed
     FEED = auto()  # the feed from this line on
@@ -49,7 +49,7 @@ class FMeaning(Enum):
 
 
 class SMeaning(Enum):
-    """Meaning of S on the line of a code."""
+    """Meaning of the S word on a line with a code."""
 
     SPEED = auto()  # the spindle speed from this line on
     SPEED_LIMIT = auto()  # a limit of constant surface speed, rpm
@@ -57,7 +57,10 @@ class SMeaning(Enum):
 
 
 class WordLimit(Enum):
-    """A limit from the machine file or the modal state; the enum value is its text on the reference page."""
+    """Upper limit of a word, from the machine file or the modal state.
+
+    The value of a member is its text on the reference page.
+    """
 
     FEED = "the machine's maximum feed"
     ACTIVE_FEED = (
@@ -75,7 +78,10 @@ MAX_FEEDS_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.
 
 
 class RejectCondition(Enum):
-    """A condition that can reject a code; the enum value is its text on the reference page."""
+    """Condition under which the control rejects a code.
+
+    The value of a member is its text on the reference page.
+    """
 
     WITH_OTHER_WORDS = "the line contains other words"
     WITH_FEED = "the line contains F, G94 or G95 and is not the first line of the program"
@@ -105,7 +111,7 @@ class RejectCondition(Enum):
 
 
 class CodeEntryError(CodedError, ValueError):
-    """Error for a code table entry that contradicts itself."""
+    """An error raised if an entry of the code table contradicts itself."""
 
 
 class ErrorTemplate(NamedTuple):
@@ -124,12 +130,13 @@ class ErrorTemplate(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WordRule:
-    """Meaning of a word on the line of a code, and the range of its number.
+    """Meaning of a word on a line with a code, and the permitted range of its number.
 
-    The range is from ``minimum`` to ``maximum``. With ``excludes_minimum``, the number must exceed
-    ``minimum``. ``missing_error`` is the error if the word is missing, and ``invalid_error`` is the error
-    for an invalid number. ``too_large_error`` is a separate error for a number above the limit.
-    ``bare_value`` is the value of the letter without a number.
+    - The range is from ``minimum`` to ``maximum``, without ``minimum`` if ``excludes_minimum`` is True.
+    - ``missing_error`` is the error if the word is missing.
+    - ``invalid_error`` is the error for an invalid number.
+    - ``too_large_error`` is a separate error for a number above the limit.
+    - ``bare_value`` is the value of the letter without a number.
     """
 
     description: str
@@ -148,9 +155,9 @@ class WordRule:
     )
 
     def find_error(self, number: float, limit: float = inf) -> ErrorTemplate | None:
-        """Return the error for a number, or None if the number is valid.
+        """Return the error for the number of a word, or None if the number is valid.
 
-        ``limit`` is the current value of the limit if the maximum is a ``WordLimit``.
+        ``limit`` is the current upper limit if ``maximum`` is a ``WordLimit``.
         """
         too_small = number < self.minimum or (self.excludes_minimum and number == self.minimum)
         if too_small or (self.is_nonzero and number == 0) or (self.is_whole and number % 1):
@@ -172,9 +179,9 @@ class WordRule:
 
 
 class WordGroup(NamedTuple):
-    """A group of words with the error for a line that violates the rule of the group.
+    """A group of words of which a line needs at least one, or may have at most one.
 
-    A line must have at least one of these words, or may have at most one.
+    The group contains the error for a line that violates this rule.
     """
 
     letters: tuple[str, ...]
@@ -185,13 +192,16 @@ class WordGroup(NamedTuple):
 class CodeEntry:
     """Entry of one code in the code table.
 
-    ``example`` contains the program lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``; ``subroutine``
-    contains the lines after the program end. ``allowed_words`` are the permitted words other than G and M.
-    ``word_rules`` limit the numbers of these words, and ``required_words`` and ``exclusive_words`` specify
-    which words are required or exclude each other. ``reject_conditions`` lists the conditions that reject
-    the code, in the order of the checks. ``other_diagnostic_codes`` are the diagnostic codes of checks that
-    need geometry, other lines or the program structure. Raises CodeEntryError if words, rules and the
-    meaning of F contradict each other, or if a mode has no group.
+    - ``example``: program lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``.
+    - ``subroutine``: example lines after the program end.
+    - ``allowed_words``: permitted words other than G and M.
+    - ``word_rules``: ranges of the numbers of these words.
+    - ``required_words``, ``exclusive_words``: words that are required or exclude each other.
+    - ``reject_conditions``: conditions that reject the code, in the order of the checks.
+    - ``other_diagnostic_codes``: codes of checks that need geometry, other lines or the structure.
+
+    Raises CodeEntryError if words, rules and the meaning of F contradict each other, or if a mode has no
+    group.
     """
 
     name: str
@@ -235,7 +245,7 @@ class CodeEntry:
 
     @property
     def entry_errors(self) -> tuple[ErrorTemplate, ...]:
-        """Return the errors whose messages are in this entry."""
+        """Return the error templates that this entry defines."""
         together = (*self.exclusive_words, *((self.required_words,) if self.required_words else ()))
         of_words = (each for rule in self.word_rules.values() for each in rule.errors)
         return (*self.reject_conditions.values(), *of_words, *(each.refusal for each in together))

@@ -1,4 +1,4 @@
-"""Application of the code table's rules to a line: ranges of words, and conditions that reject a code.
+"""Checks of a line by the rules of the code table: word ranges and reject conditions.
 
 Messages and remedies are in the entries of ``code_table``. The functions that execute codes call these
 checks when they need a word.
@@ -29,7 +29,7 @@ _ROUNDING = 1 + 1e-9
 def refused(
     statement: Statement, code: CodeEntry, refusal: ErrorTemplate, at: Word | None = None, **values: object
 ) -> ProgramError:
-    """Return the error for an error template.
+    """Return the error for a code that an error template rejects.
 
     ``values`` contains the values of further placeholders.
     """
@@ -134,7 +134,7 @@ _LIMITS: dict[WordLimit, Callable[[State], float]] = {
 
 
 def check_word_groups(statement: Statement, code: CodeEntry) -> None:
-    """Raise ProgramError if a line has none of the required words, or two words that exclude each other."""
+    """Raise ProgramError if a line lacks all words of a required group or has exclusive words."""
     if code.required_words is not None and statement.words.keys().isdisjoint(code.required_words.letters):
         raise refused(statement, code, code.required_words.refusal)
     for letters, refusal in code.exclusive_words:
@@ -146,10 +146,10 @@ def check_word_groups(statement: Statement, code: CodeEntry) -> None:
 def check_conditions(
     state: State, statement: Statement, code: CodeEntry, *only: RejectCondition, word: Word | None = None
 ) -> None:
-    """Raise ProgramError for the first condition that rejects a code.
+    """Raise ProgramError for the first reject condition of a code that applies.
 
-    If ``only`` is not empty, only its conditions are checked. ``word`` is the location of the error if it
-    is not the code itself.
+    If ``only`` is not empty, only its conditions are checked. The error is located at ``word``, or at the
+    code if ``word`` is None.
     """
     for when, refusal in code.reject_conditions.items():
         if (not only or when in only) and _CONDITION_CHECKS[when](state, statement, code):

@@ -1,8 +1,9 @@
 """Table of all OmniTurn codes, with one entry for each code.
 
 An entry contains the form, words, meaning of F, group, limits and errors of a code. The entries are in
-``move_codes``, ``cycle_codes`` and ``flow_codes``. Codes without an entry do not exist. ``handler`` is the
-name of the function that executes the code, as ``folder.file:name`` in the package of this dialect.
+``move_codes``, ``cycle_codes`` and ``flow_codes``. Codes without an entry do not exist.
+
+``handler`` names the function that executes the code, as ``folder.file:name`` in this dialect's package.
 ``action_kind`` determines the order of the actions on a line. An invalid entry raises an error when the
 table is loaded, or fails ``tests/interpreter/test_code_table.py``. ``language_page`` generates
 ``docs/language.md`` from this table. The examples in the table are proved.

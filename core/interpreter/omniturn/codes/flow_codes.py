@@ -1,4 +1,4 @@
-"""Codes of program flow, machine functions and plane switching."""
+"""Codes of program flow, machine functions and coordinate transformation (plane switching)."""
 
 from __future__ import annotations
 

@@ -72,9 +72,9 @@ def _numbers() -> str:
 
 
 def _anchor(entry: CodeEntry, anchors: set[str]) -> str:
-    """Return the HTML anchor of a code, such as ``#g75``, for its first entry.
+    """Return the HTML anchor of a code, such as ``#g75``, or an empty string.
 
-    The result is an empty string for further entries of the same code.
+    Only the first entry of a code has an anchor.
     """
     name = re.sub(r"[^a-z0-9]", "", entry.name.lower())
     if not name or name in anchors:

@@ -1,4 +1,4 @@
-"""Generator of the OmniTurn code book from the code table."""
+"""Generator of the OmniTurn code book, which contains all codes of the code table by chapter."""
 
 from __future__ import annotations
 

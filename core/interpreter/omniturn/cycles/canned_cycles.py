@@ -1,4 +1,4 @@
-"""Common functions of all canned cycles: their checks, and the elementary blocks of their motion."""
+"""Common functions of all canned cycles: checks, and elementary blocks for their motion."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _block(state: State, statement: Statement, move: CycleMove) -> Block:
 
 
 def _text(state: State, move: CycleMove) -> str:
-    """Return the motion as a program line in the active mode and unit."""
+    """Return the motion as text of a program line, in the active mode and unit."""
     start, end = (state.x, state.z), (move.x, move.z)
     if move.center is not None:
         return format_move(state.modal, Arc(start, end, move.center, move.is_clockwise))

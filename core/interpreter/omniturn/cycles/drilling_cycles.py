@@ -86,7 +86,7 @@ def _depth(state: State, statement: Statement) -> float:
 
 
 def _retract(state: State, statement: Statement, first: float) -> float:
-    """Return the Z position of the retract, which is R, or Z of the start point without R."""
+    """Return the Z position of the retract, which is R if programmed, or else the start point."""
     r = round_to_resolution(state, statement, "R")
     if r is None:
         return state.z

@@ -173,7 +173,7 @@ class _Reader:
         return own.move(BlockKind.FEED, line.line, "", start, 0.0)
 
     def _shift(self, block: Block) -> Point:
-        """Return the shift from the frame of this block to the frame of the cycle.
+        """Return the shift from the frame of a contour block to the frame of the cycle line.
 
         The shift is in mm, with X as a radius.
         """
@@ -192,9 +192,8 @@ _SAME = 1e-6  # mm
 def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[Statement]) -> list[CycleMove]:
     """Return the motions of G75 or G78 along the contour in ``lines``.
 
-    The motions begin and end at the start point. Raises ProgramError if a word is missing or invalid, if
-    the contour is invalid, if the contour or the number of passes is too large, or if the contour cannot be
-    cut from the start point.
+    The motions begin and end at the start point. Raises ProgramError if a word or the contour is invalid,
+    if there are too many elements or passes, or if the contour cannot be cut from the start point.
     """
     number(state, statement, "P")
     cut = read_length_mm(state, statement, "I") if statement.one_shot_code == 75 else None
@@ -244,9 +243,9 @@ def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[State
 
 
 def _plunges_at_start(first: Element) -> bool:
-    """Return whether the contour becomes deeper at its first point.
+    """Return whether the contour leads deeper into the part at its first point.
 
-    ``first`` is the first point, as depth and length from the start point.
+    ``first`` is the first element, as depth and length from the start point.
     """
     (depth, length), (there, further) = first.start, first.end
     return there > depth + _SAME and abs(further - length) > _SAME
@@ -280,7 +279,10 @@ def _passes(
 
 
 def _make_view(state: State, statement: Statement, contour: list[Element]) -> ContourFrame:
-    """Return the frame of the contour. Raises ProgramError if the start point does not suit its ends."""
+    """Return the contour in the frame for roughing.
+
+    Raises ProgramError if the start point does not suit the ends of the contour.
+    """
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
@@ -336,7 +338,7 @@ def plan_box_cycle(state: State, statement: Statement) -> list[CycleMove]:
 
 
 def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
-    """Return X or Z of the box corner opposite the start point."""
+    """Return X or Z of the corner of the area that is opposite to the start point."""
     end = read_length_mm(state, statement, letter) + (offset if state.absolute else start)
     text = "The box has zero size along {letter} because its corner is at the start point."
     hint = "Correct {letter} or the start point."

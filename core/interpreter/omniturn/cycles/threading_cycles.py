@@ -52,9 +52,9 @@ class ThreadCycle:
 
     @property
     def retract_x(self) -> float:
-        """Return X of the return move, which is 3 I outside the start point.
+        """Return X of the return move, which is 3 I away from the part, as seen from the start point.
 
-        The taper is added if the far end is farther out than the start point.
+        The taper is added if the far end is farther from the part than the start point.
         """
         return self.x0 + self.x_outward_sign * (
             3 * self.first_infeed_mm + max(self.x_outward_sign * self.taper_mm, 0.0)
@@ -181,7 +181,10 @@ def _count(statement: Statement, depth: float, first_infeed: float, lead: float)
 
 
 def _read_radius_word(state: State, statement: Statement, letter: str) -> float | None:
-    """Return I or A in mm as a radius, or None if the word is missing. Under G72, the word is a diameter."""
+    """Return the I or A word in mm as a radius, or None if the word is missing.
+
+    Under G72, the word is programmed as a diameter.
+    """
     value = round_to_resolution(state, statement, letter)
     return None if value is None else value * state.mm_per_x_unit / state.mm_per_z_unit
 
@@ -212,7 +215,10 @@ def compute_pass_depths(thread: ThreadCycle) -> list[float]:
 
 
 def compute_start_z(thread: ThreadCycle, depth: float) -> float:
-    """Return the start Z of a pass at this depth, shifted along the flank in the cutting direction, in mm."""
+    """Return the start Z in mm of a threading pass at this depth.
+
+    The start is shifted in the cutting direction, along the flank of the thread.
+    """
     return thread.z0 + thread.z_cutting_sign * depth * tan(thread.flank_angle_rad)
 
 
@@ -267,9 +273,9 @@ class _ThreadBlockGenerator:
 
 
 def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
-    """Log a warning for a thread with many passes or with a short run-up.
+    """Log a warning for a thread with too many passes or too short a run-up.
 
-    Many passes are more than ``PASS_COUNT_WARNING_LIMIT``. The run-up is short if Z cannot reach the
+    The limit of passes is ``PASS_COUNT_WARNING_LIMIT``. The run-up is too short if Z cannot reach the
     threading feed within it.
     """
     if thread.pass_count > PASS_COUNT_WARNING_LIMIT:

@@ -1,4 +1,4 @@
-"""Execution of both branches of conditional calls (M95, M97).
+"""Execution of both branches of conditional calls (M95, M97), to check them in one run.
 
 A copy of the pass executes the other branch.
 """
@@ -26,22 +26,22 @@ from core.interpreter.shared.job_setup import Setup
 
 
 class BranchRecord(Protocol):
-    """Protocol for the record of the branches that passes have executed."""
+    """Protocol of a record of the branches that interpreter passes have executed."""
 
     def is_known(self, branch_pass: BranchingPass) -> bool:
-        """Return whether another pass was in the same state.
+        """Return whether another pass was already in the same state as this pass.
 
-        If so, the remaining program is already checked.
+        If so, the rest of the program has already been checked.
         """
         ...
 
     def record_branch(self, branch_pass: BranchingPass, statement: Statement, is_call_made: bool) -> None:
-        """Record that a pass reads an input, and whether it then makes the call (``is_call_made``)."""
+        """Record that a pass reads an input, and whether the pass then makes the call."""
         ...
 
 
 class BranchingPass(Interpreter):
-    """A pass that can be copied at a conditional call, so that the copy executes the other branch.
+    """An interpreter pass that can be copied at a conditional call to execute the other branch.
 
     ``copy_for_other_branch`` returns the copy. An input is assumed not to change until the next action.
     ``has_input_change`` is True if a branch contradicts this assumption.
@@ -108,9 +108,9 @@ class BranchingPass(Interpreter):
         return twin
 
     def _known_input(self, statement: Statement) -> bool | None:
-        """Return whether the input of the call is closed.
+        """Return whether the input of the conditional call is closed, or None if this is unknown.
 
-        Returns None if the input has not been read since the last action.
+        It is unknown if the input has not been read since the last action.
         """
         if self._held_to != self._state.blocks:
             self._held = {}

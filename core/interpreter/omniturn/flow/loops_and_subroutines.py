@@ -138,7 +138,7 @@ class _Finder:
         self._inside = None
 
     def _closed_by_job_end(self, number: int) -> bool:
-        """Return whether M30 or M02 ends the subroutine, so that M99 is not required."""
+        """Return whether M30 or M02, instead of M99, ends the subroutine with this number."""
         if self._job_end is None:
             return False
         self.structure.subroutine_ends.setdefault(number, self._job_end)
@@ -204,12 +204,18 @@ class _Finder:
 
 
 def _ends_program(statement: Statement) -> bool:
-    """Return whether the line ends the program, or is unreadable but was probably intended to end it."""
+    """Return whether the line ends the program.
+
+    An unreadable line also ends the program if it was probably intended to.
+    """
     return statement.ends_program or _is_probably(statement, "M0*(?:30|2)(?![0-9])")
 
 
 def _is_probably(statement: Statement, word: str) -> bool:
-    """Return whether an unreadable line was probably intended to contain the word that matches ``word``."""
+    """Return whether an unreadable line was probably intended to contain a certain word.
+
+    ``word`` is the pattern of this word.
+    """
     return statement.flow_code == UNREADABLE_FLOW and re.search(word, statement.text.upper()) is not None
 
 
@@ -246,7 +252,7 @@ def get_subroutine_number(statement: Statement) -> int:
 
 
 def get_input_terminal(statement: Statement) -> str:
-    """Return the terminal of the input that a conditional call reads."""
+    """Return the name of the input terminal that a conditional call reads."""
     return FLOW_CODES[statement.flow_code].required_input[0] or f"{statement.get_value('I'):.0f}"
 
 
@@ -256,12 +262,12 @@ def is_call_made(statement: Statement, read_input: Callable[[str], bool]) -> boo
 
 
 def is_called_when_closed(statement: Statement) -> bool:
-    """Return whether a conditional call is made when its input is closed, rather than open."""
+    """Return whether a conditional call is made if its input is closed (True) or open (False)."""
     return statement.flow_code == "M95" or statement.get_value("C") == 1
 
 
 class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
-    """The position in a program, with an optional line at which execution stops."""
+    """The current position in a program, with an optional line at which execution stops."""
 
     def __init__(self, structure: ProgramStructure) -> None:
         super().__init__(FlowFrame(structure, 0, structure.main_end_index))
@@ -280,7 +286,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         self.end_index = self.next_index
 
     def stop_before(self, line: int) -> None:
-        """Stop before this line (from 1) when execution next reaches it, in any loop pass or call."""
+        """Stop execution when it next reaches this line (from 1), in any loop pass or call."""
         self._stop = line - 1
         self._update_end()
 
@@ -295,7 +301,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
 
     @property
     def position(self) -> FlowPosition:
-        """Return the position with all active loops and calls, from the outermost to the innermost.
+        """Return the position, including all active loops and calls from the outermost to the innermost.
 
         Programs at equal positions continue identically.
         """
@@ -317,12 +323,15 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         self.next_index = line - 1
 
     def _update_end(self) -> None:
-        """Set the end of execution to the end of the frame or the stop line, whichever comes first."""
+        """Set the end of execution to the end of the call frame or to the stop line, if it is earlier."""
         stop, end = self._stop, self.active_frame.end_index
         self.end_index = stop if stop is not None and self.next_index <= stop < end else end
 
     def get_remaining_repeats(self, start: int) -> int:
-        """Return the remaining repeats of the innermost loop, or 0 if its LS is not at index ``start``."""
+        """Return how often the innermost loop is still to be repeated.
+
+        The result is 0 if the LS of this loop is not at the index ``start``.
+        """
         left = self.active_frame.remaining_repeats
         return left[start] if left and next(reversed(left)) == start else 0
 
@@ -368,7 +377,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
     def skip_contour(self, statement: Statement) -> range | None:
         """Skip the contour of a G75 or G78, and return the indices of its lines.
 
-        Returns None if the contour is missing. This error was reported when the program was parsed.
+        Returns None if the contour is missing, because this error was already reported during parsing.
         """
         structure = self.active_frame.routine
         if "P" not in statement.words:

@@ -1,4 +1,4 @@
-"""Size of a program, which is calculated before execution to reject programs with excessive loops."""
+"""Calculation of the size of a program, to reject excessive loops before execution."""
 
 from __future__ import annotations
 
@@ -134,7 +134,10 @@ def _sum(a: ProgramSize, b: ProgramSize) -> ProgramSize:
 
 
 def estimate_block_count(statement: Statement) -> int:
-    """Return the maximum number of elementary blocks of a line, or the minimum number for a cycle."""
+    """Return an estimate of the elementary blocks of a line.
+
+    It is the maximum number, or the minimum number for a cycle.
+    """
     if statement.flow_code:
         return (
             1
@@ -158,7 +161,7 @@ def estimate_block_count(statement: Statement) -> int:
 
 
 def count_corner_blocks(statement: Statement) -> int:
-    """Return the number of blocks that the corner words C and R add before the next move.
+    """Return the number of blocks that C and R as corner words insert before the next move.
 
     C is counted even if it is an axis word.
     """

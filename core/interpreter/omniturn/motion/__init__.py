@@ -1,1 +1,1 @@
-"""Moves of OmniTurn: lines, arcs, corners, nose compensation, the C axis and plane switching."""
+"""Moves of OmniTurn: lines, arcs, corners, nose compensation, C axis and plane switching."""

@@ -98,7 +98,7 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
 
 
 def _center_by_words(state: State, statement: Statement, start: Point) -> Point:
-    """Return the center from I and K.
+    """Return the center of an arc that is programmed with I and K.
 
     I and K are coordinates under G90 with G73, and distances from the start point otherwise.
     """

@@ -40,7 +40,7 @@ def uses_c_speed(state: State, statement: Statement) -> bool:
 def lock_spindle(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the blocks of M19, M89 or G89, which stop the spindle and lock it as the C axis.
 
-    M19 also turns C to 0.
+    M19 also rotates C to 0.
     """
     word = statement.m_word if statement.m_number in {19, 89} else statement.code_word
     code = (
@@ -62,9 +62,9 @@ def lock_spindle(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def _entry(state: State, statement: Statement) -> CodeEntry:
-    """Return the code entry of the word that moves C.
+    """Return the code table entry for the word of a line that moves C.
 
-    C alone acts like CA under G90 and like CI under G91.
+    The letter C alone acts like CA under G90 and like CI under G91.
     """
     return LETTER_ENTRIES[
         "CI" if "CI" in statement.words or ("C" in statement.words and not state.absolute) else "CA"
@@ -72,19 +72,18 @@ def _entry(state: State, statement: Statement) -> CodeEntry:
 
 
 def read_c_rpm(state: State, statement: Statement, code: CodeEntry) -> float | None:
-    """Return S of the line in rpm without its sign, or None if the line has no S.
+    """Return S of the line as unsigned rpm, or None if the line has no S.
 
-    Raises ProgramError if S is 0 or exceeds the limit of C.
+    Raises ProgramError if S is 0 or exceeds the limit of the C axis.
     """
     speed = statement.get_value("S")
     return None if speed is None else check_value(state, statement, "S", abs(speed), code)
 
 
 def _turn_to_zero(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the rotation of C to 0.
+    """Yield the rotation of C to 0, where C starts counting again.
 
-    The sign of S determines the direction. Without S, C moves the shorter distance. C then counts from 0
-    again.
+    The sign of S determines the direction. Without S, C moves in the shorter direction.
     """
     at = state.c + state.modal.offset_c
     over = at % _TURN

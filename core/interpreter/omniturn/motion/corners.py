@@ -1,4 +1,4 @@
-"""Corners with C and R, and the stages that convert the moves of lines to blocks.
+"""Corners with C and R, and the stages between the moves of lines and the final blocks.
 
 The first stage inserts corners, and the second stage applies nose compensation.
 """
@@ -43,7 +43,7 @@ Each action ends the program, changes the reference point, or waits until all ea
 
 
 def read_corner(state: State, statement: Statement) -> None:
-    """Store the corner of a line after its straight move.
+    """Store the corner that a line programs at the end of its straight move.
 
     A C word is a corner unless C is an axis. Raises ProgramError for an invalid size, or if the line has
     both C and R as corners.
@@ -66,9 +66,9 @@ def read_corner_size_mm(state: State, statement: Statement, word: Word) -> float
 
 
 def check_radius_word(state: State, statement: Statement) -> None:
-    """Raise ProgramError if a line without a straight move of only X and Z has an R word.
+    """Raise ProgramError if a line has an R word that would be a corner but cannot be one.
 
-    Call this function only for such a line.
+    Call this function only for a line without a straight move of only X and Z.
     """
     word = statement.words.get("R")
     if word is not None:
@@ -86,10 +86,10 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
         self._log = log
 
     def check_line(self, statement: Statement) -> None:
-        """Check that a line may follow a move with a corner.
+        """Raise ProgramError if a line must not follow a move with a corner.
 
-        Raises ProgramError if a corner needs a following move and the line has a one-shot code that is not
-        allowed after a corner.
+        This is the case if the corner needs a following move, and the line has a one-shot code that is not
+        allowed there.
         """
         held = self._held
         if (
@@ -102,10 +102,7 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
             raise _refused(held, "corner-next", text)
 
     def check_program_end(self) -> None:
-        """Check the corner state at the end of the program.
-
-        Raises ProgramError if a corner has no following move.
-        """
+        """Raise ProgramError if the program ends before the second move of a corner."""
         held, self._held = self._held, None
         if held is not None:
             raise _refused(held, "corner-next", "no move follows the corner")
@@ -209,10 +206,10 @@ def _refused(held: _BufferedMove, code: str, why: str) -> ProgramError:
 
 
 class ContourBuffer:
-    """Buffer of blocks while a corner needs its second move or nose compensation is active.
+    """Buffer of blocks that later lines may still change, because of a corner or nose compensation.
 
-    The buffer contains at most one corner and the moves that compensation needs to look ahead. The returned
-    blocks are numbered consecutively.
+    It contains at most one corner, and the moves that compensation needs to look ahead. The returned blocks
+    are numbered consecutively.
     """
 
     def __init__(self, state: State) -> None:

@@ -106,10 +106,11 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
 
 
 def set_plain_feed(state: State, f: float) -> bool:
-    """Set the feed of a plain move that changes only the cutting feed, and return whether it was set.
+    """Set the feed of a move that changes only the cutting feed, and return whether it was set.
 
-    Returns False without a change if the full statement is needed. This is the case after a rapid, within a
-    contour, during compensation, under G35 and G36, and for a feed that causes an error or a warning.
+    The result is False, and nothing is changed, if the line must be executed as a full statement. This is
+    the case after a rapid, within a contour, during compensation, under G35 and G36, and for a feed that
+    causes an error or a warning.
     """
     feed = state.convert_feed(f)
     if state.modal.coarse or state.contour.is_buffering or not _is_usual(state, feed):
@@ -121,7 +122,7 @@ def set_plain_feed(state: State, f: float) -> bool:
 
 
 def _is_usual(state: State, feed: float) -> bool:
-    """Return whether a cutting feed (mm/s or mm/rev) does not cause an error or a warning."""
+    """Return whether a cutting feed in mm/s or mm/rev causes neither an error nor a warning."""
     per_rev = state.modal.per_rev
     most = get_limit(state, WordLimit.ACTIVE_FEED)
     least, most = (_MIN_FEED, min(most, HIGH_FEED_MM_PER_REV)) if per_rev else (_MIN_FEED / 60, most)
@@ -129,7 +130,7 @@ def _is_usual(state: State, feed: float) -> bool:
 
 
 def is_feed_accepted(state: State, feed: float) -> bool:
-    """Return whether a move at another feed passes all checks except the length check.
+    """Return whether a move at another feed would pass all checks except that of its length.
 
     The feed is in mm/s or mm/rev. The function requires ``state.fast``, which means that a move at the
     active feed has passed the checks.
@@ -177,7 +178,7 @@ def warn_about_crash_feed(
 ) -> None:
     """Log a warning for a G95 feed above 0.05 in/rev, such as F003 instead of F.003.
 
-    The warning is omitted if the spindle reverses soon, as in tapping.
+    The warning is omitted if the spindle soon reverses, because the program is then tapping.
     """
     modal, word = state.modal, statement.words.get("F")
     if word is None or not statement.is_f_feed or not modal.per_rev or modal.coarse or modal.feed is None:
@@ -341,7 +342,7 @@ def _check_position(state: State, statement: Statement, code: int) -> None:
 def _check_preset(
     state: State, statement: Statement, code: int, following_lines: Sequence[ExecutableLine]
 ) -> None:
-    """Raise ProgramError unless the next line is a G92 with the current coordinates."""
+    """Raise ProgramError unless the next line is a G92 that programs the current coordinates."""
     line = next((step for step in following_lines if step is not None), None)
     hint = "Write G92 with the current X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot_code != 92 or not {"X", "Z"}.issubset(line.words):

@@ -1,4 +1,4 @@
-"""Series of straight moves from consecutive lines or from the passes of a loop.
+"""Conversion of consecutive lines, or of the passes of a loop, to a series of straight moves.
 
 All rules are in other modules. ``is_already_active`` determines which words do not change anything. The end
 points agree with those of ``make_straight_move``. The functions for single lines log the warnings.
@@ -172,7 +172,7 @@ MIN_SERIES_LENGTH = 48
 
 
 class SeriesReader:
-    """Reader that combines the next moves of a program into one series."""
+    """Reader that combines the next straight moves of a program into one series."""
 
     def __init__(self, state: State, program: Program, flow: Flow) -> None:
         self._state, self._flow = state, flow
@@ -183,10 +183,10 @@ class SeriesReader:
     def read_next_series(
         self, max_line_count: int, max_block_count: int
     ) -> tuple[StraightMoveSeries, int] | None:
-        """Return the next moves and the number of executed lines, or None if a series is not worthwhile.
+        """Return the next moves as a series, and the number of executed lines.
 
-        ``max_line_count`` and ``max_block_count`` are the remaining lines and blocks up to the limits.
-        Requires ``state.fast``.
+        The result is None if there are too few moves for a series. ``max_line_count`` and
+        ``max_block_count`` are the remaining lines and blocks up to the limits. Requires ``state.fast``.
         """
         at = self._flow.next_index
         if at in self._without:
@@ -202,7 +202,7 @@ class SeriesReader:
     def _consecutive(
         self, start_index: int, lines: int, blocks: int
     ) -> tuple[StraightMoveSeries, int] | None:
-        """Return the series of consecutive lines, or None if a series is not worthwhile."""
+        """Return the series of consecutive lines and its line count, or None if it would be too short."""
         end = min(
             self._ready.find_next_statement(start_index),
             self._flow.end_index,
@@ -224,7 +224,7 @@ class SeriesReader:
         return make_series(self._state, part.select_lines(slice(0, count)), numbers, self._texts), count
 
     def _passes(self, start_index: int, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
-        """Return the series of all passes of a loop except the last pass, or None.
+        """Return the series of all passes of a loop except the last, or None if not possible.
 
         The passes must be within the limits ``lines`` and ``blocks``.
         """

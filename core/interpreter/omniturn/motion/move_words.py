@@ -19,9 +19,10 @@ _HALF_TURN = pi - 1e-3  # rad; R does not define a longer arc reliably
 
 
 def format_move(modal: ModalState, element: Element, required_letters: str = "") -> str:
-    """Return an element in the program frame as words with coordinates, or with distances under G91.
+    """Return the program words of an element: coordinates, or distances under G91.
 
-    The words of ``required_letters`` are included even if their axes do not move.
+    The element is in the program frame. The words of ``required_letters`` are included even if their axes
+    do not move.
     """
     start, end = element.start, element.end
     scale = units.get_mm_per_unit(is_metric=modal.metric)
@@ -64,7 +65,7 @@ def replace_move_words(block: Block, element: Element) -> str:
 
 
 def _without_secondary_offset(block: Block, element: Element, words: dict[str, float]) -> Element:
-    """Return the element without the secondary offset that D adds to X and Z on its line."""
+    """Return the element without the secondary offset that D adds on the line of this block."""
     scale = units.get_mm_per_unit(is_metric=block.modal.metric)
     scale_x = scale / 2 if block.modal.diameter else scale
     x = block.x - block.x0 - words.get("X", 0.0) * scale_x
@@ -88,7 +89,10 @@ def number(value: float, *, is_metric: bool) -> str:
 
 
 class RewordedMoveFactory(AdjustedMoveFactory):
-    """Factory of adjusted moves whose text contains the new coordinates."""
+    """Factory of moves that were changed by a corner or compensation.
+
+    The text of each move contains its new coordinates.
+    """
 
     def __init__(self, max_rpm: float) -> None:
         self._max_rpm = max_rpm

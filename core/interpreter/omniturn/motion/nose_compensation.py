@@ -65,11 +65,11 @@ class ApproachOrDeparture(NamedTuple):
         return _refused(self.block, f"comp-{self.name}{code_suffix}", text, hint, **values)
 
     def check_path(self, path: Line, free_end: Point, corner: Point, log: DiagnosticLog) -> None:
-        """Check that the free end is far enough from the part, and that the move does not cut the part.
+        """Raise ProgramError if the move cuts the part or its free end is too close to the part.
 
         A distance below the nose radius is an error, and a distance below twice the radius is a warning.
-        ``free_end`` is the programmed free end of the move. ``corner`` is the end of the contour. Raises
-        ProgramError if a check fails.
+        ``free_end`` is the programmed end of the move away from the contour. ``corner`` is its end on the
+        contour.
         """
         if dist(free_end, corner) < self.nose_radius_mm - SAME_POINT_TOLERANCE_MM:
             raise self.make_error(
@@ -132,9 +132,9 @@ class _Contour(ContourStage):
         self._recent: deque[Element] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
 
     def add_move(self, block: Block) -> Iterator[Block]:
-        """Add a move, which is the departure if no other move follows.
+        """Add a move to the contour, and yield the blocks that no later move can change.
 
-        Raises ProgramError if compensation is not possible.
+        The last move becomes the departure. Raises ProgramError if compensation is not possible.
         """
         if (
             block.kind is not BlockKind.ARC
@@ -152,7 +152,7 @@ class _Contour(ContourStage):
         yield from self._yield_pieces(self._add_move(last, element))
 
     def close_contour(self) -> Iterator[Block]:
-        """Process G40, which makes the last move the departure.
+        """Close the contour at G40, with the last move as the departure, and yield its blocks.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -218,7 +218,7 @@ class CompensationStage:
         self._contour: _Contour | None = None
 
     def accept_item(self, item: StageItem) -> Iterator[Block]:
-        """Accept an item, and yield the blocks that no later item can change.
+        """Accept a block or a compensation code, and yield the blocks that cannot change any more.
 
         Raises ProgramError if compensation is not possible.
         """

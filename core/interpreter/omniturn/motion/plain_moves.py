@@ -1,9 +1,8 @@
-"""Parsing of lines with only G00 or G01, X, Z and F, which are nearly all lines of a long program.
+"""Fast parsing of lines with only G00 or G01, X, Z and F, which most lines of long programs are.
 
-A statement takes 1 kB and 10 µs, and a parsed plain move takes a hundredth of both. Lines of a long program
-mostly differ only in their digits. Lines that agree in all other characters have the same words at the same
-columns. Each column of digits therefore becomes a column of an array. Lines of a rare form are parsed
-individually.
+A statement takes 1 kB and 10 µs, and a parsed plain move takes a hundredth of both. Lines that differ only
+in their digits have the same words at the same columns, so each column of digits becomes an array. Lines of
+a rare form are parsed individually.
 """
 
 from __future__ import annotations
@@ -61,7 +60,7 @@ def _words(text: str) -> re.Match[str] | None:
 
 
 def _is_fine(text: str) -> bool:
-    """Return whether a number has a fifth decimal place."""
+    """Return whether a number in program text has a fifth decimal place."""
     return _FIVE_PLACES.search(text) is not None
 
 
@@ -100,7 +99,7 @@ class LineColumns(NamedTuple):
         self.g_codes[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
 
     def list_moves(self) -> list[PlainMove | None]:
-        """Return a list of the lines, in the form that ``parse_plain_move`` returns.
+        """Return the lines as a list of plain moves, in the format of ``parse_plain_move``.
 
         The entry is None for a line that is not a plain move.
         """
@@ -129,7 +128,7 @@ def _column_values(column: FloatArray) -> list[float | None]:
 
 
 def parse_columns(text: str, columns: LineColumns) -> None:
-    """Fill the columns from the text.
+    """Parse the plain moves in the text and store them in the columns.
 
     ``is_plain_move`` remains False for other lines and for lines of a rare form.
     """
@@ -150,9 +149,9 @@ def _read_length(
     digits: DigitArray,
     shapes: DigitArray,
 ) -> None:
-    """Fill the columns for the lines ``rows``, which all have this length.
+    """Parse the lines ``rows``, which all have the same length, into the columns.
 
-    Lines of the same form are filled together, starting with the form of the first line.
+    Lines of the same form are parsed together, starting with the form of the first line.
     """
     rare = 0
     while len(rows) >= _FEW and rare < _FEW:
@@ -176,9 +175,9 @@ def _read_length(
 
 
 class _Lines(NamedTuple):
-    """The indices of the first characters of lines in a text.
+    """Positions of lines in a text, as the indices of their first characters.
 
-    ``line_distance`` is the distance between lines, or 0 if the distance varies.
+    ``line_distance`` is the distance between lines in characters, or 0 if the distance varies.
     """
 
     first: IntArray
@@ -191,7 +190,7 @@ class _Lines(NamedTuple):
         return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
 
     def get_characters(self, text: DigitArray, at: int) -> DigitArray:
-        """Return the character at index ``at`` of each line."""
+        """Return the character at column index ``at`` of each line."""
         if not self.line_distance:
             return text.take(self.first + at)
         return text[self.first[0] + at : self.first[-1] + at + 1 : self.line_distance]
@@ -200,7 +199,7 @@ class _Lines(NamedTuple):
 def _read_shape(
     columns: LineColumns, rows: IntArray, match: re.Match[str], digits: DigitArray, lines: _Lines
 ) -> None:
-    """Fill the columns for the lines ``rows``, which all have the form of the match."""
+    """Parse the lines ``rows``, which all have the form of ``match``, into the columns."""
     known = np.ones(len(rows), bool)
     for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.feeds)):
         if match[name] is not None:
@@ -216,10 +215,10 @@ def _read_shape(
 
 
 def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: DigitArray) -> FloatArray:
-    """Return the numbers of a word in these lines.
+    """Return the numbers of one word in these lines, rounded like the results of ``float``.
 
-    The digits as a whole number and the powers of ten are exact. Their quotient therefore equals the result
-    of ``float``.
+    A number is the quotient of its digits, as a whole number, and a power of ten. Both are exact, so the
+    quotient equals the result of ``float``.
     """
     text, start = match[name], match.start(name)
     whole = np.zeros(len(lines.first), np.int32)  # at most nine digits
@@ -234,7 +233,7 @@ def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: DigitArray)
 
 
 class ExecutableLines(Sequence[ExecutableLine]):
-    """The lines of a program from index 0.
+    """The lines of a program, indexed from 0.
 
     Plain moves are in ``columns``, and all other lines are statements.
     """
@@ -273,7 +272,10 @@ class ExecutableLines(Sequence[ExecutableLine]):
             yield from self._page(number)
 
     def find_next_statement(self, index: int) -> int:
-        """Return the index of the next line that is not a plain move, at most MAX_RUN_LENGTH lines away."""
+        """Return the index of the next line that is not a plain move.
+
+        The search ends after MAX_RUN_LENGTH lines.
+        """
         known = self.columns.is_plain_move[index : index + MAX_RUN_LENGTH]
         first = int(known.argmin()) if len(known) else 0
         return index + (len(known) if len(known) and known[first] else first)

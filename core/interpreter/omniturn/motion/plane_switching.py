@@ -1,4 +1,7 @@
-"""Plane switching, in which X and C, or Z and C, act as the axes of a virtual mill with its own frame."""
+"""Coordinate transformation (plane switching), in which X and C or Z and C move a virtual mill.
+
+The virtual mill has its own coordinate system.
+"""
 
 from __future__ import annotations
 
@@ -117,7 +120,10 @@ def _split_at_centerline(state: State, statement: Statement, move: PlaneMove) ->
 
 
 def _turn_at_centerline(state: State, statement: Statement, leg: PlaneMove) -> Iterator[Block]:
-    """Yield a rotation of C if the tool is on the centerline, until the path leads outward along X."""
+    """Yield a rotation of C if the tool is on the centerline.
+
+    C rotates until the path leads outward along X.
+    """
     mill = state.modal.mill
     assert mill is not None
     turn = replace(leg, start_angle_rad=mill.polar_angle_rad).find_start_rotation()
@@ -150,14 +156,17 @@ def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:
 
 
 def read_plane_length_mm(state: State, statement: Statement, letter: str, default: float) -> float:
-    """Return a word in mm as written: a length, or a diameter for D and for Z on the side."""
+    """Return the length of a word in mm, or ``default`` if the line lacks the word.
+
+    The length is not halved: D, and Z on the side of the part, remain diameters.
+    """
     assert statement.plane_line is not None
     word = statement.plane_line.words.get(letter)
     return default if word is None else round_mill_length(state, statement.line, word)
 
 
 def make_plane_error(statement: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
-    """Return an error for a line of plane switching.
+    """Return an error for a line of a plane switching section.
 
     The error is located at the word ``letter`` if the line has this word.
     """
@@ -171,7 +180,10 @@ _SAME = 1e-9
 
 
 def execute_plane_line(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks of one line of plane switching. Raises ProgramError for an invalid line."""
+    """Yield the blocks of one line of a plane switching section.
+
+    Raises ProgramError for an invalid line.
+    """
     line, mill = statement.plane_line, state.modal.mill
     assert line is not None
     if line.name == "END":

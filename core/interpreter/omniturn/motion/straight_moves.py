@@ -1,4 +1,4 @@
-"""Straight moves, with the meaning of X and Z, the resolution, and the checks of all moves."""
+"""Straight moves: the meaning of X and Z, rounding to the resolution, and checks of all moves."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ ROUNDING_TOLERANCE = 1e-6  # of a step; tolerance for the rounding of decimal fr
 def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -> Block | None:
     """Return the block of a line with only G00 or G01, X, Z and F.
 
-    Returns None if the full statement is needed. Raises the same errors as ``make_straight_move``.
+    The result is None if the line must be executed as a full statement. Raises the same errors as
+    ``make_straight_move``.
     """
     x, z, f, g, fine = move
     same = (g < 0 and f is None) or is_already_active(state, g, f)
@@ -141,7 +142,7 @@ def round_to_resolution(state: State, statement: Statement, letter: str) -> floa
 
 
 def round_mill_length(state: State, line: int, word: Word) -> float:
-    """Return a length of plane switching in mm, rounded to the resolution.
+    """Return a length word of plane switching in mm, rounded to the resolution.
 
     The length is never halved. A warning is logged if the number was rounded.
     """
@@ -173,7 +174,7 @@ def round_coordinates(
 
 
 def get_resolution(state: State, letter: str) -> float:
-    """Return the resolution of the control in the unit of the program."""
+    """Return the resolution of the control for a letter, in the unit of the program."""
     modal = state.modal
     if modal.metric:
         return units.METRIC_STEP_MM
@@ -212,7 +213,7 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
 
 
 def execute_dimension_modes(state: State, statement: Statement) -> None:
-    """Execute the modes of a line that define distances, units and the meaning of X."""
+    """Execute the codes of a line for absolute or incremental distances, units, and X as a diameter."""
     if not statement.modal_codes:
         return
     modal = state.modal

@@ -36,11 +36,11 @@ def _words(line: str) -> str:
 
 
 def compute_modal_after_end(previous: ModalState, rpm: float, *, resets_m_functions: bool) -> ModalState:
-    """Return the modal state after the program end.
+    """Return the modal state after the end of a program.
 
-    This is the power-up state, except that units, tool offset and preset remain. Without
-    ``resets_m_functions``, the M functions also remain. ``rpm`` is the unsigned commanded speed at the end.
-    M30 resets the M functions, and M02 does not.
+    This is the power-up state, but units, tool offset and preset remain. If ``resets_m_functions`` is
+    False, the M functions also remain; M30 resets them, and M02 does not. ``rpm`` is the unsigned commanded
+    speed at the end.
     """
     return ModalState(
         metric=previous.metric,

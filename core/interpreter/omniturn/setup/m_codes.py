@@ -43,7 +43,7 @@ def coolant(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def switch_collet(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M12 (clamp) or M13 (unclamp).
+    """Yield the block of M12 (clamp collet) or M13 (unclamp collet).
 
     Raises ProgramError if the spindle must be stopped first.
     """
@@ -55,13 +55,13 @@ def switch_collet(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def wait_for_input(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M91 to M94, which waits until a terminal is open or closed."""
+    """Yield the block of M91 to M94, which waits until an input is open or closed."""
     assert statement.m_code_entry is not None
     yield _done(state, statement, actions.InputWait(*statement.m_code_entry.required_input))
 
 
 def stop_program(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M00 or M01, which shows the comment to the operator."""
+    """Yield the block of M00 or M01, which shows the line's comment to the operator."""
     yield _done(
         state,
         statement,
@@ -117,7 +117,7 @@ def _done(state: State, statement: Statement, action: actions.Action) -> Block:
 
 
 def _machine_output(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
-    """Yield the block of an M code from the machine file.
+    """Yield the block of an M code that the machine file assigns to an output.
 
     The output turns on before the motion or turns off after the motion.
     """

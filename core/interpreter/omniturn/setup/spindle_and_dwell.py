@@ -85,7 +85,7 @@ def run_spindle(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def stop_spindle(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M05, which stops the spindle and releases C."""
+    """Yield the block of M05, which stops the spindle and unlocks the C axis."""
     state.set_modal(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
     yield state.action(statement.line, statement.get_block_text("m"), SpindleStop())
 
@@ -112,7 +112,7 @@ def execute_dwell(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) -> None:
-    """Record the time that C needs to turn by ``turn_deg`` degrees.
+    """Record the time that the C axis needs to rotate by ``turn_deg`` degrees.
 
     The time is recorded only if the drive of C does not report the position.
     """
@@ -126,7 +126,7 @@ def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) ->
 
 
 def warn_about_short_dwell(state: State) -> None:
-    """Log a warning if a move or the program end occurs before C is in position."""
+    """Log a warning if a move or the program end occurs before C reaches its position."""
     if state.turning is None:
         return
     (line, column, left), state.turning = state.turning, None

@@ -18,7 +18,7 @@ from core.message import Message
 
 
 def _offset(state: State, line: int, word: Word, usage: ToolUsage) -> ToolOffset:
-    """Return the offset of a T word, or 0 with a warning if the offset was never set."""
+    """Return the tool offset of a T word; if it was never set, it is 0 and a warning is logged."""
     number = int(word.value or 0)
     offset = usage.use_tool_offset(number, state.setup.tools) if number else ToolOffset()
     if offset is None:
@@ -67,7 +67,7 @@ def change_tool(state: State, statement: Statement, word: Word, usage: ToolUsage
 
 
 def select_secondary_offset(state: State, statement: Statement) -> None:
-    """Execute D, whose offset applies to the end points of this line's move and of all later moves."""
+    """Execute D, which selects a secondary offset for this line's end point and all later moves."""
     number = statement.get_value("D")
     if number is None:
         return
@@ -117,7 +117,7 @@ def set_preset(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def warn_about_idle_shifts(state: State) -> None:
-    """Log a warning at the end of the program for each G10 that is not followed by a T."""
+    """Log a warning at the program end for each G10 without a following T, which has no effect."""
     for line, taken in state.pending_shift.items():
         if not taken:
             text = "No T follows this G10, so its work shift never takes effect."

@@ -60,7 +60,10 @@ _CYCLE_FUNCTIONS: Mapping[str, Callable[[CycleCall], Iterator[Block]]] = {
 
 
 def generate_cycle_blocks(state: State, line: LexedBlock, flow: Flow) -> Iterator[Block]:
-    """Return an iterator over the blocks of a standard cycle. Raises ProgramError before the first block."""
+    """Return an iterator over the blocks of a standard cycle.
+
+    Raises ProgramError before the first block if the call is invalid.
+    """
     cycle = CycleCall(state, line)
     if line.called_name == "CYCLE95":
         return run_stock_removal(cycle, _contour(cycle, flow))
@@ -96,7 +99,7 @@ def _contour(cycle: CycleCall, flow: Flow) -> list[Element]:
 
 
 def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> Diagnostic:
-    """Return an error in the contour's file as a finding at the line of the cycle call."""
+    """Return an error in another file with the contour as a finding at the line of the cycle call."""
     message = Message(
         "{source} line {line}: {value}", source=file_name, line=finding.line, value=finding.message
     )

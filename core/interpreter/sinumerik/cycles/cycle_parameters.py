@@ -1,4 +1,4 @@
-"""Named parameters of a standard cycle with range checks, and conversion of the cycle's motions to blocks."""
+"""Parameters of a standard cycle by name, and conversion of its motions to blocks."""
 
 from __future__ import annotations
 
@@ -42,12 +42,13 @@ _SAME = 1e-9  # mm
 
 
 class CycleStep(NamedTuple):
-    """One motion of a cycle in the program frame, in mm with X as a radius.
+    """One motion or action of a cycle, in the program frame, in mm with X as a radius.
 
-    ``feed`` is in the unit of ``modal.feed``, or is the lead of a thread, or None for a rapid. A step with
-    ``action`` does not move. ``c_travel_deg`` is the simultaneous rotation of C in degrees; ``feed`` is
-    then in mm/s. A step with ``is_tapping`` follows the spindle. ``ends_in_hole`` means that the tap is in
-    the hole at the end of the step.
+    - ``feed`` is in the unit of ``modal.feed``, or is the lead of a screw thread, or None for a rapid.
+    - A step with ``action`` does not move.
+    - ``c_travel_deg`` is the simultaneous rotation of C in degrees; ``feed`` is then in mm/s.
+    - A step with ``is_tapping`` follows the spindle.
+    - ``ends_in_hole`` means that the tap is in the hole at the end of the step.
     """
 
     x: float
@@ -100,9 +101,9 @@ class CycleCall:
     def _check(self) -> None:
         """Raise ProgramError if the cycle is not allowed in the current state.
 
-        A cycle is not allowed in a rotated, scaled or mirrored frame, or with nose compensation. With
-        TRANSMIT, only drilling cycles and hole patterns are allowed. No cycle is allowed with a
-        transformation whose depth is not along Z.
+        - No cycle is allowed in a rotated, scaled or mirrored frame, or with nose compensation.
+        - With TRANSMIT, only drilling cycles and hole patterns are allowed.
+        - With a transformation whose depth is not along Z, no cycle is allowed.
         """
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
@@ -130,7 +131,7 @@ class CycleCall:
         return "" if argument is None or argument.text is None else argument.text.upper()
 
     def read_number(self, name: str, default: float = 0.0) -> float:
-        """Return a number as programmed, or ``default`` if the parameter is omitted.
+        """Return a number without unit conversion, or ``default`` if the call omits the parameter.
 
         Raises ProgramError for a string, or if the formula has no value.
         """
@@ -196,7 +197,7 @@ class CycleCall:
         self.check_parameter(value == round(value), name, text, "Enter a whole number.", value=value)
 
     def check_zero(self, name: str, reason: str) -> None:
-        """Raise ProgramError if a parameter requests a function that is not supported."""
+        """Raise ProgramError if a parameter for a function that TurnDesk does not support is not 0."""
         if self.read_number(name):
             raise self.make_parameter_error(
                 name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=reason
@@ -212,7 +213,7 @@ class CycleCall:
         return value if self.state.modal.per_rev else value / 60.0
 
     def read_machining_type(self, name: str, allowed_types: range) -> int:
-        """Return the machining type VARI.
+        """Return the number of the machining type (parameter VARI).
 
         Raises ProgramError if the number is not whole. For a whole number that is not an allowed type, the
         error has the alarm of the control (61002).
@@ -254,15 +255,16 @@ class CycleCall:
     def check_feed_known(
         self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
     ) -> float:
-        """Return the feed. Raises ProgramError if the feed is None."""
+        """Return the feed. Raises ProgramError if no feed is active (None)."""
         if feed is None:
             raise self.make_call_error(alarm, "no feedrate is programmed.", hint)
         return feed
 
     def make_clearance_steps(self, clearance_x: float, outward_sign: float = 1.0) -> list[CycleStep]:
-        """Return a step to X ``clearance_x`` if the tool is closer to the part, or an empty list otherwise.
+        """Return a step that moves X away from the part to ``clearance_x``.
 
-        ``outward_sign`` is the sign of X away from the part.
+        If the tool is already at least this far away, the list is empty. ``outward_sign`` is the sign of X
+        away from the part.
         """
         return [] if outward_sign * self.x >= outward_sign * clearance_x else [CycleStep(clearance_x, self.z)]
 

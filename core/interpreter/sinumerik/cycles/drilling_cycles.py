@@ -119,9 +119,9 @@ def _feed(cycle: CycleCall) -> float:
 
 
 def run_drilling(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE81 and CYCLE82.
+    """Return the blocks of CYCLE81 or CYCLE82.
 
-    The tool feeds to the depth, dwells, and retracts at rapid.
+    The tool feeds to the depth, dwells there for DTB if it is programmed, and retracts at rapid.
     """
     hole, feed = read_hole(cycle), _feed(cycle)
     dwells = make_dwell_steps(read_dwell_s(cycle, "DTB"))
@@ -219,7 +219,7 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
 
 
 def _turning(cycle: CycleCall) -> list[CycleStep]:
-    """Return the step that starts the spindle in the direction SDIR, if necessary.
+    """Return the step that starts the spindle in the direction SDIR, unless it already turns so.
 
     Raises ProgramError if SDIR is not 3 or 4, if no speed is programmed, or if G96 is active.
     """
@@ -235,10 +235,10 @@ def _turning(cycle: CycleCall) -> list[CycleStep]:
 
 
 def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE86.
+    """Return the blocks of CYCLE86, boring with oriented spindle.
 
-    At the bottom, the spindle is oriented to POSS, and the edge is lifted off the wall by RPA and RPAP. The
-    tool retracts at rapid.
+    At the bottom, the spindle is oriented to POSS, and the cutting edge is lifted off the wall by RPA and
+    RPAP. The tool retracts at rapid.
     """
     hole, state = read_hole(cycle), cycle.state
     check_spindle_positioning(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
@@ -284,7 +284,7 @@ def make_spindle_lock_steps(cycle: CycleCall, position: CycleStep, angle: float)
 
 
 def stop(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE87 and CYCLE88.
+    """Return the blocks of CYCLE87 or CYCLE88, drilling with a stop at the bottom.
 
     At the bottom, the spindle stops and the program stops with M0. The tool then retracts at rapid.
     """

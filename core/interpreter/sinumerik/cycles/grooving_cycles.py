@@ -1,13 +1,13 @@
-"""Grooving with CYCLE93, with straight or tapered flanks, outside or inside, and part-off with CYCLE92.
+"""Grooving (CYCLE93) with straight or tapered flanks, and part-off (CYCLE92).
 
-WIDG is the width of the bottom, and SPL is the corner of the surface at which the groove begins. Tapered
-flanks make the groove wider toward the surface. The tool width is the distance between the two cutting
-edges of the tool. These edges are D and _DN in the tool table, or D+1 without _DN, as on the original
-control.
+Grooves are outside or inside. WIDG is the width of the bottom, and SPL is the corner of the surface at
+which the groove begins. Tapered flanks make the groove wider toward the surface. The tool width is the
+distance between the two cutting edges of the tool. These edges are D and _DN in the tool table, or D+1
+without _DN, as on the original control.
 
-Part-off is slower near the axis. The active edge moves down at SPL. The meaning of the parameters of
-CYCLE92 follows the manufacturer's operating manuals, and their names and order follow published lists. The
-digits of ``_DMODE`` and ``_AMODE`` are not documented, so only depths as diameters are accepted.
+Part-off is slower near the spindle axis, and the active cutting edge moves in X at Z = SPL. The parameters
+of CYCLE92 follow the manufacturer's operating manuals, and their names and order follow published lists.
+The digits of ``_DMODE`` and ``_AMODE`` are not documented. Depths are therefore accepted only as diameters.
 """
 
 from __future__ import annotations
@@ -93,10 +93,11 @@ def _flank_extent(cycle: CycleCall, name: str, depth: float) -> float:
 def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
     """Return the width of the tool in mm, and whether the active edge is its lower corner.
 
-    For a tool that is not in the table, the width is 3 mm, or ``max_width`` if this is smaller, and a
-    warning is logged; a program with this warning cannot start. Raises ProgramError if no tool with an
-    offset is active, if the table contains only one of the two edges, if both edges are at the same
-    position, or if _DN is invalid.
+    For a tool that is not in the table, the width is 3 mm, or ``max_width`` if this is smaller. A warning
+    is logged, and a program with this warning cannot start. Raises ProgramError in the following cases:
+
+    - No tool with an offset is active, or _DN is invalid.
+    - The table contains only one of the two edges, or both edges are at the same position.
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
@@ -174,7 +175,7 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
 
 
 class _Plan:
-    """Planner of grooving motions, in terms of depth and of the Z position of the lower tool corner."""
+    """Planner of grooving motions; positions are a depth and Z of the tool corner with the lower Z."""
 
     def __init__(
         self, cycle: CycleCall, shape: GrooveGeometry, feed: float, clearance: float, corner: float
@@ -206,9 +207,10 @@ class _Plan:
     def plunge_under_flank(
         self, z_position: float, flank_extent: float, width: float, bottom: float
     ) -> list[CycleStep]:
-        """Return plunges of decreasing depth from ``z_position`` outward under a flank.
+        """Return plunges that remove the material in front of a tapered flank, with decreasing depth.
 
-        ``flank_extent`` is the Z extent of the flank in mm.
+        The plunges start at ``z_position`` and continue outward. ``flank_extent`` is the Z extent of the
+        flank in mm.
         """
         count = self._cycle.compute_pass_count(
             abs(flank_extent), width * _OVERLAP, "ANG1", _CUTS, "Check the angles."
@@ -250,10 +252,10 @@ _DIRECTION = {3: 1, 4: -1}  # spindle direction by _SDAC
 def run_part_off(cycle: CycleCall) -> Iterator[Block]:
     """Yield the blocks of CYCLE92 (part-off).
 
-    The tool feeds to _DIAG1 at _FF1, and then to _DIAG2 at _FF2 and _SS2 rpm. With the limit _SV2, _SV1 is
-    a surface speed as for G96. Otherwise, it is in rpm. After the cycle, the previous speed is active
-    again, or the last speed of the cycle if no speed was active before. Raises ProgramError before the
-    first block.
+    The tool feeds to _DIAG1 at _FF1, and then to _DIAG2 at _FF2 and _SS2 rpm. If the speed limit _SV2 is
+    specified, _SV1 is a surface speed as for G96. Otherwise, _SV1 is in rpm. After the cycle, the previous
+    speed is active again, or the last speed of the cycle if no speed was active before. Raises ProgramError
+    before the first block if a parameter is invalid.
     """
     cycle.check_zero("_RC", "cut the chamfer or the radius with G1 before the cycle")
     cycle.check_zero("_VARI", "the tool only retracts, because this machine has no parts catcher")
@@ -280,7 +282,7 @@ def run_part_off(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _depths(cycle: CycleCall) -> tuple[float, float]:
-    """Return the radii at which the tool slows down and stops, in mm.
+    """Return the radius at which the feed is reduced and the radius at which the cut ends, in mm.
 
     Raises ProgramError if the parameters contradict each other.
     """
@@ -334,7 +336,7 @@ def _blocks(
     first_steps: list[CycleStep],
     last_steps: list[CycleStep],
 ) -> Iterator[Block]:
-    """Yield the blocks of both sections, each at its own speed.
+    """Yield the blocks of the two sections of a part-off, each with its own spindle speed.
 
     All checks are made before the first block of the first section.
     """

@@ -228,7 +228,10 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
 
 
 class _Plan:
-    """Planner of the motions in depth and length: X and Z, or Z and X for passes along X."""
+    """Planner of the cycle's motions in depth and length.
+
+    Depth and length are along X and Z, or along Z and X if the passes are along X.
+    """
 
     def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
@@ -245,7 +248,7 @@ class _Plan:
         self._start = self._start_point()
 
     def _free_side(self) -> tuple[float, float]:
-        """Return the signs of the directions in depth and length toward the open side of the contour."""
+        """Return the signs of the depth and length directions that lead away from the material."""
         if self._kind.is_transverse:  # The face is on the right side.
             return 1.0, (-1.0 if self._kind.is_inside else 1.0)
         first, last = self._contour[0].start, self._contour[-1].end
@@ -272,8 +275,7 @@ class _Plan:
     def _start_point(self) -> Point:
         """Return the start point of the cycle, outside both ends of the contour.
 
-        The start point is at the outermost depth of the contour, at a distance of the allowance plus _VRT
-        in front of it.
+        It is at the outermost depth of the contour, in front of it by the allowance plus _VRT.
         """
         out, front = self._signs
         boxes = [each.bounding_box for each in self._contour]

@@ -1,8 +1,8 @@
-"""Thread cycles CYCLE97, 98 and 99 for straight or tapered threads with one or more starts.
+"""Thread cycles CYCLE97, 98 and 99 for straight or tapered screw threads with one or more starts.
 
-The passes have equal depths or equal chips, and are those of G33. CYCLE98 cuts a chain of three threads in
-one pass, each with its own lead and taper. A start angle is equivalent to a start point that is farther
-away by a fraction of the lead.
+The passes have equal depths or equal chip cross sections, and each pass is a thread move as with G33.
+CYCLE98 cuts a chain of three threads in one pass, each with its own lead and taper. A start angle is
+equivalent to a start point that is farther away by a fraction of the lead.
 """
 
 from __future__ import annotations
@@ -74,9 +74,10 @@ def _read_lead(cycle: CycleCall) -> float:
 
 
 def _depths(cycle: CycleCall, *, equal_chip: bool) -> tuple[float, ...]:
-    """Return the depths of the passes.
+    """Return the depth of each pass.
 
-    NRC passes reach TDEP minus FAL, one pass removes FAL, and NID passes have no infeed.
+    NRC roughing passes cut to TDEP minus FAL, one finishing pass removes FAL, and NID passes repeat without
+    infeed.
     """
     depth, left = cycle.read_positive_mm("TDEP"), cycle.read_size_mm("FAL")
     count, idle = (
@@ -108,11 +109,11 @@ def _shifts(cycle: CycleCall, depths: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _kind(cycle: CycleCall) -> int:
-    """Return the type from VARI.
+    """Return the machining type of the thread, from 1 to 4, according to VARI.
 
-    The type is 1 (outside) or 2 (inside) in equal depths, or 3 (outside) or 4 (inside) in equal chips. In
-    CYCLE99, VARI has more digits. For example, 300103 means 3, and 2 in the hundreds place alternates the
-    flanks.
+    The type is 1 (outside) or 2 (inside) in equal depths, or 3 (outside) or 4 (inside) in equal chip cross
+    sections. In CYCLE99, VARI has more digits. For example, 300103 means type 3; a hundreds digit of 2
+    alternates the flanks.
     """
     if cycle.line.called_name != "CYCLE99":
         return cycle.read_machining_type("VARI", range(1, 5))
@@ -140,7 +141,10 @@ def _starts(cycle: CycleCall) -> tuple[float, int]:
 
 
 def run_threading(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE97 or CYCLE99. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE97 or CYCLE99.
+
+    Raises ProgramError before the first block if a parameter is invalid.
+    """
     lead, kind = _read_lead(cycle), _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
     z0, z1 = cycle.read_required_mm("SPL"), cycle.read_required_mm("FPL")
@@ -164,7 +168,10 @@ def run_threading(cycle: CycleCall) -> Iterator[Block]:
 
 
 def run_chain_threading(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE98. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE98.
+
+    Raises ProgramError before the first block if a parameter is invalid.
+    """
     kind = _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
     places = [(cycle.read_positive_mm(f"DM{k}") / 2.0, cycle.read_required_mm(f"PO{k}")) for k in range(1, 5)]
@@ -193,7 +200,7 @@ def _passes(cycle: CycleCall, kind: int) -> list[tuple[float, float]]:
 
 
 def _start_delays(cycle: CycleCall, leads: list[float]) -> list[float]:
-    """Return the delay along Z of each thread start, in mm.
+    """Return the distance along Z by which each start of the thread is delayed, in mm.
 
     Raises ProgramError for invalid parameters, and if the spindle is stopped, is under G96, or is too fast
     for one of the leads.

@@ -95,7 +95,7 @@ class UndercutPosition(NamedTuple):
 
 
 def run_shoulder_undercut(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE94. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE94. Raises ProgramError before the first block if a value is invalid."""
     form = cycle.read_text("FORM")
     cycle.check_parameter(
         form in {"E", "F"}, "FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_UNDERCUT_FORM
@@ -125,7 +125,7 @@ def _shoulder_size(cycle: CycleCall, form: str) -> UndercutSize:
 
 
 def run_thread_undercut(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE96. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE96. Raises ProgramError before the first block if a value is invalid."""
     form = cycle.read_text("FORM")
     if form not in {"A", "B", "C", "D"}:
         raise cycle.make_parameter_error(
@@ -177,7 +177,7 @@ def run_undercut(cycle: CycleCall) -> Iterator[Block]:
 
     Forms E and F are cut in one pass. Forms A and B are roughed in passes of at most _MID, finished, or
     both, as _VARI specifies. The first seven parameters and the order of all parameters follow the
-    manufacturer's programming manual. Raises ProgramError before the first block.
+    manufacturer's programming manual. Raises ProgramError before the first block if a value is invalid.
     """
     form = cycle.read_text("FORM")
     text = "{name} is {form}, which is not supported"
@@ -256,9 +256,11 @@ _ROUGHS, _FINISHES = 1, 2
 def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, float]:
     """Return the sign of X away from the part, and the sign of Z away from the shoulder.
 
-    ``position_number`` (1 to 4) determines the signs, or the tip quadrant if it is 0. Raises ProgramError
-    if no tool with an offset is active. Also raises ProgramError if the tip quadrant is not from 1 to 4,
-    unless ``position_number`` determines the signs and the nose radius is 0.
+    A ``position_number`` from 1 to 4 determines the signs. If it is 0, the tip quadrant determines them.
+
+    - Raises ProgramError if no tool with an offset is active.
+    - Raises ProgramError if the tip quadrant is not from 1 to 4. The tip quadrant is not needed, however,
+      if ``position_number`` determines the signs and the nose radius is 0.
     """
     state = cycle.state
     text = "{call} needs an active tool with an offset."

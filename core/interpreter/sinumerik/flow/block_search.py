@@ -24,7 +24,10 @@ from core.tool_edges import format_edge_name
 
 
 class InterpreterParts(NamedTuple):
-    """The state of an interpreter; ``pending_line`` is a block that was read but not yet executed."""
+    """The parts of an interpreter that contain its state, copied when a pass is saved.
+
+    ``pending_line`` is a block that was read but not yet executed.
+    """
 
     state: State
     corners: SinumerikCornerStage
@@ -98,7 +101,7 @@ _SINGLE_BLOCK_KEYWORDS = frozenset({ControlKeyword.DEFINE, ControlKeyword.MESSAG
 
 
 def check_single_block(source: ProgramSource, third_axis: str = INTERNAL_AXIS_NAME) -> Diagnostic | None:
-    """Return the error for a block that cannot be executed alone, or None if it can be."""
+    """Return the error for a block that is not allowed in MDI, or None if it is allowed."""
     line = lex_line(1, source.lines[0] if source.lines else "", third_axis)
     if line.errors:
         return None  # reported when the block is executed

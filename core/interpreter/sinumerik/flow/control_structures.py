@@ -39,7 +39,7 @@ _GOTO = frozenset(
 
 @dataclass(slots=True)
 class Routine:
-    """One program in a file; ``displayed_name`` is its name in findings if it is in another file."""
+    """One program of a file; findings show its ``displayed_name`` if it is in another file."""
 
     source: ProgramSource
     line_range: range
@@ -191,9 +191,10 @@ def _structure(
 def _execute_for(
     line: LexedBlock, jump: ControlStatement, begin: ControlStatement, state: State, value: float
 ) -> bool:
-    """Set the variable of FOR, and return whether its value does not exceed the end value.
+    """Set the loop variable of FOR, and return whether the loop must be executed (again).
 
-    Raises ProgramError if the variable is not defined or the end value cannot be evaluated.
+    It is executed while the variable does not exceed the end value. Raises ProgramError if the variable is
+    not defined or the end value cannot be evaluated.
     """
     if not state.variables.set_value(begin.identifier, value):
         text = Message("the name {jump} is not defined with DEF.", jump=begin.identifier)
@@ -203,7 +204,10 @@ def _execute_for(
 
 
 def _case(line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int) -> int | None:
-    """Return the target of the first branch that matches the value of CASE, or the target of DEFAULT."""
+    """Return the jump target of the first CASE branch with a matching value, or of DEFAULT.
+
+    Returns None if no branch matches and DEFAULT is missing.
+    """
     value = _worth(line, jump, state, jump.condition)
     for formula, steering, target in jump.case_branches:
         if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:

@@ -77,10 +77,10 @@ class SavedFunctions:
 def pass_arguments(
     state: State, line: LexedBlock, heading: ControlStatement | None
 ) -> tuple[VariableScope, list[tuple[str, str]]]:
-    """Return the variables of the called program, and the variables of its VAR parameters.
+    """Return the variables of the called program, initialized with the arguments of the call.
 
-    The second value contains pairs of a VAR parameter and the caller's variable. Raises ProgramError if the
-    arguments do not match the parameters.
+    Also returns pairs of a VAR parameter and the caller's variable that receives its value after the call.
+    Raises ProgramError if the arguments do not match the parameters.
     """
     parameters = () if heading is None else heading.parameters
     arguments = line.arguments or ()
@@ -111,8 +111,8 @@ class _ArgumentTransfer:
     def pass_value(self, parameter: ProcParameter, argument: CallArgument) -> None:
         """Set a parameter to a number or a string.
 
-        An omitted argument is the default of the parameter or, without a default, 0 or an empty string. A
-        number for an INT parameter is rounded. A string is accepted for a parameter of any type. Raises
+        An omitted argument gets the default of the parameter or, without a default, 0 or an empty string. A
+        number for an INT parameter is rounded. A string is accepted for any type of parameter. Raises
         ProgramError if a VAR argument is not a variable or an argument cannot be evaluated.
         """
         given = argument if argument.is_specified else parameter.default
@@ -220,7 +220,7 @@ class _Call(FlowFrame[Routine]):
 
     @property
     def comparison_key(self) -> tuple[object, ...]:
-        """Return the next line, the remaining passes and the remaining repeats for comparison."""
+        """Return the values that identify the position of the call, for the detection of endless loops."""
         return (
             self.file_name,
             self.next_index,
@@ -230,7 +230,7 @@ class _Call(FlowFrame[Routine]):
 
 
 class Flow(ControlFlow[_Call]):
-    """The position in a program and its subprograms."""
+    """The execution position in a program and its subprograms."""
 
     def __init__(self, source: ProgramSource, state: State) -> None:
         found, axis = split_sections(source), state.setup.limits.third_axis_name
@@ -277,7 +277,7 @@ class Flow(ControlFlow[_Call]):
                 return None
 
     def _repeat(self, repeats: list[_Repeat]) -> None:
-        """Repeat a REPEAT section at its end, or continue after the REPEAT."""
+        """Jump back to the start of a REPEAT section, or continue after REPEAT if no repeats remain."""
         part = repeats[-1]
         part.remaining_count -= 1
         if part.remaining_count > 0:
@@ -435,7 +435,7 @@ _MAX_PASSES = 9999
 
 
 def _end_label(routine: Routine, start: int, repeat_index: int) -> int:
-    """Return the end of a REPEAT section with one label.
+    """Return the line index at which a REPEAT section with only a start label ends.
 
     The end is ENDLABEL, the line of REPEAT or the program end, whichever comes first.
     """

@@ -14,7 +14,7 @@ from core.message import Message
 
 
 def set_parameters(state: State, statement: Statement) -> None:
-    """Set the R parameters and variables of a block.
+    """Execute the assignments of a block to R parameters and variables.
 
     Raises ProgramError for an undefined name, an invalid index, an array that is too short, and a value
     that cannot be evaluated.

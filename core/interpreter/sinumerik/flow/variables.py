@@ -83,9 +83,9 @@ class Variables:
         values: ValueList,
         compute_formula: Callable[[Formula], float],
     ) -> int:
-        """Assign values to elements, starting at ``first_element``.
+        """Assign values to consecutive array elements or R parameters, starting at ``first_element``.
 
-        Returns the number of surplus values.
+        Returns the number of values for which no element remained.
         """
         places = _r_places() if variable_name == "R" else self.variable_scope.list_elements(variable_name)
         places = places[places.index(first_element) :]
@@ -101,7 +101,7 @@ class Variables:
         return max(len(formulas) - len(places), 0)
 
     def set_value(self, name: str, value: float) -> bool:
-        """Set a value, or return False if the variable is not defined."""
+        """Set an R parameter or variable, and return whether it is defined; R parameters always are."""
         if name[0] == "R" and name[1:].isdigit():
             self.r_parameters[f"R{int(name[1:])}"] = value
         elif name in self.variable_scope.numbers:

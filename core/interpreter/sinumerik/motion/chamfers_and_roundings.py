@@ -41,7 +41,7 @@ class Corner:
     is_modal: bool = False  # RNDM: blocks that form no corner are not an error
 
     def make_error(self, code: str, reason: str, hint: str) -> ProgramError:
-        """Return an error at the corner's word."""
+        """Return an error at the position of the word that programs the corner."""
         return self.statement.make_error(
             self.word,
             code,
@@ -66,7 +66,10 @@ def make_corner(state: State, statement: Statement, block: Block) -> Corner | No
 
 
 def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | None:
-    """Return the rounding of RNDM, or None if the block is not a line or arc of the contour."""
+    """Return the corner rounding of modal RNDM, or None if it does not apply to the block.
+
+    RNDM applies only to lines and arcs of a contour under G18.
+    """
     if not state.rounding or block.kind not in _CUT or not _moves(block) or state.plane != 18:
         return None
     word = Word("RND", state.rounding, 1, f"RNDM={state.rounding:g}")

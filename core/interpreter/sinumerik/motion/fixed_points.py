@@ -1,4 +1,4 @@
-"""Rapids to machine home (G74) or to a fixed point of the machine (G75), without offsets."""
+"""Rapids to machine home (G74) or to a fixed point (G75) in machine coordinates, without offsets."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def make_home_move(state: State, statement: Statement) -> Block:
 
 
 def make_fixed_point_move(state: State, statement: Statement) -> Block:
-    """Return the rapid of G75 that moves the named axes to a fixed point (FP=1 to 4).
+    """Return the rapid of G75 that moves the named axes to fixed point FP, from 1 (the default) to 4.
 
-    Without FP, the axes move to point 1. The values of the axis words have no effect. The machine file
-    defines the points in machine coordinates. Raises ProgramError if a point is not defined, for other
-    words, for a block without axes, and while G41 or G42 is active.
+    The values of the axis words have no effect. The machine file defines the points in machine coordinates.
+    Raises ProgramError if a point is not defined, for other words, for a block without axes, and while G41
+    or G42 is active.
     """
     named = _axis_words(state, statement, _AXES | {"FP"})
     number = _number(state, statement)

@@ -1,4 +1,4 @@
-"""Straight moves with G0 and G1, with or without C: end points, feeds, whole or trimmed blocks."""
+"""Straight moves with G0 and G1, with or without C: their end points, feeds and blocks."""
 
 from __future__ import annotations
 
@@ -144,7 +144,10 @@ def _linear_end(state: State, statement: Statement, name: str, start: float) -> 
 
 
 def _polar_end(state: State, statement: Statement) -> tuple[float, float]:
-    """Return the point that RP and AP define about the pole; a missing value remains unchanged."""
+    """Return the point that RP (radius) and AP (angle) define about the pole.
+
+    If RP or AP is missing, its last value applies.
+    """
     last = state.last_polar_point or (0.0, 0.0)
     radius, angle = statement.words.get("RP"), statement.words.get("AP")
     for name in ("X", "Z", "ANG"):
@@ -174,7 +177,7 @@ _STEEP = 1e-9
 def _inclined(
     state: State, statement: Statement, start: tuple[float, float], x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
-    """Return the end point of a line that is defined by its angle and one coordinate."""
+    """Return the end point of a line that is programmed with its angle and one coordinate."""
     word = statement.words["ANG"]
     if state.motion is not MotionKind.LINE and state.motion is not MotionKind.RAPID:
         text = "{word} can be used only in a straight move."
@@ -243,7 +246,7 @@ def compute_c_travel(
 
 
 def _form(state: State, word: Word) -> PositionForm:
-    """Return the position form of a word; G90 and G91 determine the form of a plain word."""
+    """Return whether a word is absolute or incremental; without AC or IC, G90 or G91 applies."""
     if word.position_form is not PositionForm.PLAIN:
         return word.position_form
     return PositionForm.IC if state.modal.absolute is False else PositionForm.AC
@@ -328,7 +331,10 @@ def store_end_direction(state: State, arc: Block) -> Block:
 
 
 class PlainMoveFactory(AdjustedMoveFactory):
-    """Factory of adjusted moves that retain their text; the slowest axis determines the time of a rapid."""
+    """Factory of moves that stages have changed, which retain their program text.
+
+    The slowest axis determines the time of a rapid.
+    """
 
     def __init__(self, state: State) -> None:
         self._state = state

@@ -1,4 +1,4 @@
-"""Nose compensation with G41, G42 and G40, with NORM and KONT, and with G450 and G451 at outside corners.
+"""Nose compensation (G40 to G42) with NORM or KONT, and with G450 or G451 at corners.
 
 The contour is buffered until the move that leaves the contour is known. The output is the path of the tip.
 The nose center is one radius away from the contour, and the tip quadrant determines the position of the
@@ -197,7 +197,7 @@ class _ContourEnd(NamedTuple):
 
 
 class _Contour(ContourStage):
-    """The contour between G41 or G42 and the move after G40."""
+    """The contour from the G41 or G42 move to the move after G40."""
 
     def __init__(self, state: State, approach: Block, left_offset_mm: float, tip_offset: Point) -> None:
         super().__init__(PlainMoveFactory(state), approach, left_offset_mm, tip_offset)
@@ -206,7 +206,7 @@ class _Contour(ContourStage):
         self._elements: list[Element] = []
 
     def close_contour(self, departure: Block) -> Iterator[Block]:
-        """Yield the contour and the move that leaves the contour.
+        """Yield the compensated moves of the contour and the departure move.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -258,10 +258,10 @@ class _Contour(ContourStage):
         return [element.make_reversed() for element in reversed(back)]
 
     def _path_to_end(self, end: _ContourEnd) -> list[Element]:
-        """Return a straight path to the contour, or a path around its end if necessary.
+        """Return the path of the nose center from outside to one end of the contour.
 
-        A path around the end is possible only with KONT. Raises ProgramError if the path cuts the contour,
-        or if a path around the end starts closer to the end than the nose radius.
+        The path is straight or, with KONT, leads around the end if necessary. Raises ProgramError if the
+        path cuts the contour, or if a path around the end starts closer to the end than the nose radius.
         """
         radius, direct_line = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
         if not radius or not is_gouging(direct_line, end.contour, radius):

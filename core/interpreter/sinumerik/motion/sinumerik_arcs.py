@@ -76,7 +76,7 @@ def _check_words(state: State, statement: Statement) -> None:
 def _compute_arc(
     state: State, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """Return whether the arc is clockwise, and its center and travel."""
+    """Return whether the arc is clockwise, its center in machine coordinates, and its travel."""
     if state.motion is MotionKind.ARC_BY_POINT:
         return _arc_by_point(state, statement, travel)
     if state.motion is MotionKind.TANGENTIAL_ARC:
@@ -117,7 +117,7 @@ def _arc_by_point(
 
 
 def _clockwise(across: float) -> bool:
-    """Return whether the sign of a cross product means clockwise rotation in the view with X down."""
+    """Return whether this cross product of two directions is a clockwise rotation (view with X down)."""
     return across < 0.0
 
 
@@ -155,9 +155,9 @@ def _tangential_arc(
 def _compute_center(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
-    """Return the center in machine coordinates, and the travel.
+    """Return the center of the arc in machine coordinates, and the travel to its end point.
 
-    The travel includes the calculated end point if no end point is programmed.
+    If the end point is not programmed, it is calculated.
     """
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):

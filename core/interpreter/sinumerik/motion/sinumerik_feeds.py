@@ -63,9 +63,12 @@ def check_block_feed(
 
     The feed is in mm (or degrees) per second or per revolution, and includes the factor of OVR. A feed per
     revolution of the live tool is converted to a feed per second, because the live tool has a constant
-    speed. Raises ProgramError with alarm 10860 if no feed is active. Raises ProgramError with a TurnDesk
-    code if FB is not above 0, if G96 is active without a surface speed, or if the spindle or the live tool
-    that determines a feed per revolution is stopped.
+    speed. Raises ProgramError in the following cases:
+
+    - No feed is active (alarm 10860).
+    - FB is not above 0.
+    - G96 is active without a surface speed.
+    - The spindle or live tool that determines a feed per revolution is stopped.
     """
     modal = state.modal
     word = statement.words.get("FB")

@@ -25,7 +25,7 @@ MODULO_ONLY_ALARMS = {PositionForm.DC: 16800, PositionForm.ACP: 16810, PositionF
 
 
 class TargetError(CodedError):
-    """Error for a target that is not possible.
+    """Error for a target position of the third axis that is not allowed.
 
     ``alarm_number`` is the number of the alarm, and ``str()`` returns the message.
     """
@@ -45,10 +45,10 @@ def wrap_angle(angle: float) -> float:
 
 
 def compute_modulo_travel(form: PositionForm, value: float, position: float) -> float:
-    """Return the signed travel of a modulo axis in degrees, to ``value`` or, with IC, by ``value``.
+    """Return the signed travel of a modulo axis in degrees, to ``value`` or, for IC, by ``value``.
 
-    ``position`` may include any number of revolutions. Raises TargetError for a target outside the range
-    from 0 to less than 360.
+    ``position`` is the current position and may include any number of revolutions. Raises TargetError for a
+    target outside the range from 0 to less than 360.
     """
     if form is PositionForm.IC:
         return value

@@ -1,8 +1,8 @@
-"""Threads with G33, G34 and G35 with constant or variable lead, as single threads or chains with pull-out.
+"""Screw threads with G33, G34 and G35, with constant or variable lead, single or as a chain.
 
-The executor cuts a complete chain in one pass, synchronized with the measured spindle angle. For SF, the
-tool first moves back by the corresponding fraction of the lead. The same spindle index then cuts a thread
-that is rotated by SF.
+The executor cuts a complete chain of threads, including its pull-out, in one pass, synchronized with the
+measured spindle angle. For a start angle SF, the tool first moves back by the corresponding fraction of the
+lead. The same spindle index then cuts a thread that is rotated by SF.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _MIN_LEAD = 0.01  # mm
 
 
 def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of G33, G34 or G35, after the backward move for SF.
+    """Yield the thread block of G33, G34 or G35, preceded by the backward move if SF is programmed.
 
     Raises ProgramError for an invalid thread.
     """
@@ -110,7 +110,7 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
 def _start_angle(
     state: State, statement: Statement, travel: AxisTravel, lead: float, growth: float
 ) -> Block | None:
-    """Return the backward move for SF, or None if SF is not programmed.
+    """Return the backward move for the start angle SF, or None if SF is omitted or 0.
 
     The move delays the start of the thread by a fraction of a revolution.
     """

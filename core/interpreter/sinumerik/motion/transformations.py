@@ -1,4 +1,4 @@
-"""Activation and cancellation of TRANSMIT and TRACYL, and the conditions under which they are allowed."""
+"""Activation and cancellation of the transformations TRANSMIT and TRACYL, with their conditions."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
 
 
 def _frame(state: State, statement: Statement, word: Word) -> FacePlane | SidePlane:
-    """Return the frame of the transformation for the current side of the tool.
+    """Return the coordinate frame of the transformation, for the side of the axis where the tool is.
 
     The frame is relative to the spindle axis. Raises ProgramError if the word selects groove walls or a
     data set other than the first, or if TRACYL has no diameter above 0.

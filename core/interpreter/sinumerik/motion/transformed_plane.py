@@ -101,9 +101,9 @@ class ActiveTransformation:
         return self._depth - self._plane.programmed_frame.shift_c
 
     def update_position(self) -> None:
-        """Set the position of the mill from the axis positions.
+        """Set the position of the virtual mill from the positions of the lathe axes.
 
-        This is required at the start and after a change of tool or zero.
+        This is required at the start and after a change of tool or zero point.
         """
         state, modal = self._state, self._state.modal
         self._offset = modal.drawing_zero_x, modal.drawing_zero_z
@@ -173,7 +173,7 @@ class ActiveTransformation:
         return word._replace(value=value, formula=None)
 
     def _follow_state(self) -> None:
-        """Copy changes of the lathe's state to the state of the plane."""
+        """Copy the modal values that the plane shares from the lathe's state to the state of the plane."""
         state, plane = self._state, self._plane
         for name in _COPIED_ATTRIBUTES:
             setattr(plane, name, getattr(state, name))
@@ -268,7 +268,7 @@ class ActiveTransformation:
         return made
 
     def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
-        """Return a rapid to a point of the plane for a hole pattern, in mm."""
+        """Return a rapid to a hole position of a hole pattern in the plane, in mm."""
         self._follow_state()
         state = self._plane
         z, ordinate = (y, x) if not self.has_z_depth else (x, y)
@@ -280,7 +280,7 @@ class ActiveTransformation:
         return made
 
     def _set_allowance(self, statement: Statement, word: Word) -> None:
-        """Set OFFN, the allowance of the contour.
+        """Set the contour allowance that OFFN programs.
 
         Raises ProgramError if a contour is active, and for a value other than 0 in TRACYL.
         """
@@ -325,7 +325,7 @@ class ActiveTransformation:
         )  # fmt: skip
 
     def _set_end_position(self, block: Block) -> None:
-        """Set the lathe's state to the programmed end point without compensation."""
+        """Set the position in the lathe's state to the programmed end point, without nose compensation."""
         state, frame = self._state, self._frame
         end = _spot(frame, block.x + block.offset_x, block.z + block.offset_z, block.c)
         if isinstance(frame, FacePlane):
@@ -463,10 +463,10 @@ class ActiveTransformation:
 
 
 def _spot(frame: FacePlane | SidePlane, ordinate: float, abscissa: float, depth: float) -> MillPoint:
-    """Convert a point of the plane to the frame of the mill."""
+    """Convert a point of the programmed plane to the frame of the virtual mill."""
     return (abscissa, ordinate, depth) if isinstance(frame, FacePlane) else (-ordinate, abscissa, depth)
 
 
 def _to_plane(frame: FacePlane | SidePlane, point: MillPoint) -> MillPoint:
-    """Return the abscissa, the ordinate and the depth of a point in the frame of the mill."""
+    """Return the abscissa, the ordinate and the depth of a point that is given in the mill's frame."""
     return (point[0], point[1], point[2]) if isinstance(frame, FacePlane) else (point[1], -point[0], point[2])

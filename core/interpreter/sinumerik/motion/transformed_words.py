@@ -1,4 +1,4 @@
-"""Words of blocks in a transformed plane, with the letters of its axes and the check for forbidden words."""
+"""Conversion of axis letters in a transformed plane, and rejection of words not allowed."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from core.language.sinumerik.word_table import MOTION_GROUP, NON_MODAL_GROUP, SU
 
 
 class LetterMap(NamedTuple):
-    """Mapping of the program letters to the letters of the lathe code.
+    """Mapping of the axis letters of a transformed plane to the letters of the ZX plane of the lathe.
 
-    In the lathe code, Z is the abscissa and X is the ordinate.
+    The abscissa is mapped to Z, the ordinate to X, and the depth to C.
     """
 
     transformation_word: str

@@ -1,4 +1,4 @@
-"""M functions for coolant, tool change, gears and machine outputs, but not for spindle and program end."""
+"""M functions for coolant, tool change, gears and outputs; spindle and program end are elsewhere."""
 
 from __future__ import annotations
 
@@ -26,12 +26,13 @@ _ISO_CODES = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call a
 def check_m_functions(
     state: State, statement: Statement, missing_functions: list[MachineRequirement]
 ) -> None:
-    """Check the M functions of a block.
+    """Check the M functions of a block, and add the missing ones to ``missing_functions``.
 
-    Machine-builder functions that this machine lacks are added to ``missing_functions``. The original
-    control passes an unknown code to the builder's PLC without an alarm. Raises ProgramError for a code
-    that the machine file disables, for M98 and M99 of the ISO dialect, and for a code that opens the chuck
-    while the spindle turns.
+    Missing functions are machine-builder functions that this machine lacks; the original control passes
+    such a code to the builder's PLC without an alarm. Raises ProgramError in the following cases:
+
+    - The machine file disables the code, or the code is M98 or M99 of the ISO dialect.
+    - The code opens the chuck while the spindle turns.
     """
     limits = state.setup.limits
     for code, word in statement.m_words.items():
@@ -87,7 +88,7 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
 def _warn_missing_function(state: State, statement: Statement, code: int, word: Word) -> None:
     """Log a single warning that this machine lacks a machine-builder function.
 
-    The machine does not start a program that needs the missing function.
+    A program with a missing function cannot be started.
     """
     if f"M{code}" in state.logged_functions:
         return

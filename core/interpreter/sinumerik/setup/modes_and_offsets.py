@@ -65,7 +65,7 @@ def execute_frame(state: State, statement: Statement) -> None:
 
 
 def reset_offsets(state: State) -> None:
-    """Reset the offsets at the end of a program, so that later programs in any dialect do not use them.
+    """Reset all offsets at the end of a program, so that they do not affect later programs.
 
     G71 and DIAMON become active, as the next MDI line expects.
     """
@@ -178,7 +178,7 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
 
 
 def _path_modes(state: State, statement: Statement) -> None:
-    """Set the modes for exact stop, outside corners, approach and working area."""
+    """Set the modes for exact stop, outside corners, approach and working area limits."""
     exact, corner = statement.get_g_code(table.EXACT_STOP_GROUP), statement.get_g_code(table.CORNER_GROUP)
     if exact is not None:
         state.exact = exact == 60
@@ -222,9 +222,9 @@ def note_ineffective_word(state: State, statement: Statement, word: Word, name: 
 
 
 def execute_frame_block(state: State, statement: Statement) -> bool:
-    """Execute G110 to G112, G25 or G26, and return whether the block contains one of these codes.
+    """Execute a block with G110 to G112 (pole) or with G25 or G26 (limits).
 
-    Raises ProgramError for invalid words.
+    Returns whether the block contains one of these codes. Raises ProgramError for invalid words.
     """
     word = statement.g_words.get(table.NON_MODAL_GROUP)
     code = statement.get_g_code(table.NON_MODAL_GROUP)
@@ -258,9 +258,9 @@ def _place(state: State, statement: Statement, name: str) -> float:
 
 
 def _limits(state: State, statement: Statement, *, upper: bool) -> None:
-    """Set the working area of G25 and G26.
+    """Set the working area limits of G25 and G26.
 
-    The spindle speed limits of G25 and G26 are set together with the spindle words.
+    The spindle speed limits of G25 and G26 are set when the spindle words are executed.
     """
     for name in ("X", "Z"):
         if name in statement.words:
@@ -268,7 +268,7 @@ def _limits(state: State, statement: Statement, *, upper: bool) -> None:
 
 
 def check_working_area(state: State, statement: Statement, x: float, z: float) -> None:
-    """Raise ProgramError if the tip leaves the working area of G25 and G26.
+    """Raise ProgramError if the tool tip would leave the working area of G25 and G26.
 
     ``x`` and ``z`` are machine positions in mm.
     """

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 
 class ProgrammedFrame(NamedTuple):
-    """Frame that maps a program point ``p`` to M p + (shift_x, shift_z), in mm with X as a radius.
+    """Frame that maps a program point ``p`` to the point M p + (shift_x, shift_z), in mm.
 
-    The matrix M has the rows (xx, xz) and (zx, zz). ``shift_c`` shifts C in degrees. Rotation and scaling
-    do not affect other offsets.
+    X is a radius. The matrix M has the rows (xx, xz) and (zx, zz). ``shift_c`` shifts C in degrees.
+    Rotation and scaling do not affect other offsets.
     """
 
     shift_x: float = 0.0
@@ -49,7 +49,7 @@ class ProgrammedFrame(NamedTuple):
 
     @property
     def scale_factor(self) -> float:
-        """Return the scale factor of lengths in a uniform frame."""
+        """Return the factor by which the frame scales lengths, for a frame with equal factors."""
         return sqrt(abs(self.xx * self.zz - self.xz * self.zx))
 
     def add_shift(self, x: float, z: float, c: float) -> ProgrammedFrame:

@@ -1,4 +1,7 @@
-"""Spindle words (S, LIMS, G25, G26, G96, G97, M3 to M5, M19, M70, SPOS, SETMS), the live tool, and dwells."""
+"""Spindle words, live tool and dwells of SINUMERIK.
+
+The spindle words are S, LIMS, G25, G26, G96, G97, M3 to M5, M19, M70, SPOS and SETMS.
+"""
 
 from __future__ import annotations
 
@@ -167,7 +170,7 @@ def check_spindle_c_axis(state: State, make_error: Callable[[str, str], ProgramE
 
 
 def _orient(state: State, statement: Statement, word: Word) -> SpindlePositioning:
-    """Return the angle and direction of M19 or SPOS, with an angle from 0 to less than 360 degrees."""
+    """Return the target angle (0 to less than 360 degrees) and the direction of M19 or SPOS."""
     if word.name == "M":
         return SpindlePositioning(0.0)
     form, at = word.position_form, state.modal.oriented
@@ -203,9 +206,10 @@ def compute_shortest_c_travel(state: State, angle: float) -> float:
 
 
 def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
-    """Return the signed travel of C in degrees.
+    """Return the signed travel of C for a spindle word, in degrees.
 
-    If the word has no position form, a C axis with modulo takes the shorter distance.
+    If the word does not specify a direction or form (such as DC or ACP), a modulo C axis takes the shorter
+    distance.
     """
     if word.name == "M":
         word = word._replace(value=0.0, formula=None)

@@ -1,4 +1,4 @@
-"""Tools (T) by number or name, and their cutting edges (D), whose offsets apply to all later positions."""
+"""Tools (T, by number or name) and their cutting edges (D), with the offsets that they activate."""
 
 from __future__ import annotations
 
@@ -28,11 +28,14 @@ WRONG_EDGE_NUMBER = 17180
 
 
 def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
-    """Yield the blocks of T and D.
+    """Yield the blocks of the tool words T and D.
 
-    T without D selects the tool with D1, and D0 cancels the offset. Raises ProgramError for an invalid tool
-    number, for an invalid edge or an edge that the tool does not have, for D1 to D9 without an active tool,
-    and while G41 or G42 is active. A tool without an offset only causes a warning.
+    T without D selects the tool with D1, and D0 cancels the offset. A tool without an offset only causes a
+    warning. Raises ProgramError in the following cases:
+
+    - The tool number or the edge is invalid, or the tool does not have this edge.
+    - D1 to D9 is programmed without an active tool.
+    - G41 or G42 is active.
     """
     tool, edge = statement.words.get("T"), statement.words.get("D")
     if tool is None and edge is None:
@@ -134,7 +137,7 @@ def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> T
 
 
 def _hint(word: Word | None) -> str:
-    """Return the remedy for a tool without an offset.
+    """Return the remedy that a finding suggests for a tool without an offset.
 
     For T0101, the remedy is T1 D1, because other controls use T0101 for tool 1 with its offset.
     """
