@@ -123,7 +123,10 @@ class _Table:
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: ProgramSource) -> None:
-    """Write the complete CSV file, and delete it after a program error, a full disk or Ctrl+C."""
+    """Write the complete CSV file, or no file after a program error, a full disk or Ctrl+C.
+
+    An existing file is replaced only by a complete file.
+    """
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:

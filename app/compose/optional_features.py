@@ -51,21 +51,25 @@ class Subcommand(NamedTuple):
 
 
 class OptionalFeature:
-    """Base class of an optional feature. A feature overrides only the members that it needs.
+    """Base class of an optional feature. A feature overrides only the members that it adds.
 
     - ``subcommands`` have the modules ``app.extras.NAME.SUBCOMMAND_command``.
     - ``supervised_threads`` maps each supervised thread to the function lost if the thread ends.
-    - ``own_special_functions`` names the special functions that the feature's own page shows. They are
-      not in the F10 list.
+    - ``own_special_functions`` names the special functions that a page of the feature shows. They
+      are not in the F10 list.
     - ``required_features`` names the features that this feature requires.
-    - ``worker_class_name`` is the dotted class name of workers that prove programs on other computers.
+    - ``worker_class_name`` is the dotted class name of workers that prove programs on other
+      computers.
     - ``drawing_suffixes`` are the suffixes of drawings from which this feature makes programs.
-    - ``editor_panel_class`` is the dotted name of an ``EditorPanel`` subclass. Its panel replaces the
-      editor's text area and writes lines.
-    - ``machine_actions`` are actions of ``turndesk machine`` (``app.extras.NAME.ACTION_command``).
-    - ``machine_tables`` maps each module whose ``DRIVER`` declares machine file tables to their paths.
-    - ``preceding_table`` is the machine file table listed before this feature's tables, or empty to
-      list them last.
+      The program list also shows files with these suffixes.
+    - ``editor_panel_class`` is the dotted name of an ``EditorPanel`` subclass. Its panel replaces
+      the text area of the editor and writes lines.
+    - ``machine_actions`` are actions of ``turndesk machine``
+      (``app.extras.NAME.ACTION_command``).
+    - ``machine_tables`` maps each module whose ``DRIVER`` declares machine file tables to the
+      paths of these tables.
+    - ``preceding_table`` is the machine file table listed before the tables of this feature, or
+      empty to list them last.
     """
 
     required_features: Sequence[str] = ()

@@ -63,9 +63,9 @@ class PartProver:
     def read_settings(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
-        """Return the specified stock, tools and clamping, and a finding about the stock.
+        """Return the specified stock, tools and clamping, and a finding if the stock cannot be used.
 
-        The finding is None if the stock can be used.
+        The finding is None if the stock can be used or if no stock is specified.
         """
         from app.compose.part_data import apply_stored_clamping, read_known_part
         from app.compose.specified_stock import StockContext, read_stock

@@ -87,7 +87,7 @@ class FileSendTransfer(_LineTransfer):
         self._settings, self._path, self._clock = settings, path, clock
 
     def run_transfer(self) -> int:
-        """Read and send the file, and return the number of bytes sent, including control characters.
+        """Read and send the file, and return the number of bytes sent, including markers and tape codes.
 
         Raises FileOperationError if the file cannot be read. Raises DriverError if its text cannot be sent,
         or if the transfer fails or is canceled.

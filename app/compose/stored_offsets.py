@@ -162,9 +162,9 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
 def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
     """Return the book of offsets that the operator screen shows.
 
-    If there is a ``journal``, they are the offsets of its store. Otherwise they are the read-only offsets
-    that ``load_offsets`` returns, such as those of a file. Raises CommandError if ``load_offsets`` finds
-    errors.
+    If there is a ``journal`` and ``load_offsets`` is ``read_stored_offsets``, they are the offsets of the
+    store of the journal. Otherwise they are the read-only offsets that ``load_offsets`` returns, such as
+    those of a file. Raises CommandError if ``load_offsets`` finds errors.
     """
     if journal is not None and load_offsets is read_stored_offsets:
         return journal.book()

@@ -64,8 +64,8 @@ class Desk:
     """Model of the Automatic page, with the objects that all pages share.
 
     ``persistence`` stores settings, access levels, counts and runs. Without it, these data are lost when
-    TurnDesk closes. ``start_watch`` checks the first move after a start, if the machine supports this
-    check.
+    TurnDesk closes. ``start_watch`` checks the first move of the next start before that start, if the
+    machine supports this check.
     """
 
     def __init__(

@@ -386,7 +386,11 @@ class JogModel:
             self.desk.post(StopJog())
 
     def try_leave(self) -> bool:
-        """Return whether the page can close. If it can, stop all manual motion and cancel open questions."""
+        """Return whether the page can close.
+
+        Held jog keys are treated as released in any case. If the page can close, all manual motion ends,
+        and open questions and entries are canceled.
+        """
         self.held_jog.release_all()
         if not self.manual_functions.try_leave():
             return False

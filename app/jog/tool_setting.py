@@ -232,7 +232,10 @@ class ToolSetting:
     # --- questions -----------------------------------------------------------------------------------
 
     def open_question(self, quantity: str) -> None:
-        """Ask for a value of the selected tool, or show the reason why the value cannot be changed."""
+        """Ask for a tool number or for a value of the selected tool.
+
+        If the value cannot be changed, show the reason instead.
+        """
         snapshot = self.desk.read_snapshot()
         why = "" if quantity == TOOL_QUESTION else self.find_refusal(quantity, snapshot)
         if why:

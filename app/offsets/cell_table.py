@@ -1,4 +1,4 @@
-"""Base class for offset tables that the operator edits cell by cell."""
+"""Base class for offset tables that the operator edits cell by cell, in mm and degrees."""
 
 from __future__ import annotations
 

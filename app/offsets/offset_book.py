@@ -273,7 +273,7 @@ class OffsetBook:
         """Use another store from the next call of ``poll_saving`` on.
 
         This method can be called from any thread. If ``store`` is None, ``error_text`` is the reason.
-        ``rows`` are the offsets of a second TurnDesk instance that owns the store.
+        ``rows`` are the offsets set by another TurnDesk process that owns the store.
         """
         self._reopened = store, error_text, rows
 

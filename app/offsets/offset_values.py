@@ -105,7 +105,8 @@ def describe_range_error(field: str, value: str, unit: str, low: float, high: fl
 def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
     """Return the values of an offset as one line of text.
 
-    X of a tool offset is a diameter or a radius, as on the control. All other X values are radii.
+    X of a tool offset is a diameter or a radius, as on the control. The wear in X is a diameter. All other
+    X values are radii.
     """
     if offset is None:
         return describe_unset()

@@ -82,7 +82,10 @@ class PathPane:
             self.fit_view()
 
     def _blank_below(self) -> Blank | None:
-        """Return the stock and clamping to draw below the path, or None if neither is specified."""
+        """Return the stock and clamping to draw below the path, or None to draw neither.
+
+        They are drawn only in the view of the path from above, and not in a comparison.
+        """
         picture = self.polyline
         wanted = self.aspect is PathAspect.PATH and self.polyline_before is None
         return find_blank(picture) if wanted and isinstance(picture, ProgramPicture) else None

@@ -31,8 +31,8 @@ def make_tool_life(row: ToolLifeRow) -> ToolLife:
 class ToolLifeWatch:
     """Monitor of tool life.
 
-    The store is read once. After that, this object counts the use of the tools. The limits are in the
-    store. On a mill, the counts apply to a whole tool instead of an insert.
+    The use of a tool starts from the stored use. From then on, this object counts the use of the tool. The
+    limits are in the store. On a mill, the counts apply to a whole tool instead of an insert.
     """
 
     parts_book: PartsBook

@@ -1,4 +1,4 @@
-"""USB sticks and folders from which programs are imported, with free space and write errors.
+"""USB sticks and folders for import and export of programs, with free space and write errors.
 
 The list of mounts comes from the kernel (``/proc/self/mountinfo``). On systems without this list, each
 folder is tested for being a mount point.

@@ -21,9 +21,10 @@ class ScopeFiles:
     scope_model: ScopeModel
 
     def make_visible_record(self) -> ScopeRecord | None:
-        """Return the record of the visible window, or None if the curves are live.
+        """Return the record of the visible window, or None if there is nothing to record.
 
-        In that case, a message is shown.
+        The result is None if the curves are live or the window contains no samples. In both cases, a
+        message is shown.
         """
         frozen = self.scope_model.frozen_curves
         if frozen is None:

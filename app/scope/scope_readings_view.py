@@ -25,9 +25,10 @@ _UPDATE_INTERVAL_S = 0.1  # seconds between two updates of a live value
 
 
 class ScopeReadings(RowPanel):
-    """List of the current values, with one row per curve.
+    """List of the values of the curves, with one row per curve.
 
-    A touch selects a row.
+    While the cursors are shown, a row contains the values at both cursors and their difference. Otherwise
+    it contains the latest value. A touch selects a row.
     """
 
     title = "VALUES"

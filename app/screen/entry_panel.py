@@ -153,9 +153,11 @@ class EntryPanel(Panel):
 def draw_entry_text(
     painter: ThemedPainter, area: QRectF, text: str, *, height_units: float = 2.8, has_cursor: bool = True
 ) -> None:
-    """Draw an input text, ``height_units`` theme units high, with a caret if ``has_cursor`` is True.
+    """Draw an input text, ``height_units`` theme units high, with a caret.
 
-    A rejected text is drawn as selected, because the next character replaces it.
+    The caret is drawn if ``has_cursor`` is True and an input field of the page has the keyboard focus.
+    While the field has the focus, a rejected text is drawn as selected, because the next character replaces
+    it.
     """
     u, selected = painter.theme.unit_px, painter.theme.is_caret_shown and isinstance(text, RejectedText)
     painter.setFont(painter.theme.fit_font(text, height_units, area.width() - u, is_bold=True))

@@ -347,7 +347,7 @@ class TablePanel(RowPanel):
 class ListModel(PageModel, Protocol):
     """Interface of the model of a list page.
 
-    ``handle_escape`` returns False if there is no entry or question to cancel.
+    ``handle_escape`` returns False if there was nothing to close or cancel.
     """
 
     def prompt_text(self) -> str:

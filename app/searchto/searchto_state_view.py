@@ -122,7 +122,10 @@ class RestartStatePanel(Panel):
             self._row(painter, foot.translated(0, number * high), row, min(1.9, high / u * 0.78), head=False)
 
     def _draw_fold_key(self, painter: ThemedPainter, box: QRectF, equal: tuple[StateRow, ...]) -> None:
-        """Draw the row that summarizes the rows without differences."""
+        """Draw the row that lists the rows without differences.
+
+        A touch on this row folds or unfolds them.
+        """
         u = self.theme.unit_px
         painter.fill_rect(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
         words = tr(Message("{count} IDENTICAL", count=len(equal)))

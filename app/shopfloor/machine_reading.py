@@ -229,7 +229,10 @@ class MachineReader:
         self._keys = list_condition_keys(self.machine)
 
     def read_snapshot(self, snapshot: Snapshot) -> MachineReading:
-        """Return the current values and conditions, or ``UNKNOWN_READING`` without a response."""
+        """Return the current values and conditions.
+
+        The result is ``UNKNOWN_READING`` if the control no longer responds.
+        """
         if self._pulse.check_silence(snapshot.t, self.read_time_s()):
             return UNKNOWN_READING
         values: dict[str, ReadingValue] = {

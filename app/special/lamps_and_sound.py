@@ -1,4 +1,7 @@
-"""Special function that assigns sounds to events, sets the volume, and tests sounds and lamps."""
+"""Special function that shows the lamp and sound of each event, and tests lamps and sound.
+
+The operator turns the sound of each event on or off and sets the volume.
+"""
 
 from __future__ import annotations
 

@@ -71,7 +71,10 @@ def _pair_json(pair: Pair, dialect: Dialect) -> Json:
 
 
 def _round_value(value: float) -> float:
-    """Return a value rounded to six decimals, or 0.0 if the rounded value would be zero."""
+    """Return a value rounded to six decimals, or 0.0 if it would be zero in the text output.
+
+    The text output shows four decimals.
+    """
     return 0.0 if abs(value) < _ZERO_TOLERANCE else round(value, 6)
 
 

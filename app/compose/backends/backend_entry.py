@@ -39,10 +39,12 @@ DeviceSimulation = Callable[
 class ConnectedMachine:
     """Ports of a connected machine.
 
-    - ``on_screen_station`` is the operator station on the screen, or None if the machine has its own.
-    - ``list_more_rows`` returns the rows of ``turndesk machine check`` that follow the station's row.
-    - ``list_measured_rows`` returns the names of the rows with values that hardware measures. They
-      include the rows of ``list_more_rows`` and inputs outside the backend.
+    - ``on_screen_station`` is the operator station on the screen, or None if the machine has its
+      own.
+    - ``list_more_rows`` returns the rows of ``turndesk machine check`` that follow the row of the
+      station.
+    - ``list_measured_rows`` returns names of those rows, and of inputs outside the backend. It
+      returns only the names of rows and inputs with values that hardware measures.
     """
 
     ports: MachinePorts

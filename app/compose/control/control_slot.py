@@ -23,7 +23,7 @@ _LOOK = 0.05  # s between two attempts to lock
 
 
 class ControlSlot:
-    """First slot in a data folder whose owner is no longer running, reserved for this process.
+    """First slot in a data folder without a running owner, reserved for this process.
 
     ``drivers_lock`` is the file descriptor of a lock that a driver host inherits. The lock prevents another
     control from using the drivers of this slot before that driver host has ended. Both locks are None if

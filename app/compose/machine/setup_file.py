@@ -121,7 +121,7 @@ def _list_machine_members(named: str | None) -> dict[str, Path]:
 
 
 def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, ...]:
-    """Write the setup archive, and return the names of the files that it omits.
+    """Write the setup archive, and return the member names of the programs that it omits.
 
     Raises CommandError if a file cannot be read, or if the disk is full.
     """

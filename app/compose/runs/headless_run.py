@@ -103,8 +103,8 @@ def run_headless(
     interrupted job.
 
     The scope record is saved in the folder of records. It contains at least the last ``duration_s`` seconds
-    of samples, up to ``RING_DURATION_S``. A run in real time counts tool life, parts and cycles as on the
-    screen, but a faster run counts nothing.
+    of samples. A value above ``RING_DURATION_S`` is reduced to it. A run in real time counts tool life,
+    parts and cycles as on the screen, but a faster run counts nothing.
 
     Raises CommandError if the machine does not respond, if an input does not exist or is wired, if a job
     was interrupted, or if ``discard_interrupted`` is used for a simulated machine.

@@ -222,7 +222,10 @@ def _stamp(file: Path) -> _FileStamp:
 
 
 def _find_difference(file: Path, read: ProgramSource) -> str:
-    """Return the message that a file differs from the loaded text, or an empty string if equal."""
+    """Return the message that a file has changed or is unreadable, or an empty string.
+
+    The result is empty if the text of the file equals the loaded text.
+    """
     try:
         now = load_source(file)
     except SourceError as error:
@@ -231,7 +234,10 @@ def _find_difference(file: Path, read: ProgramSource) -> str:
 
 
 def _describe_read_error(error: SourceError) -> str:
-    """Return the message that a program file cannot be read."""
+    """Return the message that the file of a program is missing, unreadable or changed.
+
+    A file that can be read but is not a program counts as changed.
+    """
     cause = error.__cause__
     if not isinstance(cause, OSError):
         return FILE_CHANGED_TEXT  # The file could be read, but is not a program.

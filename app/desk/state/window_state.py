@@ -12,8 +12,8 @@ from app.desk.late_presses import LatePressFilter
 class WindowState:
     """State of the main window that affects starts and prompts.
 
-    Without a window, cycles can always be started. ``late_presses`` drops key presses that would start an
-    action after a stall of the screen.
+    Without a window, the current page does not prevent a start. ``late_presses`` drops key presses that
+    would start an action after a stall of the screen.
     """
 
     late_presses: LatePressFilter

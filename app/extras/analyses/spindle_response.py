@@ -34,9 +34,10 @@ class SpindleResponse:
 
     - ``times_s`` (n,) are seconds from the change.
     - ``commanded_rpm`` (n,) and ``measured_rpm`` (n,) are the speeds at these times.
-    - ``step_responses`` are for the at-speed tolerance of the machine file and each of ``TOLERANCE_RATIOS``.
-    - ``variation_rpm`` is the peak-to-peak variation over the last second, and ``mean_error_rpm`` is the
-    mean error.
+    - ``step_responses`` are for the at-speed tolerance of the machine file and for each of
+      ``TOLERANCE_RATIOS``.
+    - ``variation_rpm`` is the peak-to-peak variation over the last second.
+    - ``mean_error_rpm`` is the mean error over the last second.
     """
 
     times_s: FloatArray

@@ -66,7 +66,8 @@ def add_pendant(
 ) -> ConnectedMachine:
     """Return the connected machine with its pendant, or unchanged if no pendant is configured.
 
-    If the pendant is not plugged in, the fault is reported and the search for the pendant continues.
+    If the pendant is missing or cannot be opened, the fault is reported and the search for the pendant
+    continues.
     """
     model = machine.hardware.find_driver_table(PendantModel)
     if model is None:

@@ -57,7 +57,7 @@ def make_proposal(data: PartsData, row: FeatureRow, value_mode: ValueMode) -> Co
 
 @dataclass(frozen=True, slots=True)
 class OffsetCorrection:
-    """Change of one value in the offset table, with the row to store and the text for the operator."""
+    """Change of one value in the offset table, with the new value and the text for the operator."""
 
     offset_kind: OffsetKind
     offset_number: int
@@ -69,7 +69,8 @@ class OffsetCorrection:
 def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueMode) -> OffsetCorrection:
     """Return the proposed correction as a change of the offset table.
 
-    Raises EntryError with the reason if the offset table cannot be changed.
+    Raises EntryError with the reason if the change is not possible, for example if the offset table is
+    locked or the tool has no offsets.
     """
     feature, book = proposal.feature, desk.offset_book
     why_not = book.lock_reason or find_change_refusal(desk.read_snapshot(), is_correction=True)

@@ -98,7 +98,7 @@ class StoredTools:
         return ToolPlan(entry.tool_number, entry.position_text, status, changes, (*entry.notes, *notes))
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
-        """Return the offset values of an imported tool, and notes about values that cannot be imported."""
+        """Return the offset values of a tool that can be imported, and notes about the other values."""
         offset, notes = dict(entry.offset_values), []
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")

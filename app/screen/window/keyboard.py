@@ -1,13 +1,14 @@
 """Event filter for all keys and touches, which handles stop keys and delayed presses.
 
-- Pause starts feed hold and Scroll Lock is the E-stop, with any modifier, lock and keyboard layout.
+- Pause starts feed hold and Scroll Lock is the E-stop, with any modifier, lock and keyboard
+  layout.
 - H, Space and E do the same if no caret is visible.
 - Esc starts feed hold while the machine moves, unless the page uses Esc.
-- A key that was pressed while another window had the keyboard focus is ignored until it is released. A
-  repeat is not a press.
+- The filter tracks which other keys are physically down. A repeat is not a press. A key that
+  was pressed while another window had the keyboard focus is ignored until it is released.
 - A press that was delayed by a stall of the screen is processed in order but starts nothing
-  (``app.desk.late_presses``). If an answer is dropped for this reason, the presses that follow without a
-  pause are also dropped, because they relied on the answer.
+  (``app.desk.late_presses``). If an answer is dropped for this reason, the presses that follow
+  without a pause are also dropped, because they relied on the answer.
 """
 
 from __future__ import annotations

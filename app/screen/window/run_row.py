@@ -91,7 +91,7 @@ class RunRow(Panel):
 
 
 def describe_stop(status: MachineStatus) -> str:
-    """Return the text of the first alarm, the E-stop, or a feed hold that was not requested."""
+    """Return the number and text of the first alarm, the E-stop, or an unrequested feed hold."""
     first = status.alarms[0] if status.alarms else status.stop_cause
     if first is None:
         return ""
