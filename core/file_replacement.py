@@ -44,9 +44,9 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 
 def place_folder(finished: Path, folder: Path) -> None:
-    """Rename a completely written folder to ``folder`` and sync the new name to the disk.
+    """Rename a completely written folder to ``folder`` and sync its contents and name to the disk.
 
-    ``folder`` must be missing or empty. Raises OSError if the folder cannot be renamed.
+    ``folder`` must be missing or empty. Raises OSError if syncing or renaming fails.
     """
     for inside in (*finished.rglob("*"), finished):
         if inside.is_dir():

@@ -2,7 +2,7 @@
 
 The screen, the commands and ``docs/access.md`` use this table. It covers stored data, raising the spindle
 speed limit, and switching an output manually. No level is needed to run a proved program, or to bring the
-machine to rest with E-stop, feed hold, Reset or drives off.
+machine to rest: E-stop, feed hold, Reset, ending a function, and drives off.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Alarms of the spindle (drive, speed, encoder, C axis, thread cutting) and of the collet."""
+"""Alarms of the spindle (drive, inverter, speed, encoder, C axis, threads) and of the collet."""
 
 from __future__ import annotations
 

@@ -143,10 +143,11 @@ class CycleStart(Command):
 
 
 class FeedHold(Command):
-    """A command that stops the axes on the path, after the commit time plus the braking time v/a.
+    """A command that stops the axes on the path.
 
-    ``by`` is the source of the request, for the log. ``press`` is the number of the key press, or 0 if
-    unknown. A press that arrives twice causes only one feed hold.
+    The axes stop within the commit time plus the braking time v/a. ``by`` is the source of the request, for
+    the log. ``press`` is the number of the key press, or 0 if unknown. A press that arrives twice causes
+    only one feed hold.
     """
 
     __slots__ = __match_args__ = ("by", "press")

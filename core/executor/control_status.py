@@ -119,7 +119,7 @@ def make_modal_state_after_mdi_cancel(modal: ModalState) -> ModalState:
 
 
 def sync_modal_state_with_machine(modal: ModalState, context: MachineContext) -> ModalState:
-    """Return the modal state with its M functions updated from the machine's current outputs.
+    """Return the modal state with its M functions updated from the current state of the machine.
 
     An alarm, a reset or a manual action may have switched them. A stopped spindle releases C. Nose
     compensation and coordinate transformation (plane switching) end with their program.

@@ -172,8 +172,7 @@ class MachineControl:
     def handle_spindle_switch(self) -> None:
         """Handle a change of the spindle switch from OFF to AUTO.
 
-        If no cycle is active, this starts a spindle that is waiting for the switch. In a stopped cycle,
-        only Cycle Start does.
+        If no cycle is active, this starts a waiting spindle. In a stopped cycle, only Cycle Start does.
         """
         spindle = self._context.spindle
         if self.state not in MANUAL_STATES or not spindle.waiting_reason:

@@ -133,7 +133,7 @@ class ScopeRecorder(ScopeRecordings):
         return replace(event, record_name=self._name)
 
     def is_saving(self, name: str) -> bool:
-        """Return whether the alarm record with this name is still being written."""
+        """Return whether the alarm record with this name is still pending or being written."""
         return name in {self._name, self._writing} - {""}
 
     # --- the recorder's thread --------------------------------------------------------------------------

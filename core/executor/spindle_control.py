@@ -359,9 +359,10 @@ class SpindleControl:
         return min(min(ask.max_rpm or self.max_rpm, self.max_rpm) * self.override, self._model.max_rpm)
 
     def _record_fall(self, rpm: float, now: float) -> None:
-        """Record the time and speed at which the commanded speed begins to fall or reverse.
+        """Record the time and speed at which a change of the commanded speed starts.
 
-        The measured speed is included because the spindle may still coast after an E-stop.
+        The change is a fall, a reversal or a rise. The measured speed is included because the spindle may
+        still coast after an E-stop.
         """
         fastest = max(abs(self.measured_rpm), abs(self.commanded_rpm))
         if abs(rpm) < fastest or rpm * self.commanded_rpm < 0.0 or rpm * self.measured_rpm < 0.0:

@@ -192,7 +192,7 @@ def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tupl
 
 
 def _angle_about(axis: Vector, start: Vector, end: Vector) -> float:
-    """Return the angle in degrees between two directions, as seen along ``axis``."""
+    """Return the signed angle in degrees from ``start`` to ``end``, as seen along ``axis``."""
     p, q = (subtract_vectors(each, scale_vector(axis, dot_product(axis, each))) for each in (start, end))
     return math.degrees(math.atan2(dot_product(axis, cross_product(p, q)), dot_product(p, q)))
 

@@ -79,7 +79,7 @@ class DriveTestMotion:
     frequencies_hz: tuple[float, ...] = ()
 
     def find_refusal(self, limits: AxisTestLimits) -> str:
-        """Return why the test parameters exceed the limits, or an empty string if they are permitted."""
+        """Return why the test parameters are not permitted, or an empty string if they are."""
         longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_STEP_TRAVEL_MM
         if not 0.0 < abs(self.travel_mm) <= longest + _ROUNDING_TOLERANCE:
             return Message(

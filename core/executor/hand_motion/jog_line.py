@@ -1,4 +1,7 @@
-"""Line along which a jog moves: a single axis, or X, Y and Z together in a tilted plane (3D-ROT)."""
+"""Line along which a jog moves: a single axis, or an axis of a tilted plane (3D-ROT).
+
+X, Y and Z move together along an axis of a tilted plane.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Homing of all axes in sequence, and touch-off of a tool on a tool setter or probe.
+"""Homing of the axes in their order, and touch-off of a tool on a tool setter or probe.
 
 The axis stops when the key is released, as in a jog. The touch-off reports the position of the second touch
 with its uncertainty. This module does not change any offset.

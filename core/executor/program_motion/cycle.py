@@ -303,7 +303,7 @@ class Cycle:
     # --- actions in every tick ----------------------------------------------------------------------------
 
     def update_current_block(self) -> None:
-        """Show the block at the current position, including blocks that were passed between two ticks."""
+        """Show the block at the current position, even if axes passed other blocks between two ticks."""
         self._show_block_at_rest(self._motion.current_block)
 
     def advance_one_tick(self) -> None:
@@ -416,9 +416,11 @@ class Cycle:
         return True
 
     def _check_spindle(self, block: Block) -> None:
-        """Check the spindle in a block with feed per revolution.
+        """Check the spindle in a block that moves at feed rate.
 
-        If its speed is lost, retract from a thread immediately, or hold the cycle in any other block.
+        If its speed is lost, retract immediately from a thread pass that has started. Hold the cycle if the
+        thread pass still waits, or in a block with feed per revolution if C is not locked. In other blocks,
+        hold the cycle only if the spindle is requested.
         """
         spindle = self._context.spindle
         if (

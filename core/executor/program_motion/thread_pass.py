@@ -222,7 +222,8 @@ class ThreadPass(SpindlePass):
     def _plan_blend(self, t: float, s: float, v: float) -> Phases | None:
         """Return two phases that bring the axis back in step with the spindle without reversing.
 
-        The result is None if the remaining distance is too short.
+        The result is None if the phases do not fit before the end of the full depth, or if the acceleration
+        of the axis is not sufficient.
         """
         path, time = self._path, _BLEND
         while time <= _MAX_CORRECTION_S:

@@ -28,7 +28,8 @@ class Corner(NamedTuple):
 def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
     """Shorten the last move, and append the chamfer or arc that leads toward the next end point.
 
-    Raises ProgramError if the corner does not fit between the moves.
+    Raises ProgramError if the corner is not possible: the last move is not a straight feed move, one move
+    has no length, both moves are on one line, or the corner does not fit.
     """
     last = state.steps[-1]
     assert last.x is not None

@@ -78,7 +78,10 @@ class DrawingPlacement:
 
 
 def find_axes(drawing: Drawing, layer: str = "") -> list[DrawingAxis]:
-    """Return the drawn lines that could be the spindle axis, with the most likely first."""
+    """Return the lines that could be the spindle axis, with the most likely first.
+
+    They include lines that are not drawn, such as Y 0 and the middle of the drawing.
+    """
     there = _contour_lines(drawing, layer)
     if not there:
         return []

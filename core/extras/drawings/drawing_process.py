@@ -1,4 +1,4 @@
-"""Reader of drawings in a separate process, which limits processor time and memory for safety."""
+"""Reader of drawings in a separate process, with limited time and memory for safety."""
 
 from __future__ import annotations
 

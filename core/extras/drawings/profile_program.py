@@ -247,9 +247,10 @@ def find_nose_radius(tool: ToolShape | None) -> float:
 
 
 def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
-    """Return the offset with which a touched-off tip cuts to size, or None if it needs none.
+    """Return the offset with which a touched-off tip cuts to size, or None without compensation.
 
-    On a SINUMERIK control, the cutting edge also contains the nose radius and the tip quadrant.
+    The result is also None without a tool. On a SINUMERIK control, the cutting edge also contains the nose
+    radius and the tip quadrant.
     """
     if not number or tool is None:
         return None
@@ -269,10 +270,10 @@ def calculate_end_extension(tool: ToolShape | None) -> float:
 
 
 def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
-    """Yield the contour, preceded by a move up the face if the contour starts toward the axis.
+    """Yield the contour, preceded by a move up the face if the contour starts into the material.
 
-    Roughing rejects a contour that starts in this direction, because the return path would cross the
-    contour.
+    This direction is toward the axis outside, and away from the axis in a bore. Roughing rejects a contour
+    that starts in this direction, because the return path would cross the contour.
     """
     side = 1.0 if outside else -1.0
     r, z = elements[0].start

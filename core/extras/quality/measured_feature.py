@@ -204,7 +204,8 @@ def propose_correction(
     """Propose a correction from the newest readings since the last correction.
 
     The change is a multiple of ``resolution`` in mm; X changes as a diameter. Raises QualityError if there
-    are no readings, a reading is not finite, or the deviation or the change is too large to be wear.
+    are no readings, or if a reading is not finite. Also raises it if the deviation of a single reading or
+    the change is too large to be wear.
     """
     rule = rule or CorrectionRule()
     if not readings:

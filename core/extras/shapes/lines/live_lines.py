@@ -33,7 +33,8 @@ class FaceMilling(NamedTuple):
 
     ``path`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is an X at Y 0
     that is clear of the part. If ``is_closed`` is False, the tool returns to it after each round. If
-    ``is_closed`` is True, the path leads around the part, and its first point is also clear of the part.
+    ``is_closed`` is True, the path leads around the part, and the tool moves directly to its first point,
+    which is also clear of the part.
     """
 
     entry_x: float

@@ -1,4 +1,4 @@
-"""Program lines of shapes in SINUMERIK, with spaces between words and with drilling cycles.
+"""Program lines of shapes in SINUMERIK: spaces between words, leading zeros, drilling cycles.
 
 Grooves are cut with G1, or with CYCLE93 if the form specifies the second cutting edge of the blade.
 """
@@ -22,7 +22,8 @@ _TURNS = {"M03": "M3", "M04": "M4"}
 class SinumerikCodeWriter(CodeWriter):
     """Writer of SINUMERIK lines for programs with G18, G90 and G95.
 
-    Every line repeats its motion word, except the lines of a contour.
+    A motion word that is still active is omitted. It is always written for an arc, for the move after an
+    arc, for the first move of a contour, and after ``clear_modal_state``.
     """
 
     supports_loops = False
