@@ -114,9 +114,10 @@ _REST_SPEED = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
 
 @dataclass(frozen=True, slots=True)
 class JunctionTolerance:
-    """Permitted position and velocity jumps of each axis between motion pieces, in mm or degrees.
+    """Permitted jumps of each axis in position and velocity where two motion pieces meet.
 
-    The position tolerance covers rounding. The velocity tolerance covers a corner: ``amax * interval``.
+    Positions are in mm or degrees, and velocities are in mm/s or degrees/s. The position tolerance covers
+    rounding. The velocity tolerance covers a corner: ``amax * interval``.
     """
 
     position: tuple[float, ...]

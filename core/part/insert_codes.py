@@ -259,7 +259,7 @@ class _CodeDigits:
     last_read_position: int  # position of the last character read, without blanks and dashes
 
     def remove_digits(self, found: str, what: str, known: Mapping[str, float]) -> float:
-        """Remove the digits ``found`` from the start of the code, and return their value in ``known``.
+        """Remove the digits ``found`` from the remaining digits, and return their value in ``known``.
 
         ``what`` is the quantity that the digits specify, for messages. Raises InsertCodeError if the digits
         are missing or unknown.

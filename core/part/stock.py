@@ -78,11 +78,12 @@ def make_tube(
 
 
 def calculate_critical_rpm(stock: Stock, stick_out: float) -> float:
-    """Return the first critical speed of a bar that extends from the chuck to Z0, in rpm.
+    """Return the first critical speed of the bar that extends from the chuck, in rpm.
 
-    ``stick_out`` is the length of this bar in mm; the result is 0 if it is not positive. The formula is
-    that of a beam clamped at one end, 1.8751² · √(E·I / (ρ·A)) / L². E and ρ are those of brass, which
-    gives the lowest speed of the usual turned materials. A bent bar whirls below this speed.
+    ``stick_out`` is the distance from the chuck to Z0 in mm; the bar extends to the front of the stock. The
+    result is 0 if the bar does not extend from the chuck. The formula is that of a beam clamped at one end,
+    1.8751² · √(E·I / (ρ·A)) / L². E and ρ are those of brass, which gives the lowest speed of the usual
+    turned materials. A bent bar whirls below this speed.
     """
     length = stick_out + stock.front_z_mm
     if length <= 0.0:

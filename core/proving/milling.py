@@ -62,7 +62,10 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
 
 
 def cut_path_at_fractions(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
-    """Return the section of a path between two fractions of its length, each from 0 to 1."""
+    """Return the section of a path between two fractions of the path, each from 0 to 1.
+
+    The fractions count the points of the path as equally spaced.
+    """
     at = np.linspace(0.0, 1.0, len(path))
     shares = np.concatenate(
         ([start_fraction], at[(at > start_fraction) & (at < end_fraction)], [end_fraction])

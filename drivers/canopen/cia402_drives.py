@@ -290,7 +290,8 @@ def _to_object_address(entry: PdoEntry) -> tuple[int, int]:
 class DriveSetupData:
     """Configuration of a drive.
 
-    ``mode_bits`` are the required modes as bits of object 6502h. A drive that lacks an object in
+    ``mode_bits`` are the required modes as bits of object 6502h. ``default_objects`` and ``file_objects``
+    are the values to write; those of the machine file replace the defaults. A drive that lacks an object in
     ``required_objects`` cannot be used. ``record_object`` is the queue for motion records.
     ``setpoint_period_s`` is the setpoint period in seconds that the drive must monitor.
     """

@@ -72,7 +72,7 @@ class HalInput:
 class HalPot:
     """Pot with its pin (0…1), or handwheel with its count pin.
 
-    ``switch_input`` is the name of the input that enables the pot.
+    ``switch_input`` is the name of the input of the switch on the pot, which selects AUTO.
     """
 
     pin_name: str

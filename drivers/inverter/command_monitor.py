@@ -130,7 +130,7 @@ class CommandMonitor:
         return ""
 
     def _is_decelerating(self, state: InverterState) -> bool:
-        """Return whether the output has fallen below its lowest value so far by more than its ripple."""
+        """Return whether the output is more than a ripple below its lowest value since the command."""
         return state.output_hz < self._lowest * (1.0 - _SPEED_DROP_FRACTION)
 
 

@@ -170,8 +170,9 @@ _BUSY_STATES = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 class ReportGenerator:
     """Generator of status reports, which decides when a report includes offsets and overrides.
 
-    Both are included at intervals and after a change. If both are due, the offsets come first. A full
-    report includes both. Firmware of 2023 delayed the overrides and never included them in a full report.
+    Both are included at intervals and after a change. If both are due at once, the report includes the
+    overrides, and the next report includes the offsets. A full report includes both. Firmware of 2023
+    delayed the overrides and never included them in a full report.
     """
 
     reports_until_offsets: int = 0

@@ -73,7 +73,7 @@ INSERT_TOOLS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 @dataclass(slots=True)
 class AirCutChecks:
-    """Checks for feeds that cut no material although a cut is expected, called in program order.
+    """Checks for missing cuts after feeds and after rapids into the part, called in program order.
 
     Call ``check_feed`` or ``check_rapid`` after each move has been cut, and ``record_pause`` between moves.
     """

@@ -184,7 +184,7 @@ class EdgeChecks:
             )
 
     def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """Check for an arc between the deepest part-off position and the bar, where no finished part is."""
+        """Check for an arc on the bar side of the deepest part-off, past the end of the finished part."""
         if self.part_off_z is None or move.kind is not BlockKind.ARC or shape.kind not in INSERT_TOOLS:
             return
         front = max(z for z, _ in move.points)

@@ -134,7 +134,8 @@ def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 def _slot(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 3, a slot milled level by level.
 
-    On each level, the tool mills along the first side and then around the full width.
+    The tool mills along the first side on each level. After the last level, it mills around the full width
+    once.
     """
     first, second = _sides(data, 4), _sides(data, 5)
     (x, y), clear = tool.xy_position, tool.z_position

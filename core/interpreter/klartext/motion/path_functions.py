@@ -229,9 +229,10 @@ class PathRunner:
         yield from (replace(each, feed=_reduced_feed(state, each)) for each in made)
 
     def _add(self, elements: list[PathElement], *, hold: bool) -> Iterator[Block]:
-        """Append elements to the buffer.
+        """Append elements to the buffer, and yield all blocks unless elements must remain buffered.
 
-        All buffered blocks are yielded, unless ``hold`` is True because a later element is needed.
+        Elements remain buffered if ``hold`` is True, if radius compensation is active, or until an approach
+        is followed by an element that moves in the working plane.
         """
         if self._corner is not None and elements:
             elements[0] = self._insert_corner(elements[0])

@@ -134,7 +134,10 @@ _LIMITS: dict[WordLimit, Callable[[State], float]] = {
 
 
 def check_word_groups(statement: Statement, code: CodeEntry) -> None:
-    """Raise ProgramError if a line lacks all words of a required group or has exclusive words."""
+    """Raise ProgramError if a line violates the word groups of its code.
+
+    The line must have at least one of the required words, and no two words that exclude each other.
+    """
     if code.required_words is not None and statement.words.keys().isdisjoint(code.required_words.letters):
         raise refused(statement, code, code.required_words.refusal)
     for letters, refusal in code.exclusive_words:
