@@ -302,18 +302,22 @@ class DriverHost:
     def _trip(self, silence_s: float, *, spindle: bool = True) -> None:
         """Set the outputs to their safe states, stop the spindle, and record the functions that were on.
 
-        The spindle is not stopped while a tool is in the cut or while the spindle is oriented. Modules that
-        missed the heartbeat have already changed their outputs.
+        The spindle is not stopped while a tool is in the cut or while the spindle is oriented. A spindle
+        drive that is being engaged as C is released, because it may turn; an engaged C remains engaged.
+        Modules that missed the heartbeat have already changed their outputs.
         """
-        orientation = self._ports.orientation
+        orientation, lock = self._ports.orientation, self._ports.lock
         spindle = spindle and not (orientation is not None and orientation.is_oriented())
+        changes_to_c = spindle and self._guard.is_c_requested and lock is not None and not lock.is_c_ready()
         before = dict(self._ports.io.get_outputs())
         self._carefully(self._ports.io.switch_to_safe_state)
+        if lock is not None and changes_to_c:
+            self._carefully(partial(lock.set_c_mode, False))
         if spindle:
             self._carefully(lambda: self._ports.spindle.set_speed(0.0))
         after = self._ports.io.get_outputs()
         off = [name for name, on in before.items() if on and not after.get(name)]
-        self._guard.record_trip(silence_s, off, is_spindle_stopped=spindle)
+        self._guard.record_trip(silence_s, off, is_spindle_stopped=spindle, is_c_canceled=changes_to_c)
 
     def _hear(self) -> None:
         now = self._ports.clock.now()

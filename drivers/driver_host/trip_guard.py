@@ -9,6 +9,7 @@ from core.message import Message as Text
 from drivers.driver_host.host_messages import Message, number, text
 
 _MOTION_COMMANDS = frozenset(("splice", "mesh"))
+_SWITCHING_COMMANDS = frozenset(("write", "hold"))  # Rejected only with ``on``.
 
 
 class TripGuard:
@@ -18,17 +19,22 @@ class TripGuard:
         self.active_trip: DriverHostTrip | None = None
         self._count = 0
         self._turns = False  # The control has commanded the spindle to turn.
+        self.is_c_requested = False  # The control has commanded the spindle drive to engage as C.
 
     def require_allowed(self, message: Message) -> None:
         """Raise TrippedError if a trip is not acknowledged and the message requests an action.
 
-        Such actions are a motion, a start of the spindle, and switching on an output.
+        Such actions are a motion, a start of the spindle, engaging C, and switching on an output. Engaging C
+        counts because the spindle may search its index and turn to its position. Stopping, releasing and
+        switching off are always allowed, and so is the power of the drives, which moves nothing.
         """
-        what = text(message.header, "what")
+        what, is_on = text(message.header, "what"), message.header.get("on") is True
         turns = what == "orient" or (what == "run" and number(message.header, "rpm") != 0.0)
-        switches = what == "write" and message.header.get("on") is True
         if self.active_trip is not None and (
-            text(message.header, "do") in _MOTION_COMMANDS or what == "home" or turns or switches
+            text(message.header, "do") in _MOTION_COMMANDS
+            or what == "home"
+            or turns
+            or (what in _SWITCHING_COMMANDS and is_on)
         ):
             raise TrippedError(
                 Text(
@@ -38,14 +44,25 @@ class TripGuard:
             )
         if what in {"run", "coast", "orient", "release"}:
             self._turns = turns
+        elif what == "hold":
+            self.is_c_requested = is_on
 
-    def record_trip(self, silence_s: float, outputs: Sequence[str], *, is_spindle_stopped: bool) -> None:
+    def record_trip(
+        self,
+        silence_s: float,
+        outputs: Sequence[str],
+        *,
+        is_spindle_stopped: bool,
+        is_c_canceled: bool = False,
+    ) -> None:
         """Record that outputs and the spindle were switched off.
 
-        No trip is recorded if none of them was on.
+        ``is_c_canceled`` means that the spindle drive was being engaged as C, which counts as a spindle that
+        turns. No trip is recorded if nothing was on.
         """
-        turned = self._turns and is_spindle_stopped
+        turned = (self._turns and is_spindle_stopped) or is_c_canceled
         self._turns = self._turns and not is_spindle_stopped
+        self.is_c_requested = self.is_c_requested and not is_c_canceled
         if turned or outputs:
             self._tripped(silence_s, turned, outputs)
 

@@ -26,7 +26,6 @@ from drivers.driver_host.host_server import (
     DriverHost,
     execute_command,
 )
-from drivers.driver_host.trip_guard import TripGuard
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.wakeups import ManualClock, ProcessWakeup
 from tests.coded import raises_code
@@ -550,22 +549,3 @@ def test_command_for_a_missing_port_is_rejected_with_the_reason(what: str, reaso
     with raises_code(DriverError, "driver") as told:
         execute_command(sim.ports, {"what": what, "angle": 90.0, "sense": 0})
     assert told.value.reason == reason
-
-
-def test_trip_is_acknowledged_only_by_its_number_and_stops_always_pass() -> None:
-    guard = TripGuard()
-    guard.record_trip(0.4, [], is_spindle_stopped=True)
-    assert guard.active_trip is None  # nothing was on
-    guard.record_trip(0.4, ["coolant"], is_spindle_stopped=True)
-    assert guard.active_trip is not None
-    for head in ({"what": "run", "rpm": 100.0}, {"what": "home"}, {"do": "splice"}, {"what": "orient"}):
-        with raises_code(DriverError, "late", "0.40 s"):
-            guard.require_allowed(Message(head, ()))
-    for head in ({"what": "run", "rpm": 0.0}, {"what": "stop"}, {"what": "write", "on": False}):
-        guard.require_allowed(Message(head, ()))
-    guard.acknowledge_trip(guard.active_trip.trip_number + 1)
-    assert guard.active_trip is not None
-    guard.acknowledge_trip(guard.active_trip.trip_number)
-    assert guard.active_trip is None
-    guard.acknowledge_trip(1)
-    guard.require_allowed(Message({"what": "home"}, ()))
