@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from core.ports import DriverError
 from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import CIA402_PROFILE, DriveProfile
 from drivers.setpoint_queue import AxisProperties
+
+MAX_SIGNED_32_BIT = 2**31 - 1  # Maximum of a signed 32-bit number.
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +27,24 @@ class AxisConfig(AxisProperties):
     home_method: int = 0
     home_latch_speed: float = 0.0
     home_offset: float = 0.0
+
+    def convert_position(self, position: float) -> int:
+        """Convert a position in mm or degrees into counts of the drive.
+
+        Raises DriverError if the position is outside the range of the drive's signed 32-bit counter.
+        """
+        counts = position / self.count
+        if not abs(counts) <= MAX_SIGNED_32_BIT:  # also a position that is not a number
+            raise DriverError(
+                "{axis}: position {position} is outside ±{limit}, the range of the drive's position counter; "
+                "check the position in the program, and the resolution of the axis in the machine file",
+                "drive-limits",
+                reason="counter-range",
+                axis=self.name,
+                position=f"{position:.1f}",
+                limit=f"{MAX_SIGNED_32_BIT * self.count:.1f}",
+            )
+        return round(counts)
 
     def convert_speed(self, speed: float) -> float:
         """Convert a speed in mm/s or degrees/s into the unit of the drive, counts/s or rpm."""

@@ -115,7 +115,8 @@ class CanopenHoming:
     def _write_parameters(self) -> None:
         """Write the method, and the speeds, acceleration and home offset if the drive has these objects.
 
-        Raises DriverError if the drive rejects a value, or if it needs a home offset but lacks the object.
+        Raises DriverError if the drive rejects a value or cannot count to the home offset, or if it needs a
+        home offset but lacks the object.
         """
         config, setup = self.config, self._drive.setup
         slow = config.home_latch_speed or config.home_speed / 10.0
@@ -126,7 +127,7 @@ class CanopenHoming:
             (od.HOME_ACCEL, 0, config.convert_acceleration(config.amax)),
         ):
             setup.write_optional_object(index, sub, value)
-        place = round(config.home_offset / config.count)
+        place = config.convert_position(config.home_offset)
         if not setup.write_optional_object(config.profile.home_offset_object, 0, place) and place:
             raise DriverError(
                 "{name}: the drive has no object {home_place}h (home offset), so "

@@ -323,7 +323,7 @@ class CanopenSpindleC:
         self._off = self._angle_to_position()
         place = self._place() - self._off
         self._spindle.is_counter_ignored = True
-        self._homing.start_position_setting(round(place / self._axis.config.count), now)
+        self._homing.start_position_setting(self._axis.config.convert_position(place), now)
         self._enter(CanopenCStep.SET_POSITION, now)
 
     def _here(self, now: float) -> None:

@@ -14,7 +14,7 @@ from core.message import Message
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import CanBus
-from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_config import MAX_SIGNED_32_BIT, AxisConfig
 from drivers.canopen.canopen_nodes import ObjectValues
 from drivers.canopen.canopen_objects import (
     CSP,
@@ -44,12 +44,12 @@ _FAULT_STATES = frozenset((DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE))
 def pack_epos2_record(duration_ms: int, velocity: float, position: float) -> bytes:
     """Pack one EPOS2 record: position in the low 32 bits, velocity in 24 bits, time in 8 bits.
 
-    Raises ValueError if a value is out of range.
+    ``velocity`` is in the drive's unit, rpm or counts/s, and ``position`` in counts. Raises ValueError if
+    the position does not fit in 32 bits or the velocity in 24 bits, or if the time is not between 0 and 255
+    ms.
     """
-    speed, place = round(velocity), round(position)
-    if abs(speed) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
-        raise ValueError(f"a record of {duration_ms} ms and {speed} counts/s does not fit the drive")
-    return _RECORD_FORMAT.pack(place) + (speed & 0xFFFFFF).to_bytes(3, "little") + bytes([duration_ms])
+    _check_record(duration_ms, velocity, position, MAX_SIGNED_32_BIT)
+    return _RECORD_FORMAT.pack(round(position)) + _low(round(velocity)) + bytes([duration_ms])
 
 
 def unpack_epos2_record(data: bytes) -> tuple[int, int, int]:
@@ -63,17 +63,25 @@ def pack_copley_segment(segment_number: int, duration_ms: int, velocity: float, 
     ``velocity`` is in counts/s, and ``position`` in counts. Raises ValueError if the position or the packed
     velocity does not fit in 24 bits, or if the time is not between 0 and 255 ms.
     """
-    speed, place = round(_COPLEY_VELOCITY_SCALE * velocity), round(position)
-    if abs(speed) > _MAX_SIGNED_24_BIT or abs(place) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
-        raise ValueError(
-            f"a segment of {duration_ms} ms, {place} counts and {velocity:.0f} counts/s does not fit"
-        )
-    return bytes([segment_number % _COUNTER_RANGE, duration_ms]) + _low(place) + _low(speed)
+    scaled = _COPLEY_VELOCITY_SCALE * velocity
+    _check_record(duration_ms, scaled, position, _MAX_SIGNED_24_BIT)
+    return bytes([segment_number % _COUNTER_RANGE, duration_ms]) + _low(round(position)) + _low(round(scaled))
 
 
 def unpack_copley_segment(data: bytes) -> tuple[int, int, float, int]:
     """Return the number, milliseconds, velocity in counts/s, and position of a Copley segment."""
     return data[0] & 0x07, data[1], _signed(data[5:8]) / _COPLEY_VELOCITY_SCALE, _signed(data[2:5])
+
+
+def _check_record(duration_ms: int, velocity: float, position: float, max_position: int) -> None:
+    """Raise ValueError unless each value of a record fits into its bits."""
+    # A value that is not a number fits nowhere.
+    if not (
+        0 <= duration_ms <= 255 and abs(velocity) <= _MAX_SIGNED_24_BIT and abs(position) <= max_position
+    ):
+        raise ValueError(
+            f"{duration_ms} ms, velocity {velocity:.0f} or position {position:.0f} does not fit the drive"
+        )
 
 
 class RecordQueue:
@@ -103,16 +111,31 @@ class RecordQueue:
     def send_record(self, duration_ms: int, velocity: float, position: float) -> None:
         """Send one record.
 
-        ``position`` is in mm or degrees, and ``velocity`` in mm/s or degrees/s. Raises ValueError if a
-        value does not fit into a record, and DriverError if the bus has failed.
+        ``position`` is in mm or degrees, and ``velocity`` in mm/s or degrees/s. Raises DriverError if a
+        value does not fit into a record, or if the bus has failed.
         """
-        config = self._config
-        place = position / config.count
-        if self.drive_queue.record_format is RecordFormat.COPLEY:
-            self._send(pack_copley_segment(self._pushed, duration_ms, velocity / config.count, place))
-        else:
-            self._send(pack_epos2_record(duration_ms, config.convert_speed(velocity), place))
+        place = self._config.convert_position(position)
+        try:
+            record = self._pack_record(duration_ms, velocity, place)
+        except ValueError as error:
+            raise DriverError(
+                "{axis}: position {position} at speed {speed}/s does not fit into a record of the drive's "
+                "queue; check the resolution and the maximum speed of the axis in the machine file",
+                "drive-limits",
+                reason="record-range",
+                axis=self._config.name,
+                position=f"{position:.1f}",
+                speed=f"{velocity:.1f}",
+            ) from error
+        self._send(record)
         self._pushed += 1
+
+    def _pack_record(self, duration_ms: int, velocity: float, place: int) -> bytes:
+        """Return a record in the format of the drive. ``velocity`` is in mm/s or degrees/s."""
+        config = self._config
+        if self.drive_queue.record_format is RecordFormat.COPLEY:
+            return pack_copley_segment(self._pushed, duration_ms, velocity / config.count, place)
+        return pack_epos2_record(duration_ms, config.convert_speed(velocity), place)
 
 
 def _low(value: int) -> bytes:

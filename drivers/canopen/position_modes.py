@@ -160,7 +160,7 @@ class ProfiledFollower(SetpointFollower):
                 drive.setup.write(od.PROFILE_SPEED, 0, max(round(speed), 1))
             drive.setup.write_optional_object(od.PROFILE_ACCEL, 0, config.convert_acceleration(accel))
             drive.setup.write_optional_object(od.PROFILE_DECEL, 0, config.convert_acceleration(accel))
-            drive.target_value = round(rest[i] / config.count)
+            drive.target_value = config.convert_position(rest[i])
             drive.mode_bits |= NEW | AT_ONCE
 
     def _await_acknowledgment(self, now: float) -> None:
@@ -276,7 +276,7 @@ class CyclicFollower(SetpointFollower):
         self._fed = self.get_path_time(self.schedule.due_time_s + self.schedule.period_s)
         p, _ = self._queue.get_commanded_state(self._fed)
         for axis, index in zip(self._axes, self._indices, strict=True):
-            axis.drive.target_value = round(p[index] / axis.config.count)
+            axis.drive.target_value = axis.config.convert_position(p[index])
         if self.drive_mode == IP:
             self._interpolate(now)
 

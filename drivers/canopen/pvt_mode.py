@@ -218,10 +218,7 @@ class PvtFollower(SetpointFollower):
     def _push(self, ms: int) -> None:
         positions, velocities = self._demand(self.next_point_time_s)
         for axis, p, v in zip(self._axes, positions, velocities, strict=True):
-            try:
-                _get_record_queue(axis).send_record(ms, v, p)
-            except ValueError as error:
-                self.failure = self.failure or Fault(f"{axis.config.name}: {error}", "drive-limits")
+            _get_record_queue(axis).send_record(ms, v, p)
         self.next_point_time_s += 0.001 * ms
         self._sent.append(self.next_point_time_s)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from drivers.canopen.drive_set import pack_epos2_record, unpack_epos2_record
@@ -18,10 +20,29 @@ def test_pvt_record_is_packed_into_its_bytes() -> None:
     assert pack_epos2_record(0, 1e5, -1.0) == bytes([0xFF, 0xFF, 0xFF, 0xFF, 0xA0, 0x86, 0x01, 0])
 
 
-@pytest.mark.parametrize(("ms", "velocity"), [(256, 0.0), (-1, 0.0), (20, 2.0**23), (20, -(2.0**23))])
-def test_value_that_does_not_fit_a_pvt_record_is_rejected(ms: int, velocity: float) -> None:
+@pytest.mark.parametrize(
+    ("ms", "velocity", "position"),
+    [
+        (256, 0.0, 0.0),
+        (-1, 0.0, 0.0),
+        (20, 2.0**23, 0.0),
+        (20, -(2.0**23), 0.0),
+        (20, math.inf, 0.0),
+        (20, 0.0, 2.0**31),
+        (20, 0.0, -(2.0**31)),
+        (20, 0.0, -math.inf),
+        (20, 0.0, math.nan),
+    ],
+)
+def test_value_that_does_not_fit_a_pvt_record_is_rejected(ms: int, velocity: float, position: float) -> None:
     with pytest.raises(ValueError, match=f"{ms} ms"):
-        pack_epos2_record(ms, velocity, 0.0)
+        pack_epos2_record(ms, velocity, position)
+
+
+def test_largest_position_of_a_pvt_record_is_packed() -> None:
+    # 2³¹ - 1 = 0x7FFFFFFF; its negative is 0x80000001
+    assert pack_epos2_record(1, 0.0, 2.0**31 - 1) == bytes([0xFF, 0xFF, 0xFF, 0x7F, 0, 0, 0, 1])
+    assert pack_epos2_record(1, 0.0, 1 - 2.0**31) == bytes([1, 0, 0, 0x80, 0, 0, 0, 1])
 
 
 def test_hermite_interpolation_is_exact_on_a_parabola() -> None:
