@@ -5,14 +5,13 @@ A bridge that is silent or has ended is a fault.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import get_args
 
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.hal.bridge.packets import BridgeConfig, PacketHead, build_packets, number, pack_packet, text
-from drivers.hal.hal_session import BridgeLink
+from drivers.hal.hal_session import INVALID_PACKET, BridgeLink
 from drivers.setpoint_pieces import MotionPiece
 
 _BRIDGE_TIMEOUT_S = 0.15  # Seconds without a report.
@@ -107,8 +106,8 @@ class HalLink:
                     self.sample_rows.append(numbers)
         except DriverError as error:
             self.failure = error.fault
-        except (ValueError, struct.error):
-            self.failure = Fault("the HAL bridge sent an invalid packet", "hal-silent")
+        except ValueError:
+            self.failure = Fault(INVALID_PACKET, "hal-silent")
             self._link.stop_bridge()
 
     @property

@@ -138,6 +138,7 @@ _HALRUN_MESSAGES = {
 
 
 _ENDED, _MUTE = "HAL bridge process has ended", "no error message"
+INVALID_PACKET = "the HAL bridge sent an invalid packet"
 
 
 class PinVerdict(NamedTuple):
@@ -163,7 +164,7 @@ class BridgeLink(Protocol):
     def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield the received packets.
 
-        Raises DriverError if the bridge has ended, and ValueError or struct.error for an invalid packet.
+        Raises DriverError if the bridge has ended, and ValueError for an invalid packet.
         """
         ...
 
@@ -323,7 +324,7 @@ class HalSession:
     def _read_first_packet(self, deadline: float) -> PacketHead:
         """Return the next packet during startup.
 
-        Raises DriverError with the output of halrun if no packet is received.
+        Raises DriverError with the output of halrun if no packet is received, and if the packet is invalid.
         """
         assert self._socket is not None
         assert self._halrun is not None
@@ -340,7 +341,10 @@ class HalSession:
                     self._halrun.wait(3.0)
                 words = Message("halrun ended during startup: {output}", output=self._read_output() or _MUTE)
                 raise DriverError(words, "hal-setup")
-            return unpack_packet(data)[0]
+            try:
+                return unpack_packet(data)[0]
+            except ValueError as error:
+                raise DriverError(INVALID_PACKET, "hal-setup") from error
         words = Message(
             "HAL did not start within {seconds} s: {output}",
             seconds=f"{_START:g}",
@@ -377,7 +381,7 @@ class HalSession:
     def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield all received packets.
 
-        Raises DriverError if the bridge has ended, and ValueError or struct.error for an invalid packet.
+        Raises DriverError if the bridge has ended, and ValueError for an invalid packet.
         """
         assert self._socket is not None
         while True:

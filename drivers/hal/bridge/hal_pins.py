@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 _HAL_TYPES = frozenset(("float", "bit", "s32", "u32"))
 _IN, _OUT, _BOTH = "IN", "OUT", "I/O"
+_HALCMD_TIMEOUT_S = 10.0  # Less than the driver waits for HAL, so that the driver receives this cause.
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +50,18 @@ class HalSignal:
 def run_halcmd(*words: str) -> str:
     """Run halcmd and return its output.
 
-    Raises RuntimeError with the error text of halcmd if halcmd fails. Raises OSError if halcmd cannot be
-    started, and ``subprocess.TimeoutExpired`` if it takes longer than 20 s.
+    Raises RuntimeError with the error text of halcmd if halcmd fails, or if it takes longer than 10 s. Raises
+    OSError if halcmd cannot be started.
     """
-    done = subprocess.run(["halcmd", *words], capture_output=True, text=True, timeout=20, check=False)
+    try:
+        done = subprocess.run(
+            ["halcmd", *words], capture_output=True, text=True, timeout=_HALCMD_TIMEOUT_S, check=False
+        )
+    except subprocess.TimeoutExpired as error:
+        raise RuntimeError(
+            f"halcmd {' '.join(words)} did not end within {_HALCMD_TIMEOUT_S:g} s; end all other programs "
+            "that use HAL"
+        ) from error
     if done.returncode:
         raise RuntimeError((done.stderr or done.stdout).strip() or "halcmd has failed")
     return done.stdout

@@ -28,13 +28,18 @@ def pack_packet(head: Mapping[str, object], numbers: Iterable[float] = ()) -> by
 def unpack_packet(data: bytes) -> tuple[PacketHead, Sequence[float]]:
     """Return the header and the numbers of a packet.
 
-    Raises ValueError or struct.error for invalid data.
+    Raises ValueError for invalid data, such as a head that is not a JSON object.
     """
-    (length,) = _LENGTH.unpack_from(data)
-    head: PacketHead = json.loads(data[_LENGTH.size : _LENGTH.size + length])
-    numbers = array("d")
-    numbers.frombytes(data[_LENGTH.size + length :])
-    return head, numbers
+    try:
+        (length,) = _LENGTH.unpack_from(data)
+        head = json.loads(data[_LENGTH.size : _LENGTH.size + length])
+    except (struct.error, RecursionError) as error:
+        raise ValueError(f"the head of a packet is invalid: {error}") from error
+    if isinstance(head, dict):
+        numbers = array("d")
+        numbers.frombytes(data[_LENGTH.size + length :])
+        return head, numbers
+    raise ValueError("the head of a packet is not an object")
 
 
 def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
@@ -75,9 +80,12 @@ def build_packets(
 
 
 def number(head: Mapping[str, object], key: str, default: float = 0.0) -> float:
-    """Return the number with the name ``key`` in a packet header, or ``default`` if it is missing."""
+    """Return a number from the head of a packet, or ``default`` if it is missing or too large."""
     value = head.get(key)
-    return float(value) if isinstance(value, int | float) else default
+    try:
+        return float(value) if isinstance(value, int | float) else default
+    except OverflowError:  # a whole number beyond the range of a double
+        return default
 
 
 def text(head: Mapping[str, object], key: str) -> str:

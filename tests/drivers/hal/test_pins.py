@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from drivers.hal import hal_session
+from drivers.hal.bridge import hal_pins
 from drivers.hal.bridge.hal_pins import (
     ExpectedPin,
     HalPin,
@@ -139,3 +141,19 @@ def test_halcmd_error_is_reported_with_its_text(
         run_halcmd("show", "pin")
     command.write_text('#!/bin/sh\necho "asked $*"\n')
     assert run_halcmd("-s", "show", "pin") == "asked -s show pin\n"
+
+
+def test_halcmd_that_hangs_is_reported_with_its_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command = tmp_path / "halcmd"
+    command.write_text("#!/bin/sh\nexec sleep 600\n")
+    command.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
+    monkeypatch.setattr(hal_pins, "_HALCMD_TIMEOUT_S", 0.05)
+    with pytest.raises(RuntimeError, match=r"halcmd -s show pin .*0\.05 s"):
+        run_halcmd("-s", "show", "pin")
+
+
+def test_halcmd_timeout_leaves_time_to_report_it_before_the_driver_gives_up() -> None:
+    assert 2 * hal_pins._HALCMD_TIMEOUT_S < hal_session._START

@@ -105,6 +105,14 @@ def test_error_of_the_bridge_is_reported_in_its_words(
     assert str(refused(path)) == told
 
 
+def test_invalid_packet_of_the_bridge_ends_the_startup(path: Path) -> None:
+    says = SAYS.format(python=sys.executable, root=str(ROOT), words=[[1, 2]])
+    halrun(path, says)
+    error = refused(path)
+    assert error.code == "hal-setup"
+    assert "packet" in str(error)
+
+
 def test_check_only_session_returns_the_verdicts_of_all_pins(path: Path) -> None:
     """Then it is no fault of the session: who asked shows them all."""
     wrong = [["a", "b", "is written by another"], ["c", "d", ""]]
