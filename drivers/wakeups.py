@@ -185,3 +185,5 @@ class ConnectionAttempt(Generic[T]):
             self._found.put(self._open())
         except DriverError as error:
             self._found.put(error)
+        except OSError as error:  # for example no memory for a new process
+            self._found.put(DriverError("the connection cannot be opened: {error}", error=error))

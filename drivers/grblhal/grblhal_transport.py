@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     import serial
 
 
-_TCP_PATTERN = re.compile(r"(?:tcp|socket)://(?P<host>.*):(?P<number>\d+)/?")
+_TCP_PATTERN = re.compile(r"(?:tcp|socket)://(?P<host>.*):(?P<number>[0-9]{1,9})/?")
+_MAX_TCP_PORT = 65535
 _OPENING, _CLOSING = 3.0, 0.5  # s
 
 
@@ -56,14 +57,23 @@ class GrblTransport(Protocol):
 def parse_tcp_address(port: str) -> tuple[str, int] | None:
     """Return the host and port of an address such as ``tcp://host:port`` or ``socket://host:port``.
 
-    Return None for the name of a serial device. Raises DriverError if the address is malformed.
+    Return None for the name of a serial device. Raises DriverError if the address is malformed or its port
+    number is above 65535.
     """
     if "://" not in port:
         return None
     found = _TCP_PATTERN.fullmatch(port)
     if found is None or not found["host"]:
-        raise DriverError("{port} must have the form tcp://host:port", port=port)
-    return found["host"].strip("[]"), int(found["number"])
+        raise DriverError("{port} must have the form tcp://host:port", reason="bad-address", port=port)
+    number = int(found["number"])
+    if number > _MAX_TCP_PORT:
+        raise DriverError(
+            "{port}: the port number must not exceed {limit}; check [grblhal] port",
+            reason="bad-port",
+            port=port,
+            limit=_MAX_TCP_PORT,
+        )
+    return found["host"].strip("[]"), number
 
 
 def open_transport(port: str, baud: int) -> GrblTransport:
@@ -131,6 +141,10 @@ class GrblTcpTransport:
         except OSError as error:
             raise DriverError(
                 "no response from tcp://{host}:{port}: {error}", host=host, port=port, error=error
+            ) from error
+        except ValueError as error:  # such as a label of more than 63 characters
+            raise DriverError(
+                "{host} is not a valid host name; check [grblhal] port", reason="bad-host", host=host
             ) from error
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -12,10 +12,10 @@ import pytest
 
 from app.cli.main import main
 from core.ports import DriverError
-from drivers.grblhal.grblhal_transport import open_transport
+from drivers.grblhal.grblhal_transport import open_transport, parse_tcp_address
 from drivers.simulators.grblhal_connections import PtyConnection, TcpConnection, run_simulator
 from drivers.simulators.grblhal_firmware import GrblFirmware
-from drivers.wakeups import RealClock
+from drivers.wakeups import ConnectionAttempt, RealClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED
 from tests.drivers.ptys import open_pty
@@ -73,3 +73,32 @@ def test_missing_controller_is_reported_in_one_line(tmp_path: Path, capsys: Capt
 def test_a_bad_address_is_refused(port: str) -> None:
     with raises_code(DriverError, "driver", port, "tcp://host:port"):
         open_transport(port, 115_200)
+
+
+@pytest.mark.parametrize(
+    ("port", "reason"),
+    [
+        ("tcp://127.0.0.1:65536", "bad-port"),
+        ("socket://127.0.0.1:70000/", "bad-port"),
+        ("tcp://127.0.0.1:9999999999", "bad-address"),
+        (f"tcp://{'a' * 70}:80", "bad-host"),  # a label has at most 63 characters
+    ],
+)
+def test_address_that_no_computer_can_have_is_rejected(port: str, reason: str) -> None:
+    with raises_code(DriverError, "driver") as told:
+        open_transport(port, 115_200)
+    assert told.value.reason == reason
+
+
+def test_largest_port_number_is_accepted() -> None:
+    assert parse_tcp_address("tcp://[::1]:65535") == ("::1", 65535)
+    assert parse_tcp_address("/dev/ttyACM0") is None
+
+
+@pytest.mark.parametrize("error", [OSError(12, "Cannot allocate memory"), DriverError("no such device")])
+def test_connection_that_cannot_be_reopened_is_reported(error: Exception) -> None:
+    def fail() -> None:
+        raise error
+
+    with raises_code(DriverError, "driver", error.args[-1]):
+        ConnectionAttempt(fail, synchronous=True).take_connection()
