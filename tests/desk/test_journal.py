@@ -310,6 +310,43 @@ def test_store_unreadable_at_startup_is_opened_by_a_later_retry(
     journal.close()
 
 
+@pytest.mark.parametrize("cause", [StoreErrorCause.FULL, StoreErrorCause.LOCKED])
+def test_store_that_cannot_be_reopened_after_a_restore_is_opened_later(
+    journal: Journal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cause: StoreErrorCause
+) -> None:
+    journal.hear(LogEvent(0.0, "load", "/programs/pin.nc"))
+    journal.backup(tmp_path / "copy.db")
+    book = journal.book()
+    monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 0.01)
+    error = cause.make_error(tmp_path / "home" / STORE_FILE_NAME, "")
+    with monkeypatch.context() as disk:
+        disk.setattr("core.store.store.open_for_writing", raising(error))
+        journal.restore(tmp_path / "copy.db")
+        assert (journal.waiting, journal.write_error) == (True, str(error))
+        journal.hear(LogEvent(0.0, "part", "part 1"))
+        assert journal.held == "1 part, 1 event"
+    assert journal._opener is not None
+    journal._opener.join(60)
+    assert (journal.write_error, journal.waiting, journal.held) == ("", False, "")
+    journal.save_version("pin.nc", b"M30", "so that all is written")
+    assert journal.runs.read_part_count("pin.nc") == 1
+    assert book.poll_saving() == ""
+    assert book.store is journal.require_store()
+
+
+def test_store_damaged_by_a_restore_is_not_opened_again_and_again(
+    journal: Journal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal.backup(tmp_path / "copy.db")
+    damaged = StoreErrorCause.DAMAGED.make_error(tmp_path / "home" / STORE_FILE_NAME, "a page is torn")
+    with monkeypatch.context() as disk:
+        disk.setattr("core.store.store.open_for_writing", raising(damaged))
+        journal.restore(tmp_path / "copy.db")
+        assert (journal.waiting, journal.write_error) == (False, str(damaged))
+        with pytest.raises(StoreError, match=pattern("desk.damaged")):
+            journal.require_store()
+
+
 def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

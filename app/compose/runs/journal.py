@@ -80,7 +80,7 @@ class Journal(Persistence):
         self._last_origin: EventOrigin | None = None  # of the last event that an earlier screen has stored
         self._unread = True  # whether the data of the last control has still to be read
         self._closing = threading.Event()
-        # thread that opens a store that was unavailable at the start
+        # thread that opens a store that was unavailable at the start or after a restore
         self._opener: threading.Thread | None = None
         self.left: InterruptedJob | None = None  # job that the last control has left interrupted
         self.is_interruption_logged = True  # true unless the last control ran without a screen
@@ -93,8 +93,7 @@ class Journal(Persistence):
             self._write_error = str(error)
             self._held = deque(maxlen=MAX_BUFFERED_EVENTS)
             if error.is_temporary:
-                self._opener = threading.Thread(target=self._retry_open, name="store-opener", daemon=True)
-                self._opener.start()
+                self._start_opener()
 
     def _open(self) -> Store:
         """Open the store, and on the first call read the data that the last control has left.
@@ -380,9 +379,8 @@ class Journal(Persistence):
     def restore(self, source: Path) -> Path | None:
         """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Raises StoreError if the restore fails, or if no store is open. After a restore and after a failed
-        restore, the store is opened again. If it cannot be opened, events are buffered, and ``write_error``
-        contains the reason.
+        Raises StoreError if the restore fails. In both cases, a store is opened again: the restored store or
+        the old store. If a temporary error prevents this, the journal retries.
         """
         with self._lock:
             store, self._store = self.require_store(), None
@@ -394,7 +392,7 @@ class Journal(Persistence):
             self._reopen()
 
     def _reopen(self) -> None:
-        """Reopen the store and write the buffered events.
+        """Reopen the store and write the buffered events, or retry later after a temporary error.
 
         The interrupted job of this machine is retained. The interrupted job of a backup is ignored.
         """
@@ -409,6 +407,8 @@ class Journal(Persistence):
                     book.use_store(None, self._write_error, rows)
                 else:
                     book.use_store(None, self._write_error)
+            if error.is_temporary:
+                self._start_opener()
             return
         with self._lock:
             held, self._held, self._store = self._held or (), None, store
@@ -434,8 +434,17 @@ class Journal(Persistence):
 
     @property
     def waiting(self) -> bool:
-        """Return whether the journal will retry opening the store, because the error is temporary."""
-        return self._store is None and self._opener is not None
+        """Return whether a temporary error prevented opening the store, so that the journal will retry."""
+        return self._store is None and self._is_retrying()
+
+    def _is_retrying(self) -> bool:
+        return self._opener is not None and self._opener.is_alive()
+
+    def _start_opener(self) -> None:
+        """Start the thread that retries, unless it is running."""
+        if not self._is_retrying():
+            self._opener = threading.Thread(target=self._retry_open, name="store-opener", daemon=True)
+            self._opener.start()
 
     def _retry_open(self) -> None:
         """Retry opening the store until it succeeds, for example after disk space has been freed."""
