@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from app.compose.backends.serial_ports import list_serial_ports, open_serial_port
+from app.desk.command_errors import CommandError
 from app.desk.programs.program_loading import LoadingSteps
 from app.programs.atomic_files import FileOperationError
 from app.transfer.line_transfer import ReceivedProgram
@@ -22,7 +23,8 @@ from drivers.wakeups import RealClock
 
 # Usual settings of a serial line; the operator chooses the port.
 DEFAULT_SETTINGS = SerialLineModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
-CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]  # errors, cycle time in s
+# Returns the errors and the cycle time in s. Raises CommandError if the offsets cannot be read.
+CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]
 
 
 class SerialLines:
@@ -117,9 +119,8 @@ class ProgramReceiveTransfer(_LineTransfer):
     def run_transfer(self) -> ReceivedProgram:
         """Receive a program and prove it.
 
-        Raises DriverError if the transfer fails or is canceled, or if the received data is not a program.
-        Errors of ``check_program``, such as CommandError for stored offsets that cannot be read, are passed
-        on. This method saves nothing.
+        If the program cannot be proved, the reason is its finding. Raises FileOperationError or DriverError
+        if the transfer fails. Nothing is then saved.
         """
         inner = ReceiveTransfer(
             open_serial_port(self._settings.receiving_settings, count_damaged=True),
@@ -133,7 +134,10 @@ class ProgramReceiveTransfer(_LineTransfer):
         name = program.name or "RECEIVED"
         name = name if Path(name).suffix else name + self._ending
         source = _create_source(program.program_bytes, name)
-        findings, cycle = self._check(source)
+        try:
+            findings, cycle = self._check(source)
+        except CommandError as error:  # The offsets are damaged; the program must not be lost for that.
+            findings, cycle = (str(error),), 0.0
         return ReceivedProgram(
             program_bytes=source.text.encode("utf-8"),
             name=name,

@@ -57,10 +57,9 @@ class TransferProgress(Protocol):
 class ReceivedProgram:
     """Completely received program that has been proved but not yet stored.
 
-    - ``name``: file name from the program, with an extension
-    - ``sha256``: SHA-256 hash of ``program_bytes``
-    - ``is_seven_bit``: whether the data had 7 data bits although the port is set to 8
-    - ``finding_texts``: errors found by the proof
+    ``name`` is the file name from the program, with an extension. ``sha256`` is the SHA-256 hash of
+    ``program_bytes``. ``is_seven_bit`` means that the data had 7 data bits although the port is set to 8.
+    ``finding_texts`` are the errors of the proof, or the reason why the program could not be proved.
     """
 
     program_bytes: bytes

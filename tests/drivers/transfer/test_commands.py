@@ -5,10 +5,13 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
 from app.cli.main import main
+from app.compose import stored_offsets
+from app.desk.command_errors import CommandError
 from tests.coded import recorded_refusals
 from tests.drivers.inverter.lines import WAIT, Pair
 from tests.drivers.transfer.far_end import FarEnd, answer
@@ -103,6 +106,28 @@ def test_received_data_before_the_program_is_reported(
     assert "--wrap ''" in told
     answer(far, future, b"%\nG90\nM30\n%\n")
     assert future.result(WAIT) == 0
+
+
+def test_program_that_cannot_be_proved_is_saved_with_the_reason(
+    far: FarEnd,
+    tmp_path: Path,
+    pool: ThreadPoolExecutor,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The sender may be away, and the offsets can be repaired later."""
+
+    def read_damaged_offsets() -> NoReturn:
+        raise CommandError("the stored offset of tool 3 is damaged", "damaged-row")
+
+    monkeypatch.setattr(stored_offsets, "make_offsets_reader", lambda _file: read_damaged_offsets)
+    target = tmp_path / "NEW.nc"
+    future = pool.submit(main, ["serial", "receive", "--port", far.port, "--out", str(target)])
+    assert _asked(far)
+    answer(far, future, b"%\nG90\nM30\n%\n")
+    assert future.result(WAIT) == 1
+    assert target.read_bytes() == b"G90\nM30\n"
+    assert "the stored offset of tool 3 is damaged" in capsys.readouterr().err
 
 
 def test_incomplete_program_leaves_no_file(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
