@@ -76,6 +76,10 @@ class Peer:
 
     def greet(self, noted: InterruptedJob | None = None) -> None:
         """Hello, and the memory behind it."""
+        self.say_hello(noted)
+        send_descriptor(self.end, self.memory.descriptor)
+
+    def say_hello(self, noted: InterruptedJob | None = None) -> None:
         hello = HelloMessage(
             self.version,
             0,  # no process that could be ended
@@ -92,7 +96,6 @@ class Peer:
             noted,
         )
         self.end.send(hello)
-        send_descriptor(self.end, self.memory.descriptor)
 
     def next(self, *kinds: type) -> object:
         """The next message of one of these kinds."""
@@ -471,6 +474,27 @@ def test_control_that_has_a_screen_is_not_joined(tmp_path: Path, path: Path, why
 
 def test_control_that_ends_during_connection_is_not_found(tmp_path: Path, path: Path) -> None:
     assert find(tmp_path, path, lambda end: end.close()) is None
+
+
+def test_control_that_ends_between_hello_and_its_memory_is_not_found(
+    tmp_path: Path, path: Path, idle: Snapshot
+) -> None:
+    def serve(end: Connection) -> None:
+        Peer(end, idle).say_hello()
+        end.close()
+
+    assert find(tmp_path, path, serve) is None
+
+
+@pytest.mark.parametrize("data", [b"", b"f"])
+def test_control_that_sends_no_memory_raises_an_error(idle: Snapshot, tmp_path: Path, data: bytes) -> None:
+    ours, theirs = Pipe()
+    Peer(theirs, idle).say_hello()
+    os.write(theirs.fileno(), data)
+    theirs.close()
+    with pytest.raises(DriverError):
+        ControlClient(StartedControl(ours, None), tmp_path)
+    ours.close()
 
 
 def test_peer_of_another_user_is_not_trusted(

@@ -69,6 +69,7 @@ _CONNECTION_ERRORS = (
     ValueError,
 )
 _ENDED_REASON = "ended"
+_ENDED_TEXT = "the process of the control ended during start-up; see its message above"
 _SILENT_TEXT = "the control that is running does not respond: restart the computer"
 _SAVE_TIMEOUT_S = 5.0  # s to save the record of an alarm
 CLOSE_TIMEOUT_S = 20.0  # s, for drives that are switching on; then the machine is halted
@@ -103,7 +104,7 @@ class ControlClient:
         hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
         self.hello_message = hello
         self.is_attached = process is None  # connected to a control that another screen has started
-        memory = SharedMemory(receive_descriptor(connection))
+        memory = _receive_memory(connection)
         ring = ScopeRing.from_layout(hello.ring_layout, memory.memory_view)
         self.control_records = recordings or ControlRecordings(
             ring, folder / RECORDS_FOLDER_NAME, hello.disk_error
@@ -334,8 +335,7 @@ def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
     try:
         message = connection.recv() if connection.poll(timeout_s) else None
     except (OSError, EOFError):
-        words = "the process of the control ended during start-up; see its message above"
-        raise DriverError(words, reason=_ENDED_REASON) from None
+        raise DriverError(_ENDED_TEXT, reason=_ENDED_REASON) from None
     except _CONNECTION_ERRORS:
         message = b""  # a message of another version
     match message:
@@ -352,6 +352,17 @@ def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
                 "the control that runs belongs to another version of TurnDesk: wait until it has ended, then "
                 "start TurnDesk again"
             )
+
+
+def _receive_memory(connection: Connection) -> SharedMemory:
+    """Return the memory of the scope, which follows the first message.
+
+    Raises DriverError if the control has ended in between.
+    """
+    try:
+        return SharedMemory(receive_descriptor(connection))
+    except (OSError, EOFError):
+        raise DriverError(_ENDED_TEXT, reason=_ENDED_REASON) from None
 
 
 def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
