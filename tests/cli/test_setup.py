@@ -15,6 +15,7 @@ import sys
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -235,6 +236,27 @@ def test_desktop_entry_is_written_and_removed(
     assert turndesk("setup", "desktop", "--remove").out.count("removed") == 4
     assert "no entry" in turndesk("setup", "desktop", "--remove").out
     assert turndesk("setup", "desktop", "--remove", "--autostart").status == 2
+
+
+@pytest.mark.parametrize(
+    "error", [subprocess.TimeoutExpired("update-mime-database", 60), PermissionError(13, "Permission denied")]
+)
+def test_desktop_entry_is_written_and_removed_although_a_database_tool_fails(
+    turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    tried: list[str] = []
+
+    def fail(command: list[str], **_options: object) -> NoReturn:
+        tried.append(command[0])
+        raise error
+
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    monkeypatch.setattr(subprocess, "run", fail)
+    monkeypatch.setattr(shutil, "which", str)
+    assert turndesk("setup", "desktop").status == 0
+    assert (tmp_path / "data" / "applications" / "turndesk.desktop").exists()
+    assert turndesk("setup", "desktop", "--remove").out.count("removed") == 3
+    assert tried == ["update-desktop-database", "update-mime-database"] * 2
 
 
 def test_completion_is_available_for_every_shell(turndesk: Turndesk) -> None:

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
@@ -101,11 +102,13 @@ def format_entry(command: str) -> str:
 def _update_databases(applications: Path, mime: Path) -> None:
     """Update the desktop databases, so that file managers find the new entry immediately.
 
-    A database is skipped if the tool that updates it is not installed.
+    A database is skipped if the tool that updates it is not installed, cannot run or hangs. The system
+    updates the database later.
     """
     for tool, folder in (("update-desktop-database", applications), ("update-mime-database", mime)):
         if shutil.which(tool) and folder.is_dir():
-            subprocess.run([tool, str(folder)], check=False, capture_output=True, timeout=60)
+            with suppress(OSError, subprocess.TimeoutExpired):
+                subprocess.run([tool, str(folder)], check=False, capture_output=True, timeout=60)
 
 
 def remove_entries() -> list[Path]:
