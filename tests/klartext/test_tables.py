@@ -46,6 +46,7 @@ def test_rows_are_read_by_their_columns() -> None:
     assert rows[7] == {"Y": 8.0}
     assert read_table_rows(ProgramSource("V.D", DATUMS.replace("MM", "INCH")))[2]["X"] == pytest.approx(266.7)
     assert [*read_table_rows(ProgramSource("HOLES.PNT", HOLES))] == [0, 1]
+    assert [*read_table_rows(ProgramSource("V.D", DATUMS.replace("7  ", "²  ")))] == [0, 2, 9]
     assert read_table_rows(ProgramSource("EMPTY.D", "BEGIN EMPTY .D MM\n[END]\n")) == {}
 
 

@@ -315,7 +315,7 @@ class TrendsSection(QualitySection):
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered in the shift hours."""
-        return self.selected_trend == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
+        return self.selected_trend == "AVAILABILITY" and len(key) == 1 and (key.isdecimal() or key == "-")
 
     def handle_key(self, key: str) -> bool:
         """Handle a key and return whether it was used.
@@ -342,7 +342,7 @@ class TrendsSection(QualitySection):
         Raises EntryError if the text is not a valid pair of hours.
         """
         first, _, last = text.partition("-")
-        if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
+        if not (first.isdecimal() and last.isdecimal() and int(first) < 24 and int(last) <= 24):
             raise EntryError(tr("enter the start and end hour of the shift, such as 6-14"))
         if self.desk.is_refused(ProtectedChange.FEATURES):
             return False

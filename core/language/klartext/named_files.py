@@ -37,7 +37,7 @@ def read_table_rows(source: ProgramSource) -> dict[int, TableRow]:
     found: dict[int, TableRow] = {}
     for text in lines[head + 1 :]:
         cells = _cells(text, columns)
-        if not cells.get("NR", "").isdigit() or cells.get("FADE", "N").upper()[:1] in {"Y", "1"}:
+        if not cells.get("NR", "").isdecimal() or cells.get("FADE", "N").upper()[:1] in {"Y", "1"}:
             continue
         found[int(cells["NR"])] = {
             name: number * (scale if name in {"X", "Y", "Z"} else 1.0)

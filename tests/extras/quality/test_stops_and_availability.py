@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
+from app.desk.arithmetic import EntryError
+from app.extras.quality.charts_and_trends import TrendsSection
 from core.extras.quality.control_charts import QualityError
 from core.extras.quality.production_stops import (
     ProductionStop,
@@ -72,3 +77,16 @@ def test_clock_set_back_is_rejected() -> None:
         calculate_availability(TimeSpan(0, 10), [TimeSpan(5, 4)])
     with raises_code(QualityError, "clock-set-back"):
         analyze_stop_reasons([ProductionStop("A", 5, -1)])
+
+
+@pytest.mark.parametrize("text", ["²-14", "6-²", "①-14", "25-3", "6-25", "6", "-", "6-14-20", "6.5-14"])
+def test_invalid_shift_hours_are_rejected(text: str) -> None:
+    untouched: Any = None
+    with pytest.raises(EntryError):
+        TrendsSection.accept_entry(untouched, text)
+
+
+def test_only_digits_and_a_hyphen_are_keys_of_the_shift_hours() -> None:
+    section: Any = SimpleNamespace(selected_trend="AVAILABILITY")
+    accepted = [key for key in "6²①½-.x" if TrendsSection.accepts_key(section, key)]
+    assert accepted == ["6", "-"]
