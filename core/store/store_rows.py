@@ -267,10 +267,10 @@ RowT = TypeVar("RowT", bound=OffsetRow)  # also for rows whose type is known onl
 
 
 def replace_fields(row: ConcreteRowT, values: Mapping[str, FieldValue]) -> ConcreteRowT:
-    """Return the row with the given fields replaced.
-
-    For an unknown field name, raises ValueError before Python 3.13 and TypeError from Python 3.13 on.
-    """
+    """Return the row with the given fields replaced. Raises ValueError for an unknown field name."""
+    unknown = values.keys() - set(row._fields)
+    if unknown:  # checked here, because the error of _replace depends on the version of Python
+        raise ValueError(f"{type(row).__name__} has no field {', '.join(sorted(unknown))}")
     named: dict[str, Any] = dict(values)  # the fields have different types
     return row._replace(**named)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 
@@ -12,10 +13,11 @@ from app.offsets.offsets_file import read_offset_rows
 from core.store import database
 from core.store.offsets import offset_tables
 from core.store.offsets.offset_tables import ChangeReason
+from core.store.offsets.touch_off import TouchPosition
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export_store
-from core.store.store_rows import OffsetKind, ToolRow
+from core.store.store_rows import FieldValue, OffsetKind, ToolRow, replace_fields
 from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_row_number
 from tests.coded import raises_code
 
@@ -94,3 +96,71 @@ def test_migration_retains_every_field() -> None:
         )
         with pytest.raises(sqlite3.IntegrityError):
             connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (100007, 0, 0, 0)")
+
+
+# --- the same rules for a touch-off and for several rows --------------------------------------------------
+
+
+def test_touch_off_of_an_edge_needs_its_tool(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        with raises_code(StoreError, "never-set", "T3 D2"):
+            store.offsets.tool_offsets.set_touched_offset(T3_D2, TouchPosition(1.0, 2.0), "touched").result()
+        assert store.offsets.tool_offsets.read_rows() == {}
+        store.offsets.tool_offsets.change_row(3, values={"x": 1.0, "z": 1.0}, **WHY).result()
+        store.offsets.tool_offsets.set_touched_offset(T3_D2, TouchPosition(1.0, 2.0), "touched").result()
+        assert store.offsets.tool_offsets.read_rows()[T3_D2] == ToolRow(1.0, 2.0)
+
+
+def change_rows(store: Store, kind: OffsetKind, rows: Mapping[int, Mapping[str, FieldValue]]) -> int:
+    reason = ChangeReason("import", "test")
+    return store.write(
+        lambda connection: offset_tables.change_rows(connection, {kind: rows}, reason)
+    ).result()
+
+
+@pytest.mark.parametrize(
+    ("kind", "rows", "code"),
+    [
+        (OffsetKind.TOOL, {T3_D2: {"x": 1.0, "z": 1.0}}, "never-set"),
+        (OffsetKind.TOOL, {5: {"x": 1.0, "z": 1.0}, T3_D2: {"x": 1.0, "z": 1.0}}, "never-set"),
+        (OffsetKind.TOOL, {4: {"master": True}}, "never-set"),
+        (
+            OffsetKind.TOOL,
+            {3: {"x": 1.0, "z": 1.0}, T3_D2: {"x": 1.0, "z": 1.0, "master": True}},
+            "not-first-edge",
+        ),
+        (OffsetKind.TOOL, {4: {"x": 1.0, "z": 1.0}, 33: {"x": 1.0, "z": 1.0}}, "unknown-number"),
+        (OffsetKind.SHAPE, {4: {"width": 1.0}}, "no-shape"),
+    ],
+)
+def test_invalid_rows_are_rejected_together(
+    tmp_path: Path, kind: OffsetKind, rows: Mapping[int, Mapping[str, FieldValue]], code: str
+) -> None:
+    with Store.open(tmp_path) as store:
+        with raises_code(StoreError, code):
+            change_rows(store, kind, rows)
+        assert store.offsets.tool_offsets.read_rows() == {}
+        assert store.offsets.tool_shapes.read_rows() == {}
+
+
+@pytest.mark.parametrize("numbers", [(3, T3_D2), (T3_D2, 3)])
+def test_tool_and_its_edge_are_set_in_one_step(tmp_path: Path, numbers: tuple[int, int]) -> None:
+    with Store.open(tmp_path) as store:
+        assert change_rows(store, OffsetKind.TOOL, {number: {"x": 1.0, "z": 2.0} for number in numbers}) == 2
+        store.offsets.tool_offsets.undo_last_step(**WHY).result()
+        assert store.offsets.tool_offsets.read_rows() == {}
+
+
+def test_new_master_of_several_rows_replaces_the_old_one(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.offsets.tool_offsets.change_row(1, values={"x": 1.0, "z": 1.0, "master": True}, **WHY).result()
+        new = {"x": 1.0, "z": 1.0, "master": True}
+        assert change_rows(store, OffsetKind.TOOL, {4: new, 5: {"x": 3.0, "z": 1.0}}) == 3
+        rows = store.offsets.tool_offsets.read_rows()
+        assert {number: row.master for number, row in rows.items()} == {1: False, 4: True, 5: False}
+
+
+def test_unknown_field_of_a_row_is_rejected_in_every_python() -> None:
+    assert replace_fields(ToolRow(1.0, 2.0), {"z": 3.0}) == ToolRow(1.0, 3.0)
+    with pytest.raises(ValueError, match="ToolRow has no field width"):
+        replace_fields(ToolRow(1.0, 2.0), {"z": 3.0, "width": 1.0})

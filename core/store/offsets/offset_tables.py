@@ -160,28 +160,12 @@ def change_row(
     cutting edge whose tool has no offset yet or that would become the master tool, for a master tool
     without an offset, and for a tool shape without a tool type.
     """
-    check_row_number(kind, number)
     rows = read_current_rows(connection, kind)
-    old = rows.get(number)
-    _check_edge(kind, number, rows, new_values)
-    if old is None and new_values.get("master") and not {"x", "z"} <= new_values.keys():
-        raise StoreError(make_no_offset_message(number), "never-set")
-    new = apply_field_changes(kind, number, old, new_values)
-    if isinstance(new, ShapeRow) and not new.kind:
-        raise StoreError(
-            Message(
-                "{number} does not have a tool shape yet; enter the tool type first: {range}",
-                number=format_edge_name(number),
-                range=FIELDS_BY_KIND[kind]["kind"].range_text,
-            ),
-            "no-shape",
-        )
-    if new != old:
-        changes: dict[int, tuple[OffsetRow | None, OffsetRow | None]] = {number: (old, new)}
-        if isinstance(new, ToolRow) and new.master:
-            changes |= {n: (row, row._replace(master=False)) for n, row in _other_masters(rows, number)}
+    new_rows = _make_new_rows(kind, rows, {number: new_values})
+    changes = _find_differences(rows, new_rows)
+    if changes:
         apply_changes(connection, kind, changes, reason)
-    return new
+    return new_rows[number]
 
 
 def change_rows(
@@ -191,27 +175,49 @@ def change_rows(
 ) -> int:
     """Set the fields of several rows as one step, and return the number of changed rows.
 
-    ``new_values`` contains the new values by table and number. Raises StoreError, and changes nothing, for
-    an unknown number or field and for a value that the store does not accept. The function does not clear
-    the previous master tool, so ``new_values`` must not make a tool the master tool. It does not check that
-    the tool of an additional cutting edge has an offset, or that a tool shape has a tool type.
+    ``new_values`` contains the new values by table and number. The rules and the StoreError are those of
+    ``change_row``; a cutting edge and its tool may be set in the same step. An error changes nothing.
     """
-    pairs: dict[OffsetKind, ChangesByNumber] = {}
+    changes: dict[OffsetKind, ChangesByNumber] = {}
     for kind, values in new_values.items():
         rows = read_current_rows(connection, kind)
-        for number in values:
-            check_row_number(kind, number)
-        new = {n: apply_field_changes(kind, n, rows.get(n), fields) for n, fields in values.items()}
-        pairs[kind] = {n: (rows.get(n), row) for n, row in new.items() if row != rows.get(n)}
+        changes[kind] = _find_differences(rows, _make_new_rows(kind, rows, values))
     step = _next_step(connection)
-    for kind, changes in pairs.items():
-        if changes:
-            apply_changes(connection, kind, changes, reason, step=step)
-    return sum(map(len, pairs.values()))
+    for kind, changed in changes.items():
+        if changed:
+            apply_changes(connection, kind, changed, reason, step=step)
+    return sum(map(len, changes.values()))
 
 
-def _check_edge(
-    kind: OffsetKind, number: int, rows: Mapping[int, OffsetRow], new_values: Mapping[str, FieldValue]
+def _make_new_rows(
+    kind: OffsetKind, rows: Mapping[int, OffsetRow], new_values: Mapping[int, Mapping[str, FieldValue]]
+) -> dict[int, OffsetRow]:
+    """Return all rows of a table with the new values. Raises StoreError as ``change_row`` does."""
+    new_rows = dict(rows)
+    for number, values in new_values.items():
+        check_row_number(kind, number)
+        check_edge(kind, number, rows.keys() | new_values.keys(), values)
+        if number not in rows and values.get("master") and not {"x", "z"} <= values.keys():
+            raise StoreError(make_no_offset_message(number), "never-set")
+        new = new_rows[number] = apply_field_changes(kind, number, new_rows.get(number), values)
+        if isinstance(new, ShapeRow) and not new.kind:
+            text = Message(
+                "{number} does not have a tool shape yet; enter the tool type first: {range}",
+                number=format_edge_name(number),
+                range=FIELDS_BY_KIND[kind]["kind"].range_text,
+            )
+            raise StoreError(text, "no-shape")
+        if isinstance(new, ToolRow) and new.master:
+            new_rows |= {n: row._replace(master=False) for n, row in _other_masters(new_rows, number)}
+    return new_rows
+
+
+def _find_differences(rows: Mapping[int, OffsetRow], new_rows: Mapping[int, OffsetRow]) -> ChangesByNumber:
+    return {n: (rows.get(n), row) for n, row in new_rows.items() if row != rows.get(n)}
+
+
+def check_edge(
+    kind: OffsetKind, number: int, rows: Container[int], new_values: Mapping[str, FieldValue]
 ) -> None:
     """Raise StoreError if an additional cutting edge has no tool yet, or would become the master tool."""
     if kind is not OffsetKind.TOOL or get_tool_number(number) == number:

@@ -38,11 +38,12 @@ def store_touch_off(
 
     The new geometry already includes the wear. Touching off the master tool moves all other tools by the
     same distance, as one step of the history, unless ``touch.moves_only_this_tool`` is True. Raises
-    StoreError, and leaves the store unchanged, if the number is unknown, if a value is out of range, or if
-    not both axes of a new tool were touched off.
+    StoreError, and leaves the store unchanged, if the number is unknown, if a value is out of range, if not
+    both axes of a new tool were touched off, or for an additional cutting edge whose tool has no offset yet.
     """
     offset_tables.check_row_number(OffsetKind.TOOL, number)
     rows = offset_tables.read_tool_offsets(connection)
+    offset_tables.check_edge(OffsetKind.TOOL, number, rows, {})
     old = rows.get(number)
     if old is None and (touch.x is None or touch.z is None):
         raise StoreError(
