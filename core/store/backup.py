@@ -113,7 +113,7 @@ def back_up_store(folder: Path, target: Path) -> None:
         )
     if _is_there(target):
         database.check_is_file(target)
-        if target.samefile(path):
+        if _is_same_file(target, path):
             raise StoreError(
                 Message(
                     "{target} is the data store itself; specify another file for the backup", target=target
@@ -158,7 +158,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
         there = has_store(folder)
         if there:
             database.check_is_file(path)
-        if there and path.samefile(source):
+        if there and _is_same_file(path, source):
             raise StoreError(
                 Message(
                     "{source} is the data store itself, not a backup; specify a backup file", source=source
@@ -167,8 +167,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
             )
         here = _read_users(path) if there else None
         kept = _save_old_store(path) if there else None
-        for leftover in get_log_and_index_paths(path):
-            leftover.unlink(missing_ok=True)
+        _remove_log(path)
         _copy(source, resolve_link(path), partial(_replace_users, here))
         return kept
 
@@ -193,6 +192,22 @@ def _replace_users(rows: tuple[UserRow, ...] | None, copy: sqlite3.Connection) -
         user_records.replace_all_users(copy, rows)
 
 
+def _is_same_file(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except OSError as error:  # a disk may have been removed since the check
+        raise why(one, error) from error
+
+
+def _remove_log(path: Path) -> None:
+    """Remove the log of the old store, which SQLite would otherwise apply to the restored store."""
+    for leftover in get_log_and_index_paths(path):
+        try:
+            leftover.unlink(missing_ok=True)
+        except OSError as error:
+            raise _unwritable(leftover, error) from error
+
+
 def _is_there(target: Path) -> bool:
     try:
         return target.exists() or target.is_symlink()
@@ -214,7 +229,8 @@ def _save_old_store(path: Path) -> Path:
             shutil.copy2(path, unfinished)
             replace_atomically(unfinished, kept)
     except OSError as error:
-        kept_log.unlink(missing_ok=True)
+        with suppress(OSError):  # the error above is the cause
+            kept_log.unlink(missing_ok=True)
         raise _unwritable(kept, error) from error
     return kept
 

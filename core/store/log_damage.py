@@ -7,6 +7,7 @@ unfinished change at the end of the log is not damage, because its write was nev
 
 from __future__ import annotations
 
+import errno
 import sqlite3
 import struct
 from contextlib import closing
@@ -51,7 +52,7 @@ def count_lost_changes(log: Path, index: Path) -> int:
     """Return the number of complete changes in ``log`` that SQLite ignores according to its ``index``.
 
     While this function runs, a reader must have the store open, and no process may write to the store.
-    Raises OSError if a file cannot be read.
+    Raises OSError if a file cannot be read or the index is too short.
     """
     with log.open("rb") as file:
         head, content = file.read(_HEAD.size), file.read()
@@ -62,9 +63,11 @@ def count_lost_changes(log: Path, index: Path) -> int:
     if not _has_valid_header(head, magic):
         return sum(frame.is_commit and frame.salts == frames[0].salts for frame in frames) or 1
     salts, sums = tuple(rest[:2]), tuple(rest[2:])
-    taken = _FRAME_COUNT_STRUCT.unpack_from(
-        index.read_bytes()[: _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size], _FRAME_COUNT_OFFSET
-    )[0]
+    with index.open("rb") as file:
+        counted = file.read(_FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size)
+    if len(counted) < _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size:
+        raise OSError(errno.EIO, "the index of the log is too short", str(index))
+    (taken,) = _FRAME_COUNT_STRUCT.unpack_from(counted, _FRAME_COUNT_OFFSET)
     before = frames[taken - 1].sums if taken else sums
     tail = frames[taken:]
     ends = [at for at, frame in enumerate(tail) if frame.is_commit and _has_equal_salt(frame.salts, salts)]
@@ -177,7 +180,7 @@ def save_damaged_log(path: Path) -> tuple[str, ...]:
     """Save a copy of a log that has lost changes before the log is overwritten.
 
     The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError if
-    the log cannot be examined or the copy cannot be saved.
+    the copy cannot be saved or the log cannot be emptied.
     """
     log, _ = get_log_and_index_paths(path)
     with closing(connect_store(path, is_read_only=True)) as reader:
@@ -190,8 +193,11 @@ def save_damaged_log(path: Path) -> tuple[str, ...]:
         restrict_access(kept)
     except OSError as error:
         raise why(kept, error) from error
-    with closing(connect_store(path, is_read_only=False)) as writer:
-        writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    try:
+        with closing(connect_store(path, is_read_only=False)) as writer:
+            writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    except sqlite3.Error as error:
+        raise why(path, error) from error
     return (
         (
             Message(
@@ -214,10 +220,10 @@ def _changes_lost(path: Path, reader: sqlite3.Connection) -> int:
             "SELECT count(*) FROM sqlite_master"
         ).fetchone()  # makes SQLite determine how much of the log is valid
         return count_lost_changes(log, index)
-    except sqlite3.Error as error:
-        raise why(path, error) from error
     except FileNotFoundError:
         return 0  # the writing process has just closed the log
+    except (sqlite3.Error, OSError) as error:
+        raise why(path, error) from error
 
 
 def _changes(count: int) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import errno
 import sqlite3
 import tomllib
 from hashlib import sha256
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -201,3 +203,46 @@ def test_verify_finds_damaged_text_and_orphaned_rows(folder: Path) -> None:
     told = " ".join(backup.find_problems(path))
     assert "'PIN.nc' version 1 " in told
     assert " program_versions " in told
+
+
+# --- a folder that changes or cannot be written -----------------------------------------------------------
+
+
+def fail(*_given: object, **_options: object) -> NoReturn:
+    raise PermissionError(errno.EACCES, "Permission denied")
+
+
+def test_log_that_cannot_be_removed_leaves_the_old_store(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Store.open(folder) as store:
+        fill(store)
+    backup.back_up_store(folder, tmp_path / "b.db")
+    before = (folder / STORE_FILE_NAME).read_bytes()
+    unlink = Path.unlink
+
+    def keep_log(path: Path, missing_ok: bool = False) -> None:
+        if path.name == f"{STORE_FILE_NAME}-wal":
+            fail()
+        unlink(path, missing_ok=missing_ok)
+
+    with monkeypatch.context() as locked:
+        locked.setattr(Path, "unlink", keep_log)
+        with raises_code(StoreError, "cannot-write", f"{STORE_FILE_NAME}-wal"):
+            backup.restore_store(folder, tmp_path / "b.db")
+    assert (folder / STORE_FILE_NAME).read_bytes() == before
+
+
+def test_file_that_cannot_be_compared_with_the_store_is_an_error(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Store.open(folder) as store:
+        fill(store)
+    backup.back_up_store(folder, tmp_path / "b.db")
+    before = (tmp_path / "b.db").read_bytes()
+    monkeypatch.setattr(Path, "samefile", fail)
+    with raises_code(StoreError, "forbidden"):
+        backup.restore_store(folder, tmp_path / "b.db")
+    with raises_code(StoreError, "forbidden"):
+        backup.back_up_store(folder, tmp_path / "b.db")
+    assert (tmp_path / "b.db").read_bytes() == before

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
+import sqlite3
 import struct
 from pathlib import Path
+from typing import Any, NoReturn
 
 import pytest
 
-from core.store import backup, store_connection
+from core.store import backup, log_damage, store_connection
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import STORE_FILE_NAME
@@ -195,3 +198,69 @@ def test_log_entry_of_an_earlier_round_is_not_reported_missing(killed: Path) -> 
     (killed / LOG).write_bytes(content + old)
     with Store.open(killed) as store:
         assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.04, ())
+
+
+# --- a log that the system or SQLite does not let be read -------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (PermissionError(errno.EACCES, "Permission denied"), "forbidden"),
+        (OSError(errno.EIO, "Input/output error"), "disk-failing"),
+    ],
+)
+def test_log_that_cannot_be_read_is_an_error_of_the_store(
+    killed: Path, monkeypatch: pytest.MonkeyPatch, error: OSError, code: str
+) -> None:
+    def fail(*_paths: Path) -> NoReturn:
+        raise error
+
+    monkeypatch.setattr(log_damage, "count_lost_changes", fail)
+    with raises_code(StoreError, code):
+        backup.find_problems(killed / STORE_FILE_NAME)
+    with raises_code(StoreError, code):
+        Store.open(killed, read_only=True)
+    with raises_code(StoreError, code):
+        Store.open(killed)
+
+
+def test_log_that_its_writer_removes_meanwhile_has_lost_nothing(
+    killed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_paths: Path) -> NoReturn:
+        raise FileNotFoundError(errno.ENOENT, "No such file or directory")
+
+    monkeypatch.setattr(log_damage, "count_lost_changes", fail)
+    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
+
+
+@pytest.mark.parametrize("size", [0, 16, 19])
+def test_index_that_is_too_short_is_an_error(killed: Path, tmp_path: Path, size: int) -> None:
+    index = tmp_path / "index"
+    index.write_bytes(bytes(size))
+    with pytest.raises(OSError, match="too short"):
+        log_damage.count_lost_changes(killed / LOG, index)
+
+
+def test_damaged_log_that_cannot_be_emptied_is_an_error_of_the_store(
+    killed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+
+    class Full(sqlite3.Connection):
+        def execute(self, sql: str, *values: Any) -> NoReturn:
+            del sql, values
+            error = sqlite3.OperationalError("database or disk is full")
+            error.sqlite_errorcode = sqlite3.SQLITE_FULL
+            raise error
+
+    def connect_full(path: Path, *, is_read_only: bool) -> sqlite3.Connection:
+        return store_connection.connect_store(path, is_read_only=True) if is_read_only else Full(":memory:")
+
+    monkeypatch.setattr(log_damage, "connect_store", connect_full)
+    flip(killed, 32 + 3000)
+    content = (killed / LOG).read_bytes()
+    with raises_code(StoreError, "disk-full"):
+        Store.open(killed)
+    [kept] = left_beside(killed)
+    assert (killed / kept).read_bytes() == content
