@@ -24,12 +24,19 @@ from core.store.store_rows import ProgramRow, RunRow, VersionRow, get_utc_now_te
 
 _NAME_BYTES = 200
 _FORBIDDEN = frozenset('/\\:*?"<>|')
+_PORT_DIGITS = "123456789¹²³"
+_DEVICE_NAMES = frozenset(
+    ("CON", "PRN", "AUX", "NUL", *(f"{port}{digit}" for port in ("COM", "LPT") for digit in _PORT_DIGITS))
+)
 RECORD_KEY_PREFIX = "sha256:"  # no file name contains a colon
 
 
 def check_program_name(name: str) -> None:
-    """Raise StoreError if the name would not be a valid file name on every common operating system."""
-    clean = name.strip() == name and name not in ("", ".", "..")
+    """Raise StoreError if the name would not be a valid file name on every common operating system.
+
+    Windows removes a final period and reserves the names of devices, with any extension.
+    """
+    clean = name.strip() == name and name != "" and not name.endswith(".")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
         raise StoreError(
             Message(
@@ -37,6 +44,11 @@ def check_program_name(name: str) -> None:
                 name=f"{name!r}",
             ),
             "invalid-name",
+        )
+    if name.partition(".")[0].rstrip().upper() in _DEVICE_NAMES:
+        raise StoreError(
+            Message("Windows reserves the name {name} for a device; use another name", name=f"{name!r}"),
+            "device-name",
         )
 
 

@@ -166,7 +166,8 @@ def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object
 def read_exported_mill_rows(folder: Path) -> dict[OffsetKind, dict[int, dict[str, FieldValue]]]:
     """Return the tools and presets of a mill from an exported folder, by number.
 
-    Missing fields are omitted. Raises StoreError if a table cannot be read.
+    Fields without a column are omitted. Raises StoreError if a table cannot be read, or if a row is
+    incomplete.
     """
     return {kind: _rows(folder / MILL_FILE_NAMES[kind], kind) for kind in MILL_FILE_NAMES}
 
@@ -186,23 +187,24 @@ def _rows(path: Path, kind: OffsetKind) -> dict[int, dict[str, FieldValue]]:
 
 
 def _numbered(
-    path: Path, line: int, row: dict[str, str], kind: OffsetKind
+    path: Path, line: int, row: dict[str, str | None], kind: OffsetKind
 ) -> tuple[int, dict[str, FieldValue]]:
     """Return the number and the values of one row.
 
     Raises StoreError with the line number if the row is invalid.
     """
     try:
+        cells = _get_complete_cells(row)
         fields = {each.column: each for each in FIELDS_BY_KIND[kind].values()}
         values = {
             fields[column].name: text
             if fields[column].field_type is FieldType.TEXT
             else _number(fields[column], text)
-            for column, text in row.items()
+            for column, text in cells.items()
             if column in fields
         }
-        return int(row["number"]), values
-    except (KeyError, ValueError, TypeError) as error:
+        return int(cells["number"]), values
+    except (KeyError, ValueError) as error:
         text = Message(
             "{path} line {line}: {error}; each row must have a number and its values, as written "
             "by 'store export'",
@@ -211,6 +213,14 @@ def _numbered(
             error=error,
         )
         raise StoreError(text, "unreadable-export") from error
+
+
+def _get_complete_cells(row: Mapping[str, str | None]) -> dict[str, str]:
+    """Return the cells of a row by column. Raises ValueError if a row has too few or too many cells."""
+    cells = {column: text for column, text in row.items() if column is not None and text is not None}
+    if len(cells) < len(row):
+        raise ValueError(Message("the row does not have one cell for each column"))
+    return cells
 
 
 def _number(field: RowField, text: str) -> FieldValue:

@@ -31945,6 +31945,11 @@
     </message>
     <message>
       <location filename="core/store/log_damage.py" />
+      <source>the index of the log is too short</source>
+      <translation>el índice del registro es demasiado corto</translation>
+    </message>
+    <message>
+      <location filename="core/store/log_damage.py" />
       <source>the last saved change</source>
       <translation>el último cambio guardado</translation>
     </message>
@@ -32115,6 +32120,11 @@
     </message>
     <message>
       <location filename="core/store/program_records.py" />
+      <source>Windows reserves the name {name} for a device; use another name</source>
+      <translation>Windows reserva el nombre {name} para un dispositivo; use otro nombre</translation>
+    </message>
+    <message>
+      <location filename="core/store/program_records.py" />
       <source>the data store has no program {name}; see the list of programs and versions</source>
       <translation>el almacén de datos no tiene el programa {name}; vea la lista de programas y versiones</translation>
     </message>
@@ -32237,6 +32247,11 @@
       <location filename="core/store/store_export.py" />
       <source>the data store has a program with the invalid name {name}; restore a backup</source>
       <translation>el almacén de datos tiene un programa con el nombre no válido {name}; restaure un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_export.py" />
+      <source>the row does not have one cell for each column</source>
+      <translation>la fila no tiene una celda por cada columna</translation>
     </message>
     <message>
       <location filename="core/store/store_export.py" />

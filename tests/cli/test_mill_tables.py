@@ -86,6 +86,36 @@ def test_import_with_a_damaged_table_changes_nothing(turndesk: Turndesk, home: P
         assert store.offsets.mill_tools.read_rows() == {}
 
 
+@pytest.mark.parametrize("row", ["3,1,2,3,0,0,0,0", "3,1,2", "3", "3,1,2,3,0,0,0,0,VICE,9"])
+def test_import_of_an_incomplete_row_changes_nothing(
+    turndesk: Turndesk, home: Path, tmp_path: Path, row: str
+) -> None:
+    out = tmp_path / "out"
+    turndesk(*PRESET)
+    assert turndesk("store", "export", out).status == 0
+    (out / "presets.csv").write_text(f"number,x,y,z,rotation,a,b,c,remark\n{row}\n")
+    with Store.open(home) as store:
+        before = store.offsets.presets.read_rows()
+    told = turndesk("store", "import", out)
+    assert (told.status, told.code) == (2, "unreadable-export")
+    assert "presets.csv line 2: the row does not have one cell for each column" in told.err
+    with Store.open(home) as store:
+        assert store.offsets.presets.read_rows() == before
+
+
+def test_import_of_a_table_without_a_column_sets_the_other_fields(
+    turndesk: Turndesk, home: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    turndesk(*PRESET)
+    assert turndesk("store", "export", out).status == 0
+    (out / "presets.csv").write_text("number,x,y,z\n5,1,2,3\n")
+    assert turndesk("store", "import", out).status == 0
+    with Store.open(home) as store:
+        row = store.offsets.presets.read_rows()[5]
+    assert (row.x, row.y, row.z, row.remark) == (1.0, 2.0, 3.0, "")
+
+
 @pytest.mark.usefixtures("paced_by_steps")
 def test_program_is_rejected_if_life_of_its_tool_is_used_up(
     turndesk: Turndesk, home: Path, tmp_path: Path

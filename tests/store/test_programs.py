@@ -39,11 +39,25 @@ def test_arbitrary_bytes_are_saved_unchanged(store: Store) -> None:
     assert store.programs.load_version("odd") == text
 
 
-@pytest.mark.parametrize("name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a"])
+@pytest.mark.parametrize(
+    "name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a", "part."]
+)
 def test_invalid_file_name_is_rejected(store: Store, name: str) -> None:
     with raises_code(StoreError, "invalid-name"):
         store.programs.save_version(name, b"", "x").result()
     assert store.programs.list_programs() == ()
+
+
+@pytest.mark.parametrize("name", ["NUL", "con.nc", "COM1.nc", "Lpt9", "AUX .nc", "com².tar.nc", "PRN.H"])
+def test_name_of_a_windows_device_is_rejected(store: Store, name: str) -> None:
+    with raises_code(StoreError, "device-name", repr(name)):
+        store.programs.save_version(name, b"", "x").result()
+    assert store.programs.list_programs() == ()
+
+
+@pytest.mark.parametrize("name", ["NULL.nc", "COM0.nc", "COM10.nc", "part.com1", "CONE.nc", "a.b", "-nul"])
+def test_name_that_only_resembles_a_device_is_accepted(store: Store, name: str) -> None:
+    assert store.programs.save_version(name, b"", "x").result() == 1
 
 
 def test_missing_program_and_version_are_refused(store: Store) -> None:
