@@ -260,11 +260,10 @@ BACKEND = Backend(
 
 
 def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
-    """Return the configuration objects that are written to each node at startup, by node name.
+    """Return the objects that are written to each node at startup, by node name.
 
-    The result contains the axes, the spindle and the I/O modules, but not PDO mappings or a separate node
-    of the spindle encoder. Raises DriverError if a library is missing, if the configuration is invalid, or
-    if the EDS file of a drive cannot be used.
+    The accelerations of the spindle drive are omitted, because the text of the machine file contains them.
+    Raises DriverError if a library is missing or the configuration is invalid.
     """
     try:
         from drivers.canopen.canopen_objects import load_drive_dictionary
@@ -283,7 +282,7 @@ def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
             objects_by_node[axis.name] = (*build_axis_objects(family, config.bus_settings), *axis.node.sdo)
     if config.spindle is not None:
         objects_by_node["spindle"] = (*build_stop_objects(config.bus_settings), *config.spindle.node.sdo)
-    return objects_by_node | {
-        module.name: (*build_monitoring_objects(config.bus_settings), *module.sdo)
-        for module in config.io_modules
-    }
+    monitoring = build_monitoring_objects(config.bus_settings)
+    if config.encoder is not None and config.encoder.node is not None:
+        objects_by_node[config.encoder.name] = (*monitoring, *config.encoder.node.sdo)
+    return objects_by_node | {module.name: (*monitoring, *module.sdo) for module in config.io_modules}

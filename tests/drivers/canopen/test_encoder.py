@@ -7,7 +7,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.backends.canopen_backend import create_canopen_config, create_simulated_devices
+from app.compose.backends.canopen_backend import (
+    create_canopen_config,
+    create_simulated_devices,
+    list_startup_objects,
+)
 from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
@@ -204,3 +208,19 @@ def test_bus_survey_includes_the_encoder() -> None:
     peers.close()
     assert (found["turns"].node_id, found["turns"].error_text) == (20, "")
     assert "CiA 406" in found["turns"].detail_text
+
+
+# --- the values that are written to it at startup ---------------------------------------------------------
+
+
+def test_startup_objects_include_an_encoder_with_its_own_node() -> None:
+    plain = list_startup_objects(can_machine(*OWN))
+    sdo = ("[canopen]\n", '[canopen.sdo.turns]\n"6000:0" = 4\n[canopen]\n')
+    changed = list_startup_objects(can_machine(*OWN, sdo))
+    assert changed["turns"] == (*plain["turns"], (0x6000, 0, 4))
+    assert {name for name in plain if plain[name] != changed[name]} == {"turns"}
+
+
+def test_startup_objects_of_an_encoder_at_a_drive_are_those_of_the_drive() -> None:
+    assert "turns" not in list_startup_objects(can_machine(*AT_Z))
+    assert list_startup_objects(can_machine(*AT_Z))["Z"] == list_startup_objects(can_machine())["Z"]
