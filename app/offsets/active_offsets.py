@@ -25,7 +25,7 @@ def parse_r_parameters(stored: object) -> dict[int, float]:
     """Return the R parameters from the value of a stored setting. Invalid entries are ignored."""
     if not stored or not isinstance(stored, dict):
         return {}
-    from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER
+    from core.language.sinumerik.block_reader import MAX_R_NUMBER
 
     return {
         int(number): float(value)

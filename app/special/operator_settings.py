@@ -19,7 +19,8 @@ from app.special.special_functions import NumericFunction, SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.commands import SetSpindleLimit
 from core.executor.snapshot import Snapshot
-from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER, VALUE_RANGES
+from core.language.sinumerik.block_reader import MAX_R_NUMBER
+from core.language.sinumerik.sinumerik_words import VALUE_RANGES
 from core.machine.machine_model import SpindleModel
 from core.message import Message
 from core.ports import UnknownPart

@@ -25495,6 +25495,16 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>REP cannot fill {count} elements.</source>
+      <translation>REP no puede rellenar {count} elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Use a parameter from R0 to R{most_r}.</source>
+      <translation>Use un parámetro de R0 a R{most_r}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use a variable of type REAL or INT.</source>
       <translation>Use una variable de tipo REAL o INT.</translation>
     </message>
@@ -25507,6 +25517,11 @@
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use indices from 0; the last element is {letters}[{last}].</source>
       <translation>Use índices desde 0; el último elemento es {letters}[{last}].</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>Write a whole number of 0 or more.</source>
+      <translation>Escriba un número entero de 0 o más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
@@ -26077,11 +26092,6 @@
       <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>Start the spindle with S and M3 or M4, or use G94.</source>
       <translation>Arranque el husillo con S y M3 o M4, o use G94.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
-      <source>{word} is not between 1 and 200.</source>
-      <translation>{word} no está entre 1 y 200.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
@@ -26782,6 +26792,11 @@
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>{word} is effective only in a block that moves an axis.</source>
       <translation>{word} sólo actúa en un bloque que mueve un eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
+      <source>{word} results in {value}, which is out of range.</source>
+      <translation>{word} resulta en {value}, que está fuera de rango.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
@@ -29135,6 +29150,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/control_statements.py" />
+      <source>R{number} is not a valid parameter</source>
+      <translation>R{number} no es un parámetro válido</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
       <source>SETAL needs a number in parentheses</source>
       <translation>SETAL necesita un número entre paréntesis</translation>
     </message>
@@ -29562,16 +29582,6 @@
       <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no W axis; write incremental values with IC( ), as in Z=IC(1)</source>
       <translation>este torno no tiene eje W; escriba los valores incrementales con IC( ), como en Z=IC(1)</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/word_values.py" />
-      <source>R{number} is not a valid parameter</source>
-      <translation>R{number} no es un parámetro válido</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/word_values.py" />
-      <source>Use a parameter from R0 to R{most_r}.</source>
-      <translation>Use un parámetro de R0 a R{most_r}.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/word_values.py" />

@@ -96,6 +96,12 @@ def test_arrays_and_r_parameters_are_indexed() -> None:
         ("R[5]=SET(1,,3)\nR6=9\nG0 Z=R5+R6+R7", [13]),
         ("DEF REAL AA[2,2,2]\nAA[1,0,1]=4\nG0 Z=AA[1,0,1]+AA[1,1,0]", [4]),
         ("DEF REAL AA[4]=REP(2,2)\nG0 Z=AA[1]\nZ=AA[2]", [2, 0]),
+        ("DEF REAL AA[2]=SET(3,4)\nAA[0]=REP(9,0)\nG0 Z=AA[0]", [3]),
+        ("R298=1\nR[R298+298]=SET(7)\nG0 Z=R299", [7]),
+        (
+            "R1=0\nAA:\nDEF REAL BB[2]\nBB[1]=BB[1]+1\nR1=R1+1\nIF R1<3 GOTOB AA\nG0 Z=BB[1]",
+            [1],
+        ),  # DEF sets 0
     ],
 )
 def test_value_lists_fill_arrays(text: str, ends: list[float]) -> None:
@@ -116,6 +122,22 @@ def test_value_lists_fill_arrays(text: str, ends: list[float]) -> None:
         ("DEF REAL AA[2,2,2,2]", "17020"),
         ("R[1,2]=3", "17030"),
         ("R[299]=SET(1,2)", "array-values"),
+        ("R1=300\nR[R1]=SET(1,2)", "17020"),
+        ("R1=300\nR[R1]=REP(0,2)", "17020"),
+        ("R1=5000\nR[R1]=5", "17020"),
+        ("R1=5000\nG0 Z=R[R1]", "17020"),
+        ("IF R300==1 GOTOF AA\nAA: M0", "17020"),
+        ("FOR R300=1 TO 2", "12080"),
+        ("DEF REAL AA[2.5]", "17020"),
+        ("DEF REAL AA[2]\nAA[0]=REP(1,1.5)", "array-values"),
+        ("DEF REAL AA[2]\nAA[0]=REP(1,-1)", "array-values"),
+        ("DEF REAL AA[2]\nAA[0]=REP(1,3)", "array-values"),
+        ("DEF REAL AA[2]\nR1=1000000000\nAA[0]=REP(1,R1*R1*R1)", "array-values"),
+        ("DEF REAL AA[3]\nDEF REAL AA[2]\nAA[2]=SET(1)", "17020"),
+        ("DEF REAL AA[2]\nDEF REAL AA\nAA[0]=1", "12550"),
+        ("DEF REAL AA\nDEF REAL AA[2]\nAA=1", "17020"),
+        ("DEF REAL AA\nDEF STRING[5] AA\nAA=1", "12550"),
+        ("AA: R1=1\nREPEAT AA P=2.5", "passes"),
         ("DEF REAL AA[2]=REP(1,2,3)", "12080"),
     ],
 )

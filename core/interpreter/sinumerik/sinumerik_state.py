@@ -32,6 +32,7 @@ from core.language.diagnostics import (
 )
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import LexedBlock, Word
+from core.language.sinumerik.word_values import find_violated_limits, is_variable, make_limit_hint
 from core.message import Message
 
 
@@ -187,13 +188,23 @@ class State:
         return self.length(statement, word) if self.modal.is_c_linear else self.number(statement, word)
 
     def number(self, statement: Statement, word: Word) -> float:
-        """Return the number of a word or the value of its formula. Raises ProgramError if it has no value."""
+        """Return the number of a word or the value of its formula.
+
+        Raises ProgramError if the formula has no value, or if its value is outside the limits of the word.
+        """
         if word.value is not None:
             return word.value
         assert word.formula is not None
-        return self.evaluate_formula(
+        value = self.evaluate_formula(
             word.formula, lambda code, text, hint: statement.make_error(word, code, text, hint)
         )
+        limits = None if is_variable(word.name) else find_violated_limits(word.name, value)
+        if limits is not None:
+            text = Message(
+                "{word} results in {value}, which is out of range.", word=word.text, value=f"{value:g}"
+            )
+            raise statement.make_error(word, "out-of-range", text, make_limit_hint(word.name, limits))
+        return value
 
     def evaluate_formula(self, formula: Formula, make_error: ErrorFactory) -> float:
         """Return the value of a formula.

@@ -9,6 +9,9 @@ from typing import NamedTuple, TypeVar
 from core.language.formulas import FUNCTION_OPERATIONS, Formula, FormulaError, FormulaGrammar, FormulaReader
 from core.language.line_reading import UNSIGNED_NUMBER
 
+MAX_R_NUMBER = 299
+"""Number of the last R parameter."""
+
 SINUMERIK_GRAMMAR = FormulaGrammar(
     number_pattern=re.compile(rf"{UNSIGNED_NUMBER}(?:EX[+-]?[0-9]{{1,3}})?"),
     # Names such as $P_… are system variables, and their indices are part of the name.

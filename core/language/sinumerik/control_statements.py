@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, split_index
-from core.language.sinumerik.block_reader import BlockReader, ValueList, read_value_list
+from core.language.sinumerik.block_reader import MAX_R_NUMBER, BlockReader, ValueList, read_value_list
 from core.language.sinumerik.call_arguments import ProcParameter, read_parameters
 from core.message import Message
 
@@ -102,7 +102,7 @@ class ControlStatement(NamedTuple):
 _WORDS = re.compile("(" + "|".join(sorted(ControlKeyword, key=len, reverse=True)) + r")(?![A-Z0-9_=])")
 _GOTO = re.compile(r"\s*(GOTO[FBS]?)(?![A-Z0-9_])\s*")
 _TARGET = re.compile(r"(?:N[0-9]+|[A-Z_][A-Z_][A-Z0-9_]*)\s*")
-_NAME = re.compile(r"\s*(R[0-9]+|[A-Z_][A-Z_][A-Z0-9_]*)\s*=")
+_NAME = re.compile(r"\s*(R([0-9]+)|[A-Z_][A-Z_][A-Z0-9_]*)\s*=")
 _TO_KEYWORD = re.compile(r"\s*TO(?![A-Z])")
 _CASE_KEYWORD = re.compile(r"\s*OF(?![A-Z0-9_])")
 _DEFAULT = re.compile(r"\s*DEFAULT(?![A-Z0-9_])")
@@ -169,16 +169,6 @@ class _Reader(BlockReader):
             self.match_pattern(_ANY_BRACKET)
         return ControlStatement(self._steering, self._column) if read is None else read()
 
-    def _match_required(self, pattern: re.Pattern[str], problem: str, hint: str) -> re.Match[str]:
-        """Return the match of the pattern at this position and move past it.
-
-        Raises FormulaError if the pattern does not match.
-        """
-        match = self.match_pattern(pattern)
-        if match is None:
-            raise FormulaError(self.index, problem, hint)
-        return match
-
     def _goto(self) -> ControlStatement:
         return ControlStatement(self._steering, self._column, target=self._target())
 
@@ -226,7 +216,12 @@ class _Reader(BlockReader):
 
     def _for(self) -> ControlStatement:
         hint = "Write, for example, FOR R1 = 1 TO 5."
-        name = self.match_required(_NAME, "FOR needs a variable and =", hint).group(1)
+        variable = self.match_required(_NAME, "FOR needs a variable and =", hint)
+        name, number = variable.groups()
+        if number is not None and int(number) > MAX_R_NUMBER:
+            text = Message("R{number} is not a valid parameter", number=number)
+            limit = Message("Use a parameter from R0 to R{most_r}.", most_r=MAX_R_NUMBER)
+            raise FormulaError(variable.start(1), text, limit)
         first = self.read_formula()
         self.match_required(_TO_KEYWORD, "FOR needs TO", hint)
         return ControlStatement(

@@ -14,7 +14,7 @@ from core.language.line_reading import (
     uppercase_ascii,
 )
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.block_reader import BlockReader, read_value_list
+from core.language.sinumerik.block_reader import MAX_R_NUMBER, BlockReader, read_value_list
 from core.language.sinumerik.call_arguments import CallArgument, read_arguments
 from core.language.sinumerik.control_statements import (
     ControlKeyword,
@@ -430,9 +430,9 @@ class _Scanner:
         if is_r is None and not assigned and (len(name) == 1 or name in known.UNSUPPORTED_NAMES):
             why = known.UNSUPPORTED_LETTERS.get(name) or known.UNSUPPORTED_REASONS.get(name)
             return self._report_unsupported(at, end, name, why or "this control does not support this word")
-        if is_r is not None and int(is_r[1][:9]) > known.MAX_R_NUMBER:
+        if is_r is not None and int(is_r[1][:9]) > MAX_R_NUMBER:
             return self._report_unsupported(
-                at, end, name, Message("R parameters are R0 to R{most_r}", most_r=known.MAX_R_NUMBER)
+                at, end, name, Message("R parameters are R0 to R{most_r}", most_r=MAX_R_NUMBER)
             )
         found = _FORM.match(self._text, end)
         if found is not None and found[1] in _FORMS:

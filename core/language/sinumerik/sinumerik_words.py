@@ -167,7 +167,6 @@ VALUE_RANGES: dict[str, tuple[float, float]] = {
 }
 """Lowest and highest value of each word."""
 
-MAX_R_NUMBER = 299
 UNSUPPORTED_LETTERS = {
     "H": "this control does not support the H functions of SINUMERIK",
     "L": "L needs a whole number to call a subprogram",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, Number, Operation, Parameter
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.block_reader import parse_formula
+from core.language.sinumerik.block_reader import MAX_R_NUMBER, parse_formula
 from core.language.sinumerik.sinumerik_words import Word
 from core.message import Message
 
@@ -43,11 +43,11 @@ def parse_value(text: str, index: int) -> ParsedValue:
 def check_parameter_numbers(formula: Formula, index: int) -> None:
     """Raise FormulaError if a formula contains an R parameter that does not exist."""
     match formula:
-        case Parameter("R", int(number), column) if number > known.MAX_R_NUMBER:
+        case Parameter("R", int(number), column) if number > MAX_R_NUMBER:
             raise FormulaError(
                 column - 1,
                 Message("R{number} is not a valid parameter", number=number),
-                Message("Use a parameter from R0 to R{most_r}.", most_r=known.MAX_R_NUMBER),
+                Message("Use a parameter from R0 to R{most_r}.", most_r=MAX_R_NUMBER),
             )
         case Operation(_, operands):
             for each in operands:
@@ -72,16 +72,24 @@ def find_range_error(word: Word) -> tuple[str, str] | None:
         ), "Write a whole number of up to four digits."
     if word.name in {"T", "D"} and not word.value.is_integer():
         return Message("{word} is not a valid tool or edge number", word=word.text), "Enter a whole number."
-    low, high = known.VALUE_RANGES.get(
-        word.name, known.VALUE_RANGES["R"]
-    )  # a variable has the range of an R parameter
-    if low <= word.value <= high:
+    limits = find_violated_limits(word.name, word.value)
+    if limits is None:
         return None
-    return Message("{word} is out of range", word=word.text), (
-        Message(
-            "Use a value of {word} between {low} and {high}.",
-            word=word.name,
-            low=f"{low:g}",
-            high=f"{high:g}",
-        )
+    return Message("{word} is out of range", word=word.text), make_limit_hint(word.name, limits)
+
+
+def find_violated_limits(name: str, value: float) -> tuple[float, float] | None:
+    """Return the limits of a word that the value violates, or None if the value is valid.
+
+    A variable has the limits of an R parameter.
+    """
+    low, high = known.VALUE_RANGES.get(name, known.VALUE_RANGES["R"])
+    return None if low <= value <= high else (low, high)
+
+
+def make_limit_hint(name: str, limits: tuple[float, float]) -> str:
+    """Return the hint that names the limits of a word."""
+    low, high = limits
+    return Message(
+        "Use a value of {word} between {low} and {high}.", word=name, low=f"{low:g}", high=f"{high:g}"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import partial
 from math import prod
 
 from core.interpreter.sinumerik.flow.variables import MAX_ARRAY_SIZE, MAX_DIMENSIONS
@@ -220,13 +221,18 @@ def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None
     scope = state.variables.variable_scope
     for each in jump.definitions:
         if each.type_name == "STRING":
-            scope.strings[each.name] = each.text
+            scope.define_string(each.name, each.text)
             continue
         first = 0.0 if each.formula is None else _worth(line, jump, state, each.formula)
         scope.define_variable(each.name, first, _sizes(line, jump, state, each))
         if each.values is not None:
-            left = state.variables.assign_values(each.name, scope.list_elements(each.name)[0], each.values,
-                                        lambda asked: _worth(line, jump, state, asked))  # fmt: skip
+            left = state.variables.assign_values(
+                each.name,
+                scope.list_elements(each.name)[0],
+                each.values,
+                lambda asked: _worth(line, jump, state, asked),
+                partial(line.make_error, jump.column),
+            )
             if left:
                 text = Message(
                     "array {item} needs {left} more elements for this list.", item=each.name, left=left
@@ -240,12 +246,13 @@ def _sizes(
     line: LexedBlock, jump: ControlStatement, state: State, each: VariableDefinition
 ) -> tuple[int, ...]:
     """Return the dimensions of an array. Raises ProgramError if a dimension or the size is invalid."""
-    sizes = tuple(int(_worth(line, jump, state, size)) for size in each.dimensions)
-    if len(sizes) > MAX_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > MAX_ARRAY_SIZE:
+    sizes = [_worth(line, jump, state, size) for size in each.dimensions]
+    are_whole = all(size.is_integer() and size >= 1.0 for size in sizes)
+    if len(sizes) > MAX_DIMENSIONS or not are_whole or prod(sizes) > MAX_ARRAY_SIZE:
         text = Message(
             "{item}{sizes}: an array must have 1 to {largest_array} elements.",
             item=each.name,
-            sizes=list(sizes),
+            sizes=f"[{', '.join(f'{size:g}' for size in sizes)}]",
             largest_array=f"{MAX_ARRAY_SIZE:,}",
         )
         hint = Message(
@@ -253,7 +260,7 @@ def _sizes(
             most_dimensions=MAX_DIMENSIONS,
         )
         raise line.make_error(jump.column, WRONG_FIRST_INDEX, text, hint)
-    return sizes
+    return tuple(int(size) for size in sizes)
 
 
 def _format_message(line: LexedBlock, jump: ControlStatement, state: State) -> str:

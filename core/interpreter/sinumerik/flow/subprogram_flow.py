@@ -418,15 +418,16 @@ class Flow(ControlFlow[_Call]):
             )
             hint = "Put the whole section to be repeated before or after this block."
             raise line.make_error(jump.column, WRONG_NESTING, text, hint)
-        passes = 1
+        passes = 1.0
         if jump.repeat_count is not None:
-            passes = int(state.evaluate_formula(jump.repeat_count, partial(line.make_error, jump.column)))
-        if not 1 <= passes <= _MAX_PASSES or len(repeats) >= MAX_CALL_DEPTH:
-            text = Message("P{passes} is not a valid repeat count.", passes=passes)
+            passes = state.evaluate_formula(jump.repeat_count, partial(line.make_error, jump.column))
+        is_valid = passes.is_integer() and 1 <= passes <= _MAX_PASSES
+        if not is_valid or len(repeats) >= MAX_CALL_DEPTH:
+            text = Message("P{passes} is not a valid repeat count.", passes=f"{passes:g}")
             hint = Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MAX_PASSES)
             raise line.make_error(jump.column, "passes", text, hint)
         routine.has_repeats = True
-        repeats.append(_Repeat(start, end, passes, self.next_index))
+        repeats.append(_Repeat(start, end, int(passes), self.next_index))
         self.next_index = start
 
 

@@ -41,7 +41,8 @@ def _no_place(state: State, statement: Statement, word: Word, name: str) -> Prog
 def _execute_set(state: State, statement: Statement, word: Word, name: str) -> None:
     """Execute SET or REP, starting at an element of an array.
 
-    Raises ProgramError if the array element does not exist or the array is too short.
+    Raises ProgramError if the array element does not exist, if the array is too short, or if the number of
+    elements of REP is invalid.
     """
     letters = "R" if word.name == "R0" else word.name
     if name not in state.variables.variable_scope.numbers and letters != "R":
@@ -50,7 +51,7 @@ def _execute_set(state: State, statement: Statement, word: Word, name: str) -> N
     assert word.values is not None
     refuse = partial(statement.make_error, word)
     left = state.variables.assign_values(
-        letters, name, word.values, lambda asked: state.evaluate_formula(asked, refuse)
+        letters, name, word.values, lambda asked: state.evaluate_formula(asked, refuse), refuse
     )
     if left:
         text = Message(

@@ -11,9 +11,8 @@ from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter, split_index
-from core.language.sinumerik.block_reader import ValueList
+from core.language.sinumerik.block_reader import MAX_R_NUMBER, ValueList
 from core.language.sinumerik.sinumerik_alarms import NAME_NOT_DEFINED, WRONG_FIRST_INDEX, WRONG_OTHER_INDEX
-from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER
 from core.message import Message
 from core.tool_edges import FIRST_NAMED_TOOL, get_tool_number
 
@@ -34,12 +33,33 @@ class VariableScope:
     array_dimensions: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     def define_variable(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
-        """Define a number with this value or, if ``sizes`` is given, an array filled with this value."""
+        """Define a number with this value or, if ``sizes`` is given, an array filled with this value.
+
+        An earlier definition of the name is removed.
+        """
+        self.remove_variable(name)
         if not sizes:
             self.numbers[name] = value
             return
         self.array_dimensions[name] = sizes
         self.numbers.update(dict.fromkeys(self.list_elements(name), value))
+
+    def define_string(self, name: str, text: str) -> None:
+        """Define a string. An earlier definition of the name is removed."""
+        self.remove_variable(name)
+        self.strings[name] = text
+
+    def remove_variable(self, name: str) -> None:
+        """Remove a number, an array or a string, if the name is defined."""
+        names = self.list_elements(name) if name in self.array_dimensions else [name]
+        for each in names:
+            self.numbers.pop(each, None)
+        self.array_dimensions.pop(name, None)
+        self.strings.pop(name, None)
+
+    def copy(self) -> VariableScope:
+        """Return an independent copy of the variables."""
+        return VariableScope(dict(self.numbers), dict(self.strings), dict(self.array_dimensions))
 
     def list_elements(self, name: str) -> list[str]:
         """Return the names of an array's elements in the order in which they are filled.
@@ -82,23 +102,25 @@ class Variables:
         first_element: str,
         values: ValueList,
         compute_formula: Callable[[Formula], float],
+        make_error: ErrorFactory,
     ) -> int:
         """Assign values to consecutive array elements or R parameters, starting at ``first_element``.
 
-        Returns the number of values for which no element remained.
+        Returns the number of surplus values. Raises the error that ``make_error`` returns if the number of
+        elements of REP is not a whole number of 0 or more.
         """
         places = _r_places() if variable_name == "R" else self.variable_scope.list_elements(variable_name)
         places = places[places.index(first_element) :]
-        formulas = list(values.formulas)
+        formulas, surplus = list(values.formulas), len(values.formulas) - len(places)
         if values.is_repeated:
-            times = (
-                len(places) if values.repeat_count is None else round(compute_formula(values.repeat_count))
-            )
-            formulas *= max(times, 0)
+            count = len(places)
+            if values.repeat_count is not None:
+                count = _check_repeat_count(compute_formula(values.repeat_count), make_error)
+            formulas, surplus = formulas * min(count, len(places)), count - len(places)
         for place, formula in zip(places, formulas, strict=False):
             if formula is not None:
                 self.set_value(place, compute_formula(formula))
-        return max(len(formulas) - len(places), 0)
+        return max(surplus, 0)
 
     def set_value(self, name: str, value: float) -> bool:
         """Set an R parameter or variable, and return whether it is defined; R parameters always are."""
@@ -166,22 +188,37 @@ def format_variable_name(
     """Return the name of a variable or element, such as R7, LENGTH or TABLE[2].
 
     Raises the error that ``make_error`` returns if an index is negative or not a whole number, or if an R
-    parameter has more than one index.
+    parameter has more than one index or an index above 299.
     """
-    if number is None or isinstance(number, int):
-        return f"{letters}{'' if number is None else number}"
-    indices = [compute_formula(each) for each in split_index(number)]
+    if number is None:
+        return letters
+    if isinstance(number, int) and (letters != "R" or number <= MAX_R_NUMBER):
+        return f"{letters}{number}"
+    indices = [float(number)] if isinstance(number, int) else list(map(compute_formula, split_index(number)))
     for place, index in enumerate(indices):
-        if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
+        is_too_high = letters == "R" and (place or index > MAX_R_NUMBER)
+        if abs(index - round(index)) > 1e-9 or index < 0 or is_too_high:
             code = WRONG_OTHER_INDEX if place else WRONG_FIRST_INDEX
             text = Message(
                 "{letters}[{item}] does not exist.",
                 letters=letters,
                 item=",".join(f"{each:g}" for each in indices),
             )
-            raise make_error(code, text, "Use a whole number of 0 or more as the index.")
+            raise make_error(code, text, _INDEX_HINTS.get(letters, _ARRAY_INDEX_HINT))
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"
+
+
+_ARRAY_INDEX_HINT = "Use a whole number of 0 or more as the index."
+_INDEX_HINTS = {"R": Message("Use a parameter from R0 to R{most_r}.", most_r=MAX_R_NUMBER)}
+
+
+def _check_repeat_count(count: float, make_error: ErrorFactory) -> int:
+    """Return the number of elements of REP, or raise the error for an invalid number."""
+    if count < 0.0 or not count.is_integer():
+        text = Message("REP cannot fill {count} elements.", count=f"{count:g}")
+        raise make_error("array-values", text, "Write a whole number of 0 or more.")
+    return int(count)
 
 
 def _r_places() -> list[str]:

@@ -30,9 +30,6 @@ def execute_feed_words(state: State, statement: Statement) -> None:
         state.corner_feed = None
     if word := statement.words.get("OVR"):
         state.override = state.number(statement, word) / 100.0
-        if not 0.01 <= state.override <= 2.0:
-            text = "{word} is not between 1 and 200."
-            raise statement.make_error(word, "not-positive", text, "Correct the value.", word=word.text)
     if word := statement.words.get("FRCM"):
         value = state.number(statement, word)
         state.corner_feed = convert_feed(state, statement, word) if value else None

@@ -64,7 +64,7 @@ def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> 
 def _number(state: State, statement: Statement, word: Word) -> int:
     if not word.quoted_name:
         value = state.number(statement, word)
-        if not value.is_integer() or not 0 <= value < FIRST_NAMED_TOOL:
+        if not value.is_integer():
             text = "{word} results in {value}, which is not a tool number."
             hint = "Enter the tool number as a whole number."
             raise statement.make_error(word, WRONG_TOOL_NUMBER, text, hint, word=word.text, value=value)
