@@ -90,16 +90,20 @@ def _contour(cycle: CycleCall, flow: Flow) -> list[Element]:
             "file."
         )
         raise cycle.make_parameter_error("NPP", text, hint, "subprogram-missing", named=named, named2=named)
+    file_name, log = "" if known is None else known.displayed_name, DiagnosticLog()
     try:
-        return read_contour(cycle.state, lines)
+        return read_contour(cycle.state, lines, log)
     except ProgramError as problem:
-        if known is None or not known.displayed_name:
+        if not file_name:
             raise
-        raise ProgramError(_relocate_finding(cycle.line, known.displayed_name, problem.diagnostic)) from None
+        raise ProgramError(_relocate_finding(cycle.line, file_name, problem.diagnostic)) from None
+    finally:
+        for each in log.findings:
+            cycle.state.log.add_finding(_relocate_finding(cycle.line, file_name, each) if file_name else each)
 
 
 def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> Diagnostic:
-    """Return an error in another file with the contour as a finding at the line of the cycle call."""
+    """Return a finding in the contour's file as a finding at the line of the cycle call."""
     message = Message(
         "{source} line {line}: {value}", source=file_name, line=finding.line, value=finding.message
     )

@@ -34,7 +34,7 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
     make_dwell_steps,
 )
 from core.interpreter.sinumerik.flow.control_structures import Routine, find_label_index
-from core.interpreter.sinumerik.flow.variables import VariableScope
+from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
 from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
@@ -44,6 +44,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement, make_state
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.control_statements import ControlKeyword
 from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_words import ARC_WORDS, CORNER_WORDS, POSITION_WORDS
 from core.language.sinumerik.sinumerik_words import LexedBlock as SourceLine
 from core.language.sinumerik.word_table import DIAMETER_GROUP, DISTANCE_MODE_GROUP, MOTION_GROUP, PLANE_GROUP
 from core.message import Message
@@ -55,6 +56,11 @@ _GROUPS = frozenset({MOTION_GROUP, DISTANCE_MODE_GROUP, PLANE_GROUP, DIAMETER_GR
 _ALLOWED_FLOW_WORDS = frozenset(
     {ControlKeyword.PROCEDURE, ControlKeyword.MESSAGE, ControlKeyword.STOP_READING, ControlKeyword.RETURN}
 )
+_WORDS = (POSITION_WORDS | ARC_WORDS | CORNER_WORDS) - {"C", "Y", "J"} | {
+    *("F", "FB", "FRC", "FRCM", "OVR", "S", "LIMS", "ADIS", "ADISPOS", "DITS", "DITE")
+}
+"""Words that are allowed in a contour. Only positions, arcs and corners have an effect."""
+
 _END = frozenset({2, 17, 30})
 
 
@@ -82,13 +88,14 @@ def find_contour_lines(
     )
 
 
-def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
+def read_contour(state: State, lines: Iterable[SourceLine], log: DiagnosticLog) -> list[Element]:
     """Return the lines and arcs of a contour in the program frame, in mm.
 
-    The first move leads to the first point of the contour. The active state does not change. Raises
-    ProgramError for a line that is not allowed in a contour.
+    The first move leads to the first point of the contour. The active state does not change, and ``log``
+    receives the warnings. Raises ProgramError for a line that is not allowed in a contour, and for an invalid
+    assignment.
     """
-    reader = _Reader(state)
+    reader = _Reader(state, log)
     for line in lines:
         if line.skip_level is not None and state.setup.block_delete:
             continue
@@ -98,11 +105,11 @@ def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
 
 
 class _Reader:
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: State, log: DiagnosticLog) -> None:
         own = copy.copy(state)
-        own.log = DiagnosticLog()
+        own.log, own.moved_by_tool = log, set(state.moved_by_tool)
         own.variables = copy.copy(state.variables)
-        own.variables.variable_scope = VariableScope(dict(state.variables.variable_scope.numbers))
+        own.variables.variable_scope = state.variables.variable_scope.copy()
         own.variables.r_parameters = dict(state.variables.r_parameters)
         own.threads, own.rounding, own.motion = (), 0.0, MotionKind.LINE
         # The feeds of a contour have no effect, so a missing feed is not an error.
@@ -114,7 +121,7 @@ class _Reader:
     def read_line(self, line: SourceLine) -> bool:
         """Read one line, and return whether this line ends the contour.
 
-        Raises ProgramError for a line that is not allowed in a contour.
+        Raises ProgramError for a line that is not allowed in a contour, and for an invalid assignment.
         """
         for found in line.errors:
             raise ProgramError(found)
@@ -131,11 +138,10 @@ class _Reader:
             return line.control_statement.keyword is ControlKeyword.RETURN
         statement = make_statement(line)
         self._check(statement)
-        for word in statement.assignments:
-            self._state.variables.set_value(word.name, self._state.number(statement, word))
+        set_parameters(self._state, statement)
         if statement.g_words:
             execute_modes(self._state, statement)
-        if statement.has_position_word:
+        if statement.has_position_word or not ARC_WORDS.isdisjoint(statement.words):
             block = (make_arc_block if self._state.motion in ARC_MOTIONS else make_straight_block)(
                 self._state, statement
             )
@@ -151,6 +157,9 @@ class _Reader:
         motion = statement.get_g_code(MOTION_GROUP)
         if motion is not None and motion not in _MOTIONS:
             raise _refused(statement.line, "a contour can contain only G0, G1, G2 and G3")
+        if words := statement.words.keys() - _WORDS - {"C"}:
+            word = statement.words[min(words)]
+            raise _refused(statement.line, Message("{line} is not allowed in a contour", line=word.text))
         if "C" in statement.words or statement.frame_word is not None:
             raise _refused(statement.line, "C and frames are not allowed in a contour")
 
@@ -224,6 +233,7 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
         steps += plan.plan_roughing()
     if kind.has_finishing:
         steps += plan.plan_finishing()
+    cycle.state.moved_by_tool.clear()  # The cycle moves both axes to programmed positions.
     return cycle.make_blocks(steps)
 
 
