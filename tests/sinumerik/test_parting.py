@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import pytest
 
+from app.compose.machine.machine_files import load_shipped_machine
 from core.interpreter.shared.actions import SpindleRun
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from tests.sinumerik.lathe import refused, run, setup
 
+LIVE = load_shipped_machine("sinumerik-live")
 TOOLS = replace(setup(), tools={1: ToolOffset(quadrant=3)})
 START = "S900 M3 G95 F0.1\nT1 D1\nG0 X50 Z-30\n"
 
@@ -72,6 +74,16 @@ def test_start_below_part_diameter_retracts_first() -> None:
 )
 def test_invalid_parting_calls_are_rejected(call: str, code: str) -> None:
     assert refused(START + call, TOOLS).code == code
+
+
+def test_parting_with_live_tool_feed_starts_nothing_while_the_tool_is_stopped() -> None:
+    """SETMS(2) with G95 needs the live tool. S1000 and M3 of _SV1 and _SDAC once started before the error."""
+    around = replace(setup(LIVE), tools={1: ToolOffset(quadrant=3)})
+    text = f"{START}SETMS(2)\nG95 F0.1\nCYCLE92(40,-30,10,-1,,1,1000,,3,0.1,0.05,500)"
+    passed = run(text, around)
+    assert [each.code for each in passed.errors] == ["g95-spindle-stopped"]
+    assert [block for block in passed.blocks if block.line == 6] == []
+    assert passed.blocks[-1].modal.rpm == 900.0
 
 
 def test_parting_without_feed_is_rejected() -> None:

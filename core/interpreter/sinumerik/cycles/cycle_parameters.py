@@ -330,6 +330,14 @@ class CycleCall:
 
         All feeds are checked before the first block. Raises ProgramError for an invalid feed.
         """
+        for step, feed in self.check_steps(steps):
+            yield self.make_block(step, feed)
+
+    def check_steps(self, steps: Sequence[CycleStep]) -> list[tuple[CycleStep, float]]:
+        """Return the steps that move or act, each with the feed of its block.
+
+        The feeds apply to the active modal state. Raises ProgramError for an invalid feed.
+        """
         at, kept = (self.x, self.z), list[tuple[CycleStep, float]]()
         for step in steps:
             still = step.action is None and step.center is None and not step.c_travel_deg
@@ -340,8 +348,7 @@ class CycleCall:
                 feed = self._check_feed(step, at[0])
             kept.append((step, feed))
             at = (step.x, step.z) if step.action is None else at
-        for step, feed in kept:
-            yield self._block(step, feed)
+        return kept
 
     def _check_feed(self, step: CycleStep, x0: float) -> float:
         """Return the feed of a step in the unit of its block. Raises ProgramError if the feed is invalid."""
@@ -352,7 +359,8 @@ class CycleCall:
         finally:
             state.set_modal(modal)
 
-    def _block(self, step: CycleStep, feed: float) -> Block:
+    def make_block(self, step: CycleStep, feed: float) -> Block:
+        """Return the block of a step, and set the state to its end."""
         state, modal = self.state, self.state.modal
         if step.action is not None:
             if step.spindle_direction is not None:

@@ -12,7 +12,7 @@ The digits of ``_DMODE`` and ``_AMODE`` are not documented. Depths are therefore
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import radians, tan
 from typing import NamedTuple
 
@@ -343,15 +343,17 @@ def _blocks(
     fast, before, rpm = speeds
     state = cycle.state
     slow = fast._replace(css=False, rpm=rpm) if rpm else fast
+    first, last = _check_sections(cycle, ((fast, first_steps), (slow, last_steps)))
     if fast != before:
         state.set_modal(fast)
         yield _turning(cycle)
-    yield from cycle.make_blocks(first_steps)
-    cycle.x, cycle.z = first_steps[-1].x, first_steps[-1].z
+    for step, feed in first:
+        yield cycle.make_block(step, feed)
     if slow != fast:
         state.set_modal(slow)
         yield _turning(cycle)
-    yield from cycle.make_blocks(last_steps)
+    for step, feed in last:
+        yield cycle.make_block(step, feed)
     if slow != before:
         state.set_modal(
             state.modal._replace(
@@ -365,6 +367,25 @@ def _blocks(
             yield _turning(cycle)
         else:
             state.set_modal(slow)  # The spindle continues to turn, so the modal state has its speed.
+
+
+def _check_sections(
+    cycle: CycleCall, sections: Iterable[tuple[ModalState, list[CycleStep]]]
+) -> list[list[tuple[CycleStep, float]]]:
+    """Return the steps of consecutive sections with their feeds, each section in its modal state.
+
+    The active modal state does not change. Raises ProgramError for an invalid feed.
+    """
+    state, before = cycle.state, cycle.state.modal
+    checked = []
+    try:
+        for modal, steps in sections:
+            state.set_modal(modal)
+            checked.append(cycle.check_steps(steps))
+            cycle.x, cycle.z = steps[-1].x, steps[-1].z
+    finally:
+        state.set_modal(before)
+    return checked
 
 
 def _turning(cycle: CycleCall) -> Block:
