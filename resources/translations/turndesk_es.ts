@@ -21310,6 +21310,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Correct the value.</source>
+      <translation>Corrija el valor.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Cycle {number} moves the cutting edge away from the wall, but {unoriented}.</source>
       <translation>El ciclo {number} separa el filo de la pared, pero {unoriented}.</translation>
     </message>
@@ -21407,6 +21412,16 @@
       <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>{parameter} of cycle {number} is not a valid feed rate.</source>
       <translation>{parameter} del ciclo {number} no es un avance válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>{parameter}={value} of cycle {number} is not one of {choices}.</source>
+      <translation>{parameter}={value} del ciclo {number} no es uno de {choices}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>{parameter}={value} of cycle {number} must be a whole number.</source>
+      <translation>{parameter}={value} del ciclo {number} debe ser un número entero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
@@ -21635,6 +21650,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
+      <source>Q242={columns} and Q243={rows} result in {count} positions.</source>
+      <translation>Q242={columns} y Q243={rows} dan {count} posiciones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>Q{parameter}={count} is not a valid number of positions.</source>
       <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
@@ -21770,11 +21790,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/word_values.py" />
-      <source>Correct the value.</source>
-      <translation>Corrija el valor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>F must be above zero.</source>
       <translation>F debe ser mayor que cero.</translation>
     </message>
@@ -21817,6 +21832,11 @@
       <location filename="core/interpreter/klartext/flow/word_values.py" />
       <source>{what} {value} is not between {low} and {maximum}.</source>
       <translation>{what} {value} no está entre {low} y {maximum}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow/word_values.py" />
+      <source>{what} {value} must be a whole number.</source>
+      <translation>{what} {value} debe ser un número entero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />

@@ -64,6 +64,15 @@ def _power(base: float, exponent: float) -> float:
 
 _TRUTH = 1e-12  # numbers with a smaller difference are equal
 
+_ROUNDING_ERROR = 1e-9
+
+
+def convert_to_whole_number(value: float) -> int | None:
+    """Return the whole number that a value is apart from rounding errors, or None if it is not whole."""
+    nearest = round(value)
+    return nearest if abs(value - nearest) <= _ROUNDING_ERROR else None
+
+
 OPERATIONS: dict[str, Callable[..., float]] = {
     "plus": lambda a, b: a + b,
     "minus": lambda a, b: a - b,

@@ -67,7 +67,7 @@ class ClearingData:
     @property
     def is_up_cut(self) -> bool:
         """Return whether Q9 is negative, so that pockets are milled clockwise (up-cut with M3)."""
-        return (self.tool.read_value(9, 1.0) < 0.0) != (self.tool.running_rpm < 0.0)
+        return (self.tool.read_choice(9, (-1, 0, 1), 1.0) < 0) != (self.tool.running_rpm < 0.0)
 
     @property
     def stepover_mm(self) -> float:
@@ -151,7 +151,7 @@ def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
     The cycle drills a hole at each position where cycle 22 plunges with tool Q13.
     """
     clearing = ClearingData(tool, area)
-    radius = tool.find_radius_mm(int(tool.read_value(13)))
+    radius = tool.find_radius_mm(tool.read_whole_number(13))
     if radius is None or radius <= MIN_LENGTH_MM:
         text = "Rough-out tool {plain} (Q13) has no radius in the tool table."
         raise tool.make_error(text, "Set Q13 to the number of a measured tool.", plain=tool.read_value(13))
@@ -342,9 +342,9 @@ def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Bl
         tool.log_note("Cycle 25 mills only the first contour listed in cycle 14.")
     figure = contours[0]
     tool_path = _offset_path(clearing, figure)
-    kind = tool.read_value(15, 1.0)
+    kind = tool.read_choice(15, (-1, 0, 1), 1.0)
     climbs = (figure.compensation_side == "L") == (tool.running_rpm > 0.0)  # in the programmed direction
-    if kind and figure.compensation_side and climbs != (kind > 0.0):
+    if kind and figure.compensation_side and climbs != (kind > 0):
         tool_path = [element.make_reversed() for element in reversed(tool_path)]
     feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
     yield from clearing.move_to_safe_z()

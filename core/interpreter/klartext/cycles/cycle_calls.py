@@ -439,7 +439,7 @@ class ActiveCycle:
         surface = tool.read_length_mm(203, 0.0)
         above = (
             surface + tool.read_length_mm(204, 0.0)
-            if tool.read_value(301, 1.0)
+            if tool.read_choice(301, (0, 1), 1.0)
             else surface + tool.read_length_mm(200)
         )
         places = compute_circle_points(tool) if node.cycle_number == _CIRCLE else compute_row_points(tool)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from core.geometry.lines_and_arcs import Arc, Point
@@ -20,6 +20,7 @@ from core.interpreter.shared.actions import (
     SpindleStop,
 )
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE_INCORRECT, WRONG_RPM
 from core.language.klartext.q_parameters import MAX_FEED_VALUE, TOOL_FEED_VALUE
@@ -98,6 +99,38 @@ class CycleTool:
         if found is None:
             text, hint = "Cycle {number} needs {parameter}.", "Add the parameter to CYCL DEF."
             raise self.make_error(text, hint, CYCLE_MISSING, parameter=self.format_name(q))
+        return found
+
+    def read_whole_number(self, q: int, default: float | None = None) -> int:
+        """Return a whole number.
+
+        Raises ProgramError if the number is not whole, or if the parameter is missing and no ``default`` is
+        given.
+        """
+        value = self.read_value(q, default)
+        found = convert_to_whole_number(value)
+        if found is None:
+            text = "{parameter}={value} of cycle {number} must be a whole number."
+            raise self.make_error(text, "Correct the value.", parameter=self.format_name(q), value=value)
+        return found
+
+    def read_choice(self, q: int, choices: Sequence[int], default: float | None = None) -> int:
+        """Return a number that selects a variant of the cycle.
+
+        Raises ProgramError for a number that is not in ``choices``, or if the parameter is missing and no
+        ``default`` is given.
+        """
+        found = self.read_whole_number(q, default)
+        text = "{parameter}={value} of cycle {number} is not one of {choices}."
+        choice_list = ", ".join(map(str, choices))
+        self.check_condition(
+            found in choices,
+            text,
+            "Correct the value.",
+            parameter=self.format_name(q),
+            value=found,
+            choices=choice_list,
+        )
         return found
 
     def read_length_mm(self, q: int, default_mm: float | None = None) -> float:
@@ -335,7 +368,7 @@ class CycleTool:
         The parameter contains an M function number (8 or 9), or 0 for no change. Raises ProgramError for
         any other value.
         """
-        number, state = int(self.read_value(q, 0.0)), self._state
+        number, state = self.read_whole_number(q, 0.0), self._state
         if number == 0:
             return []
         text = "Q{parameter} selects M{number}, which is not a coolant function of this machine."

@@ -139,7 +139,7 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
     """
     surface, clear, bottom = read_heights(tool)
     feed, whole = tool.read_feed(206), surface - bottom
-    back, breaks = tool.read_length_mm(256, 0.2), int(tool.read_value(213, 0.0))
+    back, breaks = tool.read_length_mm(256, 0.2), tool.read_whole_number(213, 0.0)
     yield tool.move_to_z(clear)
     if whole < MIN_LENGTH_MM:
         return
@@ -284,7 +284,7 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
         return
     start = x + helix_radius_mm, y
     yield tool.move_straight(start, None, feed)
-    clockwise = tool.read_value(351, 1.0) < 0.0
+    clockwise = tool.read_choice(351, (-1, 0, 1), 1.0) < 0
     circle = Arc(start, start, (x, y), clockwise)
     for turn in range(1, math.ceil((clear - bottom) / pitch - MIN_LENGTH_MM) + 1):
         yield tool.move_on_arc(circle, max(clear - turn * pitch, bottom), feed)
@@ -298,7 +298,7 @@ def run_centering(tool: CycleTool) -> Iterator[Block]:
 
     For a diameter, the depth is calculated from the point angle of the tool.
     """
-    if tool.read_value(343, 0.0) == 1.0:
+    if tool.read_choice(343, (0, 1), 0.0):
         surface = tool.read_length_mm(203, 0.0)
         clear = surface + tool.read_length_mm(200)
         half = math.radians(tool.point_angle_deg) / 2.0
@@ -318,7 +318,7 @@ def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
     coolant. It leaves the hole at the speed Q427.
     """
     surface, clear, bottom = read_heights(tool)
-    rpm, sense = tool.running_rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(int(tool.read_value(426, 3.0)))
+    rpm, sense = tool.running_rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(tool.read_whole_number(426, 3.0))
     if sense is None:
         raise tool.make_error("Q426 must be 3, 4 or 5.", "Enter the M function for the spindle direction.")
     drilling = tool.read_value(428, 0.0) * (sense or 1.0) or rpm

@@ -35,7 +35,8 @@ from core.language.klartext.q_parameters import MAX_FEED_VALUE
 
 _RAMP = math.tan(math.radians(3.0))
 _MAX_OVERLAP = 1.9999
-_BOTH, _ROUGH, _FINISH = 0, 1, 2
+_BOTH, _ROUGH, _FINISH = _SCOPES = 0, 1, 2
+_PLUNGES = 0, 1, 2  # straight down, on a helix, in a zigzag
 _MAX_SLOTS = 1_000
 _CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
@@ -52,7 +53,7 @@ class _MillingParameters:
             tool.read_length_mm(368, 0.0),
             tool.read_length_mm(369, 0.0),
         )
-        self.scope = int(tool.read_value(215, float(_ROUGH)))
+        self.scope = tool.read_choice(215, _SCOPES, _ROUGH)
         overlap = tool.read_value(370, 1.0)
         if not 0.0 < overlap <= _MAX_OVERLAP or tool.radius_mm <= MIN_LENGTH_MM:
             text = (
@@ -62,7 +63,7 @@ class _MillingParameters:
             hint = "Set Q370 between 0.1 and 1.9999, and enter the tool radius."
             raise tool.make_error(text, hint, overlap=overlap, radius=tool.radius_mm)
         self.stepover_mm = overlap * tool.radius_mm
-        self.is_up_cut = (tool.read_value(351, 1.0) < 0.0) != (tool.running_rpm < 0.0)
+        self.is_up_cut = (tool.read_choice(351, (-1, 0, 1), 1.0) < 0) != (tool.running_rpm < 0.0)
 
     def compute_levels(self) -> list[float]:
         """Return the Z heights of the clearing levels in mm, ending with the deepest."""
@@ -130,7 +131,7 @@ def mill_slot(tool: CycleTool) -> Iterator[Block]:
 
 
 def _placed(tool: CycleTool, places: dict[int, tuple[float, float]]) -> tuple[float, float]:
-    found = places.get(int(tool.read_value(367, 0.0)))
+    found = places.get(tool.read_whole_number(367, 0.0))
     if found is None:
         raise tool.make_error("Q367 must be 0, 1, 2, 3 or 4.", "Correct Q367.")
     return found
@@ -178,7 +179,7 @@ def _plunge(
     start, end = placement.convert_to_program_point(-half, 0.0), placement.convert_to_program_point(half, 0.0)
     yield tool.move_to_z(min(milling.clearance_z_mm, above + tool.read_length_mm(200)))
     yield tool.move_straight(start)
-    if not int(tool.read_value(366, 1.0)):
+    if not tool.read_choice(366, _PLUNGES, 1.0):
         yield tool.move_to_z(z, milling.plunge_feed)
     elif half > tool.radius_mm:
         yield tool.move_to_z(above, milling.plunge_feed)
@@ -377,15 +378,15 @@ def mill_circular_slot(tool: CycleTool) -> Iterator[Block]:
     surface, clear, _ = read_heights(tool)
     safe = max(surface + tool.read_length_mm(204, 0.0), clear) / tool.mm_per_unit
     centre, begin, sweep = _slot_place(tool)
-    count, step = int(tool.read_value(377, 1.0)), tool.read_value(378, 0.0)
+    count, step = tool.read_whole_number(377, 1.0), tool.read_value(378, 0.0)
     text = "Q377={count} is not a valid number of slots."
     tool.check_condition(1 <= count <= _MAX_SLOTS, text, "Enter a valid number.", count=count)
-    scope = int(tool.read_value(215, 0.0))
+    scope = tool.read_choice(215, _SCOPES, _BOTH)
     side, floor = tool.read_length_mm(368, 0.0), tool.read_length_mm(369, 0.0)
     for at in range(count):
         area = [make_slot_outline(tool, centre, begin + at * step, sweep)]
         asked = tool.copy_with_parameters(
-            {**_CONTOUR_PARAMETERS, 7: safe, 19: 206 if tool.read_value(366, 1.0) else 0.0}
+            {**_CONTOUR_PARAMETERS, 7: safe, 19: 206 if tool.read_choice(366, _PLUNGES, 1.0) else 0.0}
         )
         if scope != _FINISH:
             yield from run_roughing(asked, area)
@@ -431,7 +432,7 @@ def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
     Q367 determines whether they come from the parameters or from the tool position.
     """
     begin, sweep, radius = tool.read_value(376), tool.read_value(248), tool.read_length_mm(375) / 2.0
-    place = int(tool.read_value(367, 0.0))
+    place = tool.read_whole_number(367, 0.0)
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
         tool.check_condition(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")

@@ -22,11 +22,9 @@ def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
 
     Raises ProgramError if a number is invalid or the pattern has too many points.
     """
-    found: list[Vector] = []
-    for part in node.parts:
-        values = _numbers(state, part)
-        found += [(*at, values.get("Z", 0.0)) for at in _of_a_part(state, part, values)]
-    if len(found) > MAX_POINT_COUNT:
+    parts = [(part, _numbers(state, part)) for part in node.parts]
+    found_count = sum(_count_points(state, part, values) for part, values in parts)
+    if found_count > MAX_POINT_COUNT:
         text = "The pattern has too many points: {found_count}."
         hint = "The maximum is {most_points} points."
         raise state.make_error(
@@ -34,10 +32,21 @@ def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
             INPUT_VALUE_INCORRECT,
             text,
             hint,
-            found_count=len(found),
+            found_count=found_count,
             most_points=MAX_POINT_COUNT,
         )
-    return found
+    return [(*at, values.get("Z", 0.0)) for part, values in parts for at in _of_a_part(state, part, values)]
+
+
+def _count_points(state: State, part: PatternPart, values: dict[str, float]) -> int:
+    """Return the number of points of a part. Raises ProgramError for an invalid number."""
+    if part.pattern_kind == "POS":
+        return 1
+    if part.pattern_kind not in {"PAT", "FRAME"}:
+        return _count(state, part, values["NUM"])
+    columns, rows = _count(state, part, values["NUMX"]), _count(state, part, values["NUMY"])
+    inner = max(columns - 2, 0) * max(rows - 2, 0) if part.pattern_kind == "FRAME" else 0
+    return columns * rows - inner
 
 
 def _numbers(state: State, part: PatternPart) -> dict[str, float]:
@@ -70,9 +79,7 @@ def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator
     turn = values.get("ROT", 0.0)
     u = math.radians(turn + values.get("ROTX", 0.0))
     v = math.radians(turn + 90.0 + values.get("ROTY", 0.0))
-    for column, row in _alternating_cells(columns, rows):
-        if part.pattern_kind == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
-            continue
+    for column, row in _alternating_cells(columns, rows, is_frame=part.pattern_kind == "FRAME"):
         along, across = column * values["DX"], row * values["DY"]
         yield (
             values["X"] + along * math.cos(u) + across * math.cos(v),
@@ -108,6 +115,17 @@ def compute_row_points(tool: CycleTool) -> list[Point]:
     """
     x, y = tool.read_length_mm(225), tool.read_length_mm(226)
     columns, rows = _told_count(tool, 242), _told_count(tool, 243)
+    text = "Q242={columns} and Q243={rows} result in {count} positions."
+    hint = "The maximum is {most_points} points."
+    tool.check_condition(
+        columns * rows <= MAX_POINT_COUNT,
+        text,
+        hint,
+        columns=columns,
+        rows=rows,
+        count=columns * rows,
+        most_points=MAX_POINT_COUNT,
+    )
     angle = math.radians(tool.read_value(224, 0.0))
     c, s, found = math.cos(angle), math.sin(angle), list[Point]()
     for column, row in _alternating_cells(columns, rows):
@@ -117,7 +135,7 @@ def compute_row_points(tool: CycleTool) -> list[Point]:
 
 
 def _told_count(tool: CycleTool, q: int) -> int:
-    count, text = int(tool.read_value(q)), "Q{parameter}={count} is not a valid number of positions."
+    count, text = tool.read_whole_number(q), "Q{parameter}={count} is not a valid number of positions."
     tool.check_condition(
         1 <= count <= MAX_POINT_COUNT, text, "Enter a valid number.", parameter=q, count=count
     )
@@ -130,8 +148,9 @@ def _circle(center: Point, radius: float, count: int, first: float, step: float)
         yield center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle)
 
 
-def _alternating_cells(columns: int, rows: int) -> Iterator[tuple[int, int]]:
-    """Yield the column and row of each point of a grid, in reverse order in every second row."""
+def _alternating_cells(columns: int, rows: int, *, is_frame: bool = False) -> Iterator[tuple[int, int]]:
+    """Yield the column and row of each point of a grid or its border, in reverse in every second row."""
     for row in range(rows):
-        order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
-        yield from ((column, row) for column in order)
+        is_inner = is_frame and 0 < row < rows - 1
+        order = range(0, columns, max(columns - 1, 1)) if is_inner else range(columns)
+        yield from ((column, row) for column in (order if row % 2 == 0 else reversed(order)))

@@ -134,13 +134,24 @@ _PLANE_OFFSET_GROUP = 19  # R-OFFS
 _DEFAULT_RADIUS_VALUE = 99_999.9999  # value of the default R, which means the tool radius
 
 
+def _read_address(state: State, node: SystemRead | SystemWrite) -> tuple[int, int, int]:
+    """Return the group, the number and the index of a system value; the index is 0 if it is missing.
+
+    Raises ProgramError if one of them is not a whole number.
+    """
+    group = word_values.check_whole_number(state, value(state, node.group), "ID", node.column)
+    number = word_values.check_whole_number(state, value(state, node.number), "NR", node.column)
+    if node.index is None:
+        return group, number, 0
+    return group, number, word_values.check_whole_number(state, value(state, node.index), "IDX", node.column)
+
+
 def execute_system_read(state: State, node: SystemRead) -> None:
     """Execute FN 18, which reads a system value.
 
     Raises ProgramError for values that this control lacks, and for a tool that is not in the tool table.
     """
-    group, number = int(value(state, node.group)), int(value(state, node.number))
-    index = int(value(state, node.index)) if node.index is not None else 0
+    group, number, index = _read_address(state, node)
     if group == _TOOL_TABLE:
         found = _cell(state, node.column, number, index)
     else:
@@ -155,8 +166,7 @@ def execute_system_write(state: State, node: SystemWrite) -> None:
     would change a path is an error, unless the table already contains this value. Raises ProgramError for
     an unknown value.
     """
-    group, number = int(value(state, node.group)), int(value(state, node.number))
-    index = int(value(state, node.index)) if node.index is not None else 0
+    group, number, index = _read_address(state, node)
     content = value(state, node.new_value)
     if group != _TOOL_TABLE or number not in _COLUMNS.keys() | _EMPTY.keys() | {11}:
         raise _not_here(state, node.column, 17, group, number, index)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.motion.feed_rates import MAX_FEED, REVOLUTION, convert_to_feed_per_minute
-from core.interpreter.shared.formula_values import compute_formula
+from core.interpreter.shared.formula_values import compute_formula, convert_to_whole_number
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
 from core.language.klartext.cycle_blocks import PREDEFINED_WORD
@@ -137,6 +137,28 @@ def number(
             maximum=f"{maximum:.15g}",
         )
     return found
+
+
+def whole_number(state: State, value: Value, description: str, maximum: float) -> int:
+    """Return the whole number of a word, or of its Q parameter.
+
+    Raises ProgramError if the value is not a whole number from 0 to ``maximum``, or if the Q parameter has
+    no value.
+    """
+    return check_whole_number(
+        state, number(state, value, description, maximum, 0.0), description, value.column
+    )
+
+
+def check_whole_number(state: State, found: float, description: str, column: int) -> int:
+    """Return a value as a whole number. Raises ProgramError if it is not whole."""
+    whole = convert_to_whole_number(found)
+    if whole is None:
+        text = "{what} {value} must be a whole number."
+        raise state.make_error(
+            column, INPUT_VALUE_INCORRECT, text, "Correct the value.", what=description, value=found
+        )
+    return whole
 
 
 def evaluate_coordinate(state: State, word: AxisWord) -> float:

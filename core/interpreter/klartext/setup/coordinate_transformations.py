@@ -55,7 +55,7 @@ def _read_table_row(state: State, row: Value, column: int) -> tuple[AxisWord, ..
         raise state.make_error(
             column, DATUM_TABLE_MISSING, text, "Select the file with SEL TABLE before this block."
         )
-    number = int(word_values.number(state, row, "#", MAX_TABLE_ROW, 0.0))
+    number = word_values.whole_number(state, row, "#", MAX_TABLE_ROW)
     found = state.datum_table_rows.get(number)
     if found is None:
         text = "The datum table has no row {number}."

@@ -76,7 +76,7 @@ def _number(state: State, tool: int | str | Value | None, column: int) -> int | 
     A tool name must be defined in the program or in the tool table.
     """
     if isinstance(tool, Value):
-        return round(word_values.number(state, tool, "TOOL CALL", MAX_TOOL_NUMBER, 0.0))
+        return word_values.whole_number(state, tool, "TOOL CALL", MAX_TOOL_NUMBER)
     if not isinstance(tool, str):
         return tool
     names = [each for each in state.tool_definitions if isinstance(each, str)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from math import prod
 
+from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.sinumerik.flow.variables import MAX_ARRAY_SIZE, MAX_DIMENSIONS
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.formulas import Formula, Parameter
@@ -247,8 +248,8 @@ def _sizes(
 ) -> tuple[int, ...]:
     """Return the dimensions of an array. Raises ProgramError if a dimension or the size is invalid."""
     sizes = [_worth(line, jump, state, size) for size in each.dimensions]
-    are_whole = all(size.is_integer() and size >= 1.0 for size in sizes)
-    if len(sizes) > MAX_DIMENSIONS or not are_whole or prod(sizes) > MAX_ARRAY_SIZE:
+    whole = [size for size in map(convert_to_whole_number, sizes) if size is not None and size >= 1]
+    if len(sizes) > MAX_DIMENSIONS or len(whole) < len(sizes) or prod(whole) > MAX_ARRAY_SIZE:
         text = Message(
             "{item}{sizes}: an array must have 1 to {largest_array} elements.",
             item=each.name,
@@ -260,7 +261,7 @@ def _sizes(
             most_dimensions=MAX_DIMENSIONS,
         )
         raise line.make_error(jump.column, WRONG_FIRST_INDEX, text, hint)
-    return tuple(int(size) for size in sizes)
+    return tuple(whole)
 
 
 def _format_message(line: LexedBlock, jump: ControlStatement, state: State) -> str:

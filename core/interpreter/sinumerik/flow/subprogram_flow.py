@@ -16,6 +16,7 @@ from core.interpreter.shared.control_flow import (
     EndlessLoopDetector,
     FlowFrame,
 )
+from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.shared.interpretation import MAX_CALL_DEPTH
 from core.interpreter.shared.job_setup import ZeroOffset
 from core.interpreter.shared.modal_state import ModalState
@@ -421,13 +422,13 @@ class Flow(ControlFlow[_Call]):
         passes = 1.0
         if jump.repeat_count is not None:
             passes = state.evaluate_formula(jump.repeat_count, partial(line.make_error, jump.column))
-        is_valid = passes.is_integer() and 1 <= passes <= _MAX_PASSES
-        if not is_valid or len(repeats) >= MAX_CALL_DEPTH:
+        count = convert_to_whole_number(passes)
+        if count is None or not 1 <= count <= _MAX_PASSES or len(repeats) >= MAX_CALL_DEPTH:
             text = Message("P{passes} is not a valid repeat count.", passes=f"{passes:g}")
             hint = Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MAX_PASSES)
             raise line.make_error(jump.column, "passes", text, hint)
         routine.has_repeats = True
-        repeats.append(_Repeat(start, end, int(passes), self.next_index))
+        repeats.append(_Repeat(start, end, count, self.next_index))
         self.next_index = start
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import product
 
+from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
@@ -197,7 +198,7 @@ def format_variable_name(
     indices = [float(number)] if isinstance(number, int) else list(map(compute_formula, split_index(number)))
     for place, index in enumerate(indices):
         is_too_high = letters == "R" and (place or index > MAX_R_NUMBER)
-        if abs(index - round(index)) > 1e-9 or index < 0 or is_too_high:
+        if convert_to_whole_number(index) is None or index < 0 or is_too_high:
             code = WRONG_OTHER_INDEX if place else WRONG_FIRST_INDEX
             text = Message(
                 "{letters}[{item}] does not exist.",
@@ -215,10 +216,11 @@ _INDEX_HINTS = {"R": Message("Use a parameter from R0 to R{most_r}.", most_r=MAX
 
 def _check_repeat_count(count: float, make_error: ErrorFactory) -> int:
     """Return the number of elements of REP, or raise the error for an invalid number."""
-    if count < 0.0 or not count.is_integer():
+    whole = convert_to_whole_number(count)
+    if whole is None or whole < 0:
         text = Message("REP cannot fill {count} elements.", count=f"{count:g}")
         raise make_error("array-values", text, "Write a whole number of 0 or more.")
-    return int(count)
+    return whole
 
 
 def _r_places() -> list[str]:
