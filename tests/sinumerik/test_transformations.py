@@ -12,6 +12,7 @@ from app.compose.machine.machine_files import load_shipped_machine
 from core.interpreter.shared.actions import OutputSwitch, SpindleLock
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
 from core.language.diagnostics import Severity
 from core.part.ray_cuts import make_plane_path
 from core.proving.prove_program import prove
@@ -51,6 +52,15 @@ def test_off_center_line_is_converted_to_polar_coordinates() -> None:
         # The part turns from X towards Y with C+, so that the tool goes to -C on it.
         assert c == pytest.approx(-degrees(atan2(y, 20.0)))
     assert line.feed == pytest.approx(10.0)
+
+
+def test_rejected_frame_does_not_change_later_diameters() -> None:
+    """TRANS uses radii only in its own block. The lines after its error are still checked with DIAMON."""
+    text = FACE.replace("DIAMOF", "DIAMON") + "TRANS X=DC(5)\nG1 X40 Y0"
+    program = Interpreter(source(text), around())
+    list(program.generate_blocks())
+    assert [each.code for each in program.diagnostics if each.severity is Severity.ERROR] == ["16800"]
+    assert program.modal.diameter
 
 
 def test_off_center_circle_is_converted_to_polar_coordinates() -> None:

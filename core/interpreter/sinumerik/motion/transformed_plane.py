@@ -115,10 +115,11 @@ class ActiveTransformation:
 
     # --- words
 
-    def convert_statement(self, statement: Statement) -> Statement:
+    def convert_statement(self, statement: Statement, *, x_is_radius: bool = False) -> Statement:
         """Return the statement with its words converted to numbers in the ZX plane of the lathe.
 
-        Raises ProgramError for a word that is not allowed in the plane.
+        With ``x_is_radius``, X and I are radii also under DIAMON. Raises ProgramError for a word that is not
+        allowed in the plane.
         """
         names, words = self._names, {}
         for name, word in statement.words.items():
@@ -132,10 +133,10 @@ class ActiveTransformation:
                     )
                 raise statement.make_error(word, "transformation", text, "Write TRAFOOF before this block.")
             if name in names.axis_letters:
-                made = self._resolve_word(statement, word)
+                made = self._resolve_word(statement, word, x_is_radius=x_is_radius)
                 words[names.axis_letters[name]] = made._replace(name=names.axis_letters[name])
             elif name in names.center_letters:
-                made = self._resolve_word(statement, word)
+                made = self._resolve_word(statement, word, x_is_radius=x_is_radius)
                 words[names.center_letters[name]] = made._replace(name=names.center_letters[name])
             elif name in {"I", "J", "K"}:
                 what = "{word} is not an arc center word in G{plane}."
@@ -147,14 +148,15 @@ class ActiveTransformation:
                 words[name] = word
         return replace(statement, words=words)
 
-    def _resolve_word(self, statement: Statement, word: Word) -> Word:
+    def _resolve_word(self, statement: Statement, word: Word, *, x_is_radius: bool) -> Word:
         """Return the word with its value as a number, with X as a radius."""
         modal, value = self._state.modal, self._state.number(statement, word)
         relative = word.position_form is PositionForm.IC or (
             word.position_form is PositionForm.PLAIN and modal.absolute is False
         )
         centre = word.name == "I"
-        diameter = modal.diameter and (word.position_form is PositionForm.AC if centre else True)
+        is_center_distance = centre and word.position_form is not PositionForm.AC
+        diameter = modal.diameter and not x_is_radius and not is_center_distance
         if word.name in {"X", "I"} and diameter and not (relative and self._state.distance_is_radius):
             value /= 2.0
         if word.position_form in {PositionForm.DC, PositionForm.ACP, PositionForm.ACN}:
@@ -207,11 +209,8 @@ class ActiveTransformation:
         if key := statement.frame_word:
             turned = {name: word for name, word in statement.words.items() if name in AXIS_NAMES}
             if key.name.removeprefix("A") == "TRANS":  # TRANS does not have diameters
-                modal = self._state.modal
-                self._state.modal = modal._replace(diameter=False)
-                taken = self.convert_statement(replace(statement, words=turned))
-                self._state.modal = modal
-                if "C" in taken.words and not modal.metric:
+                taken = self.convert_statement(replace(statement, words=turned), x_is_radius=True)
+                if "C" in taken.words and not self._state.modal.metric:
                     depth = taken.words["C"]
                     taken.words["C"] = depth._replace(value=(depth.value or 0.0) * 25.4)
             else:
