@@ -75,6 +75,12 @@ def require_estop_released(is_pressed: bool) -> None:
         )
 
 
+def require_stopped_for_orientation(is_turning: bool) -> None:
+    """Raise DriverError if the spindle is turning, because a drive orients it only from standstill."""
+    if is_turning:
+        raise DriverError("the spindle cannot be oriented while it is turning; stop it first", "spindle-off")
+
+
 def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
     """Raise DriverError if the spindle drive cannot become the C axis.
 

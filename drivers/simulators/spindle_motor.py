@@ -118,6 +118,12 @@ class SpindleMotor:
         return not self._even and not self._target and not self._orders and not self._orient_speed
 
     @property
+    def is_turning(self) -> bool:
+        """Return whether the spindle is commanded to turn, or still turns faster than it orients."""
+        commanded_rpm = self._orders[-1][1] if self._orders else self._target
+        return bool(commanded_rpm) or abs(self._even) > self.config.orient_rpm
+
+    @property
     def is_speed_constant(self) -> bool:
         """Return whether the speed will not change until a command or a fault changes it."""
         faults = self.faults

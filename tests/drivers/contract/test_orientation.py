@@ -169,6 +169,23 @@ def test_orientation_follows_its_direction_and_ends_with_a_speed_command(control
     assert not port.is_oriented()
 
 
+def test_orientation_is_rejected_while_the_spindle_turns(control: Control) -> None:
+    """At the port: during 300 rpm, and accepted again at rest."""
+    rig, port = control.rig, control.rig.ports.orientation
+    control.ready()
+    assert port is not None
+    rig.until(lambda: not rig.ports.spindle.read_fault())
+    rig.ports.spindle.set_speed(300.0)
+    rig.run(1.0)
+    with raises_code(DriverError, "spindle-off", "turning"):
+        port.orient_spindle(90.0)
+    assert rig.ports.spindle.speed() == pytest.approx(300.0, rel=0.05)
+    rig.ports.spindle.set_speed(0.0)
+    rig.until(lambda: abs(rig.ports.spindle.speed()) < 1.0)
+    port.orient_spindle(90.0)
+    rig.until(port.is_oriented)
+
+
 def test_orientation_is_rejected_in_estop(control: Control) -> None:
     control.ready()
     control.world.press_estop()
