@@ -46,6 +46,7 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The contour of the cycle has no moves after its first one.",
         "Add the moves of the contour, or remove the cycle.",
     ),
+    "cycle-positive": ("{word}: this value must be greater than zero.", "Correct the value."),
     "cycle-undercut": (
         "The contour of the cycle moves back in {axis}, so that a pass cannot reach it.",
         "Cut the undercut with separate moves.",
@@ -90,16 +91,28 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The subprogram {word} is not in this file.",
         "Add the subprogram to the file, after the main program.",
     ),
+    "spindle-negative": (
+        "{word}: spindle speed cannot be negative.",
+        "Remove the sign; M03 and M04 set the direction.",
+    ),
+    "spindle-speed": ("{word}: no speed is programmed for the spindle.", "Write S before the first cut."),
+    "spindle-zero": ("{word}: the spindle cannot turn at this speed.", "Write M05 to stop the spindle."),
     "surface-speed": ("G96 is active, but S is missing.", "Write S with G96."),
     "thread-chain": (
         "The thread is not followed by a rapid straight out in X, so it cannot be cut in separate passes.",
         "End the thread with a rapid in X.",
     ),
+    "thread-degression": ("{word}: R must be 1 or more.", "Correct R."),
     "thread-ends": (
         "{word}: OmniTurn cannot cut a thread with a tapered entry.",
         "Remove L and E, and start the thread in front of the part or in a groove.",
     ),
     "thread-lead": ("The thread has no lead.", "Write F with the lead of the thread."),
+    "too-many-moves": (
+        "The program makes more than {most} moves.",
+        "Correct the loop or the cycle, or convert the program in parts.",
+    ),
+    "too-many-passes": ("{word} makes more than 1000 passes.", "Correct the depth of a pass."),
     "tool-number": ("{word}: OmniTurn has the tools T1 to T32.", "Change the tool number."),
     "unit": (
         "The program selects neither inches nor millimeters before this line.",
@@ -166,6 +179,12 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Check that the thread has a relief groove.",
     ),
 }
+NOTES: Mapping[str, tuple[str, str]] = {
+    "no-change": (
+        "{word} changes nothing at this point, so the converted program does not contain it.",
+        "No action is needed.",
+    ),
+}
 PROOF_ERRORS: Mapping[str, tuple[str, str]] = {
     "proof-differs": (
         "The converted program moves differently: {what} is {made} instead of {wanted}.",
@@ -189,6 +208,12 @@ def make_warning(line: int, column: int, code: str, /, **values: object) -> Diag
     """Return a warning for a source line that is converted, but not identically."""
     text, hint = WARNINGS[code]
     return _finding(line, column, Severity.WARNING, code, text, hint, values)
+
+
+def make_note(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
+    """Return the note that a word of the source is not needed in the converted program."""
+    text, hint = NOTES[code]
+    return _finding(line, column, Severity.NOTE, code, text, hint, values)
 
 
 def _finding(

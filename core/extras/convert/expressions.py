@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import re
-from collections.abc import Callable, Mapping, MutableMapping
+from collections.abc import Callable, Mapping
 
 from core.extras.convert.conversion_messages import make_error
 from core.language.diagnostics import ProgramError
@@ -18,18 +18,42 @@ _LEVELS: tuple[tuple[str, ...], ...] = (
     ("+", "-"),
     ("MOD", "/", "*"),
 )
+
+
+def _is_true(value: float) -> bool:
+    """Return whether a logical value is true.
+
+    Raises ValueError for any value other than 0 and 1, because Fanuc controls combine the bits of numbers.
+    """
+    if value not in {0.0, 1.0}:
+        raise ValueError("an operand of a logical operation must be 0 or 1")
+    return bool(value)
+
+
+def _is_equal(a: float, b: float) -> bool:
+    """Return whether two values are equal. A variable without a value equals only another such variable."""
+    return math.isnan(a) and math.isnan(b) if math.isnan(a) or math.isnan(b) else abs(a - b) < 1e-9
+
+
+def _compare(a: float, b: float) -> float:
+    """Return the difference of two values. Raises ValueError if one of them has no value."""
+    if math.isnan(a) or math.isnan(b):
+        raise ValueError("a variable without a value cannot be compared")
+    return a - b
+
+
 _CALCULATE: Mapping[str, Callable[[float, float], float]] = {
-    "AND": lambda a, b: float(bool(a) and bool(b)),
-    "&&": lambda a, b: float(bool(a) and bool(b)),
-    "OR": lambda a, b: float(bool(a) or bool(b)),
-    "||": lambda a, b: float(bool(a) or bool(b)),
-    "XOR": lambda a, b: float(bool(a) != bool(b)),
-    "EQ": lambda a, b: float(abs(a - b) < 1e-9),
-    "NE": lambda a, b: float(abs(a - b) >= 1e-9),
-    "GE": lambda a, b: float(a >= b),
-    "GT": lambda a, b: float(a > b),
-    "LE": lambda a, b: float(a <= b),
-    "LT": lambda a, b: float(a < b),
+    "AND": lambda a, b: float(_is_true(a) & _is_true(b)),
+    "&&": lambda a, b: float(_is_true(a) & _is_true(b)),
+    "OR": lambda a, b: float(_is_true(a) | _is_true(b)),
+    "||": lambda a, b: float(_is_true(a) | _is_true(b)),
+    "XOR": lambda a, b: float(_is_true(a) ^ _is_true(b)),
+    "EQ": lambda a, b: float(_is_equal(a, b)),
+    "NE": lambda a, b: float(not _is_equal(a, b)),
+    "GE": lambda a, b: float(_compare(a, b) >= 0.0),
+    "GT": lambda a, b: float(_compare(a, b) > 0.0),
+    "LE": lambda a, b: float(_compare(a, b) <= 0.0),
+    "LT": lambda a, b: float(_compare(a, b) < 0.0),
     "+": operator.add,
     "-": operator.sub,
     "*": operator.mul,
@@ -50,7 +74,28 @@ _FUNCTIONS: Mapping[str, Callable[[float], float]] = {
     "LN": math.log,
     "EXP": math.exp,
 }
-Variables = MutableMapping[str, float]
+_FUNCTIONS_OF_FANUC: Mapping[str, Callable[[float], float]] = {
+    **_FUNCTIONS,
+    "FIX": math.trunc,  # Fanuc rounds toward zero and away from zero; LinuxCNC rounds down and up.
+    "FUP": lambda a: math.copysign(math.ceil(abs(a)), a),
+}
+_LOCAL_COUNT = 33  # #1 to #33 have no value at the start of a Fanuc program
+
+
+class Variables(dict[str, float]):
+    """Values of variables by key. ``is_fanuc`` selects the calculation rules of Fanuc macros."""
+
+    def __init__(self, *, is_fanuc: bool = False) -> None:
+        super().__init__()
+        self.is_fanuc = is_fanuc
+
+    def is_vacant(self, key: str) -> bool:
+        """Return whether a Fanuc variable is known to have no value: #0, or an unused local variable."""
+        return self.is_fanuc and key.isdecimal() and int(key) <= _LOCAL_COUNT and key not in self
+
+
+_DEEPEST = 50
+"""Maximum number of brackets and variables inside each other; Fanuc controls allow 5 brackets."""
 
 
 class ExpressionReader:
@@ -61,6 +106,7 @@ class ExpressionReader:
 
     def __init__(self, line: int, text: str, variables: Variables, at: int = 0) -> None:
         self.line, self.text, self.variables, self.at = line, text, variables, at
+        self._depth = 0
 
     def skip_blanks(self) -> None:
         """Advance the reading position to the next character that is not a blank."""
@@ -93,11 +139,12 @@ class ExpressionReader:
         number = _NUMBER.match(self.text, self.at)
         if number:
             self.at = number.end()
-            return (-1 if negative else 1) * float(number[0]), "." in number[0]
+            value = self._finite(begin, float(number[0]))
+            return (-1 if negative else 1) * value, "." in number[0]
         if self.peek_character() not in {"#", "["} and not _NAME.match(self.text, self.at):
             raise self._error(begin)
         try:
-            return (-1 if negative else 1) * self._atom(), True
+            return (-1 if negative else 1) * self._finite(begin, self._atom()), True
         except (ZeroDivisionError, ValueError, OverflowError) as error:
             raise make_error(self.line, begin + 1, "division") from error
 
@@ -107,7 +154,7 @@ class ExpressionReader:
         if not self.accept_text("["):
             raise self._error(begin)
         try:
-            found = self._binary(0)
+            found = self._finite(begin, self._binary(0))
         except (ZeroDivisionError, ValueError, OverflowError) as error:
             raise make_error(self.line, begin + 1, "division") from error
         if not self.accept_text("]"):
@@ -118,7 +165,7 @@ class ExpressionReader:
         """Return the value of the expression to the right of ``=``. Raises ProgramError if it is invalid."""
         begin = self.at
         try:
-            return self._binary(0)
+            return self._finite(begin, self._binary(0))
         except (ZeroDivisionError, ValueError, OverflowError) as error:
             raise make_error(self.line, begin + 1, "division") from error
 
@@ -146,7 +193,9 @@ class ExpressionReader:
             if sign is None:
                 return found
             self.accept_text(sign)
-            found = _CALCULATE[sign](found, self._binary(level + 1))
+            found = _CALCULATE[sign](found, right := self._binary(level + 1))
+            if sign == "MOD" and found < 0.0 and not self.variables.is_fanuc:
+                found += abs(right)  # A remainder of LinuxCNC is never negative.
 
     def _is_operator(self, sign: str) -> bool:
         self.skip_blanks()
@@ -157,23 +206,42 @@ class ExpressionReader:
     def _power(self) -> float:
         found = self._signed()
         while self.accept_text("**"):
-            found = found ** self._signed()
+            found = math.pow(found, self._signed())  # Unlike **, pow raises an error for a complex result.
         return found
 
     def _signed(self) -> float:
-        if self.accept_text("-"):
-            return -self._signed()
-        if self.accept_text("+"):
-            return self._signed()
-        return self._atom()
+        sign = 1.0
+        while self.peek_character() in {"+", "-"}:
+            sign = -sign if self.peek_character() == "-" else sign
+            self.at += 1
+        return sign * self._atom()
+
+    def _finite(self, begin: int, value: float) -> float:
+        """Return a value. Raises ProgramError if it is infinite, or if a variable has no value."""
+        if math.isnan(value):
+            raise make_error(self.line, begin + 1, "variable", word=self.text[begin : self.at].strip())
+        if math.isinf(value):
+            raise self._error(begin)
+        return value
 
     def _atom(self) -> float:
+        if self._depth >= _DEEPEST:
+            raise self._error(self.at)
+        self._depth += 1
+        try:
+            return self._nested_atom()
+        finally:
+            self._depth -= 1
+
+    def _nested_atom(self) -> float:
         sign = self.peek_character()
         if sign == "[":
             return self.read_bracket()
         if sign == "#":
             begin = self.at
             key = self.read_variable_key()
+            if self.variables.is_vacant(key):
+                return math.nan
             if key not in self.variables:
                 raise make_error(self.line, begin + 1, "variable", word=self.text[begin : self.at])
             return self.variables[key]
@@ -193,15 +261,17 @@ class ExpressionReader:
         if word == "ATAN":
             first = self.read_bracket()
             if self.accept_text("/"):
-                return math.degrees(math.atan2(first, self.read_bracket())) % 360.0
+                angle = math.degrees(math.atan2(first, self.read_bracket()))
+                return angle % 360.0 if self.variables.is_fanuc else angle
             return math.degrees(math.atan(first))
         if word == "EXISTS" and self.accept_text("["):
             known = self.read_variable_key() in self.variables
             self.accept_text("]")
             return float(known)
-        if word not in _FUNCTIONS:
+        functions = _FUNCTIONS_OF_FANUC if self.variables.is_fanuc else _FUNCTIONS
+        if word not in functions:
             raise self._error(begin)
-        return float(_FUNCTIONS[word](self.read_bracket()))
+        return float(functions[word](self.read_bracket()))
 
     def _error(self, begin: int) -> ProgramError:
         return make_error(

@@ -39,7 +39,7 @@ class _Return(NamedTuple):
     return_index: int
     remaining_calls: int  # number of further calls
     begin_index: int
-    local_variables: dict[str, float]
+    local_variables: dict[str, float] | None  # of the caller; None if the call shares them
 
 
 class ProgramFlow:
@@ -50,7 +50,7 @@ class ProgramFlow:
 
     def __init__(self, texts: Sequence[str], control: SourceControl) -> None:
         self.lines: list[SourceLine] = split_lines(texts, control)
-        self.variables: Variables = {}
+        self.variables = Variables(is_fanuc=control.is_fanuc)
         self.at = 0
         self.ended = False
         self.repeats = 0  # line of the M99 that repeats the main program
@@ -103,7 +103,7 @@ class ProgramFlow:
         number, count = round(p.value), 1 if loops is None else round(loops.value)
         if loops is None and number > 9999 and self._control.is_fanuc:
             count, number = divmod(number, 10000)
-        self._enter(p, self._program(number) if m.value == 98 else self._block(number, p) - 1, count, {})
+        self._enter(p, self._program(number) if m.value == 98 else self._block(number, p) - 1, count, None)
 
     def _call_macro(self, statement: SourceStatement) -> None:
         p = statement.find_word("P")
@@ -115,16 +115,15 @@ class ProgramFlow:
         loops = statement.find_word("L")
         self._enter(p, self._program(round(p.value)), 1 if loops is None else round(loops.value), passed)
 
-    def _enter(self, p: SourceWord, begin: int | None, count: int, passed: dict[str, float]) -> None:
+    def _enter(self, p: SourceWord, begin: int | None, count: int, passed: dict[str, float] | None) -> None:
         if begin is None or len(self._calls) >= _DEEPEST:
             raise make_error(p.line_number, p.column, "subprogram", word=p.text)
         if count < 1:
             return
-        saved = {key: value for key, value in self.variables.items() if _is_local(key)} if passed else {}
-        if passed:
-            for key in saved:
-                del self.variables[key]
-            self.variables.update(passed)
+        saved = None
+        if passed is not None:
+            saved = {key: value for key, value in self.variables.items() if _is_local(key)}
+            self._replace_locals(passed)
         self._calls.append(_Return(self.at, count - 1, begin + 1, saved))
         self.at = begin + 1
 
@@ -148,9 +147,8 @@ class ProgramFlow:
             self.at = call.begin_index
             return
         self.at = call.return_index
-        for key in [key for key in self.variables if _is_local(key) and call.local_variables]:
-            del self.variables[key]
-        self.variables.update(call.local_variables)
+        if call.local_variables is not None:
+            self._replace_locals(call.local_variables)
         p = statement.find_word("P")
         if p is not None:
             self.at = self._block(round(p.value), p)
@@ -296,9 +294,13 @@ class ProgramFlow:
             return
         call = self._calls.pop()
         self.at = call.return_index
+        if call.local_variables is not None:
+            self._replace_locals(call.local_variables)
+
+    def _replace_locals(self, values: Mapping[str, float]) -> None:
         for key in [key for key in self.variables if _is_local(key)]:
             del self.variables[key]
-        self.variables.update(call.local_variables)
+        self.variables.update(values)
 
     def _find(self, line: SourceLine, keys: Sequence[str]) -> int:
         for index in range(line.line_number, len(self.lines)):

@@ -6,15 +6,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.cycles.source_cycles import SourceCycles
+from core.extras.convert.cycles.thread_cycles import append_thread_pass
 from core.extras.convert.path_steps import PathStep, StepKind
 from core.extras.convert.source_arcs import append_arc
 from core.extras.convert.source_corners import Corner, add_corner
-from core.extras.convert.source_cycles import SourceCycles
 from core.extras.convert.source_flow import ProgramFlow
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import ConversionOptions, SourceControl
+from core.extras.convert.source_spindle import execute_spindle_words, stop_spindle
 from core.extras.convert.source_state import SourceState
-from core.extras.convert.thread_cycles import append_thread_pass
 from core.language.diagnostics import Diagnostic, ProgramError
 
 _IDLE = frozenset(
@@ -95,7 +96,7 @@ class SourceReader:
         self._modes(statement)
         self._feed(statement)
         self._tool(statement)
-        self._spindle(statement)
+        execute_spindle_words(state, statement)
         self._start_codes(statement)
         self._motion(statement)
         self._stop_codes(statement)
@@ -204,42 +205,6 @@ class SourceReader:
             state.tool_number, state.x, state.z = offset, None, None
             state.append_step(PathStep(StepKind.TOOL, statement.line_number, number=offset))
 
-    def _spindle(self, statement: SourceStatement) -> None:
-        """Execute G96, G97, S, M03 and M04.
-
-        A speed in rpm above the maximum in the options is reduced to this maximum, with a warning. If no
-        speed is programmed, no spindle step is appended.
-        """
-        state = self.state
-        spindle = state.spindle
-        limit = statement.has_g(50) or (
-            statement.has_g(92) and state.source_control is not SourceControl.LINUXCNC
-        )
-        word = statement.find_word("S")
-        for code in statement.find_words("G"):
-            if code.value in {96, 97} and spindle.is_css != (code.value == 96):
-                spindle = replace(spindle, is_css=code.value == 96, speed=0.0)
-        if word is not None and limit:
-            spindle = replace(spindle, max_rpm=self._rpm(word))
-        elif word is not None:
-            spindle = replace(spindle, speed=word.value if spindle.is_css else self._rpm(word))
-        most = statement.find_word("D")
-        if most is not None and statement.has_g(96) and not state.source_control.is_fanuc:
-            spindle = replace(spindle, max_rpm=self._rpm(most))
-        for code in statement.find_words("M"):
-            if code.value in {3, 4}:
-                spindle = replace(spindle, direction=1 if code.value == 3 else -1)
-        before, state.spindle = state.spindle, spindle
-        keeps_speed = before.is_css and not spindle.is_css and before.direction == spindle.direction
-        if spindle != before and spindle.direction and (spindle.speed or keeps_speed):
-            state.append_step(PathStep(StepKind.SPINDLE, statement.line_number, spindle=spindle))
-
-    def _rpm(self, word: SourceWord) -> float:
-        most = self.state.options.max_rpm
-        if word.value > most:
-            self.state.add_warning(word, "speed-limited", word=word.text)
-        return min(word.value, most)
-
     # --- M codes
 
     def _start_codes(self, statement: SourceStatement) -> None:
@@ -270,11 +235,7 @@ class SourceReader:
                     PathStep(StepKind.M, statement.line_number, number=0 if word.value == 60 else word.value)
                 )
             elif word.value == 5:
-                if state.spindle.direction:
-                    state.spindle = replace(state.spindle, direction=0)
-                    state.append_step(
-                        PathStep(StepKind.SPINDLE, statement.line_number, spindle=state.spindle)
-                    )
+                stop_spindle(state, word)
             elif word.value in {2, 30}:
                 state.append_step(PathStep(StepKind.END, statement.line_number, number=word.value))
                 self.flow.ended = True

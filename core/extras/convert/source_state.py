@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.extras.convert.conversion_messages import make_error, make_warning
+from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import ConversionOptions, SourceControl
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, ProgramError
 
 MM_PER_INCH = 25.4
 _LEAST = (0.0001, 0.001)  # least increment in inches and in mm
 _SAME = 1e-9  # mm
+MAX_STEP_COUNT = 300_000
+_NEED_SPEED = frozenset({StepKind.FEED, StepKind.ARC, StepKind.THREAD, StepKind.DWELL, StepKind.END})
 
 
 @dataclass(slots=True)
@@ -37,6 +39,7 @@ class SourceState:
     motion_code: float = 0
     plane_code: float = 18
     spindle: SpindleState = field(default_factory=SpindleState)
+    speed_request: ProgramError | None = None  # raised by the next cut; S clears it
     tool_number: int = 0
     nose_code: int = 40
     work_offset: float = 0
@@ -46,6 +49,7 @@ class SourceState:
     cycle_taper: float = 0.0
     hole_words: dict[str, SourceWord] = field(default_factory=dict)  # words of the active hole cycle
     returns_to_r: bool = False  # G99 of G-code systems B and C
+    _recorded: set[tuple[int, str, str]] = field(default_factory=set)
 
     @property
     def source_control(self) -> SourceControl:
@@ -128,15 +132,30 @@ class SourceState:
         return self.x, self.z
 
     def add_warning(self, word: SourceWord, code: str, /, **values: object) -> None:
-        """Record a warning, unless a warning with the same code and text is already recorded."""
-        found = make_warning(word.line_number, word.column, code, **values)
-        if all((each.code, each.message) != (found.code, found.message) for each in self.warnings):
+        """Record a warning, unless the same warning is already recorded for this line."""
+        self._add(make_warning(word.line_number, word.column, code, **values))
+
+    def add_note(self, word: SourceWord, code: str, /, **values: object) -> None:
+        """Record a note, unless the same note is already recorded for this line."""
+        self._add(make_note(word.line_number, word.column, code, **values))
+
+    def _add(self, found: Diagnostic) -> None:
+        key = (found.line, found.code, found.message)
+        if key not in self._recorded:
+            self._recorded.add(key)
             self.warnings.append(found)
 
     # --- steps
 
     def append_step(self, step: PathStep) -> None:
-        """Append a step, and attach the source comment that precedes it."""
+        """Append a step, and attach the comment that precedes it.
+
+        Raises ProgramError if the program makes too many steps, or if it needs a speed that is missing.
+        """
+        if len(self.steps) >= MAX_STEP_COUNT:
+            raise make_error(step.line, 1, "too-many-moves", most=MAX_STEP_COUNT)
+        if self.speed_request is not None and step.kind in _NEED_SPEED:
+            raise self.speed_request
         if self.comment:
             object.__setattr__(step, "comment", self.comment)
             self.comment = ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.cycles.cycle_limits import limit_pass_count, require_positive
 from core.extras.convert.path_steps import PathStep, StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import SourceControl
@@ -77,11 +78,12 @@ def _pecks(state: SourceState, code: SourceWord, plane: float, bottom: float, *,
     if q is None:
         state.append_cut(code, x, bottom)
         return
-    step = abs(state.convert_increment(q))
+    step = require_positive(q, abs(state.convert_increment(q)))
+    limit_pass_count(code, abs(plane - bottom), step)
     clear = _CLEARANCE.get(state.source_control, _USUAL_CLEARANCE)
     state.add_warning(code, "peck-clearance", value=clear)
     reached = plane
-    while step > _SAME and reached - bottom > step + _SAME:
+    while reached - bottom > step + _SAME:
         reached -= step
         state.append_cut(code, x, reached)
         if full:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import copysign
 
 from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.cycles.cycle_limits import limit_pass_count
 from core.extras.convert.path_steps import StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import SourceControl
@@ -104,6 +105,9 @@ def append_peck_cycle(
             state.add_warning(code, "peck-clearance", value=back)
     main, cross = (start[1], start[0]) if along_z else (start[0], start[1])
     end, last = (z, x) if along_z else (x, z)
+    for distance, infeed in ((end - main, depth), (last - cross, shift)):
+        if infeed:
+            limit_pass_count(code, abs(distance), infeed)
     at = cross
     while True:
         _plunge(state, code, at, (main, end), depth, back, along_z=along_z)

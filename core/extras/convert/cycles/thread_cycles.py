@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import copysign, radians, sqrt, tan
 
 from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.cycles.cycle_limits import MAX_PASS_COUNT, MIN_INFEED_MM, require_positive
+from core.extras.convert.cycles.single_cycles import read_cycle_target, read_taper
 from core.extras.convert.path_steps import StepKind
-from core.extras.convert.single_cycles import read_cycle_target, read_taper
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_state import SourceState
-
-_LEAST_INFEED = 1e-6  # mm
-_MOST_PASSES = 1000
 
 
 def append_thread_pass(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
@@ -95,7 +94,7 @@ def append_thread_cycle(
         state.add_warning(code, "thread-pull-out")
     out = copysign(1.0, x0 - x)
     crest = x + out * depth
-    cuts = _cut_depths(depth - allowance, first, least)
+    cuts = _cut_depths(code, depth - allowance, first, least)
     cuts += (
         [depth - allowance * (finishing - k) / finishing for k in range(1, finishing + 1)]
         if allowance
@@ -124,10 +123,12 @@ def _depths(
     p, q, k, d, a = (statement.find_word(letter) for letter in "PQKDA")
     if k is not None and d is not None:  # the form of one line
         angle = a.value if a is not None else 0.0
-        return state.convert_length(k), state.convert_increment(d), 0.0, 0.0, 1, angle
+        depth = require_positive(k, state.convert_length(k))
+        return depth, require_positive(d, state.convert_increment(d)), 0.0, 0.0, 1, angle
     if p is None or q is None:
         raise make_error(code.line_number, code.column, "cycle-word", word="P" if p is None else "Q")
-    depth, first = state.convert_increment(p), state.convert_increment(q)
+    depth = require_positive(p, state.convert_increment(p))
+    first = require_positive(q, state.convert_increment(q))
     return depth, first, set_up.least, set_up.allowance, set_up.finishing, set_up.angle
 
 
@@ -136,15 +137,17 @@ def _taper_of_cycle(state: SourceState, statement: SourceStatement) -> float:
     return 0.0 if word is None else state.convert_length(word)
 
 
-def _cut_depths(depth: float, first: float, least: float) -> list[float]:
-    """Return the depths of the passes, which are first·√n for pass n.
+def _cut_depths(code: SourceWord, depth: float, first: float, least: float) -> list[float]:
+    """Return the depths of the passes, which are first·√n.
 
-    Each pass is at least ``least`` deeper than the previous pass.
+    Each pass is at least ``least`` deeper than the previous pass. Raises ProgramError for too many passes.
     """
     cuts = [min(first, depth)]
     count = 1
-    while cuts[-1] < depth - _LEAST_INFEED and count < _MOST_PASSES:
+    while cuts[-1] < depth - MIN_INFEED_MM:
         count += 1
+        if count > MAX_PASS_COUNT:
+            raise make_error(code.line_number, code.column, "too-many-passes", word=code.text)
         cuts.append(min(max(first * sqrt(count), cuts[-1] + least), depth))
     return cuts
 
@@ -164,22 +167,25 @@ def append_linuxcnc_thread_cycle(state: SourceState, statement: SourceStatement,
     _, z = state.find_target(statement)
     assert z is not None
     peak, first, full = (_half(state, words[letter]) for letter in "IJK")
+    _check_linuxcnc_words(words, first, full)
     power = 1.0 if words["R"] is None else words["R"].value
     angle = 0.0 if words["Q"] is None else words["Q"].value
     springs = 0 if words["H"] is None else round(words["H"].value)
     lead = read_lead(state, statement, code)
     cuts = []
-    depth, count = abs(first), 1
-    while depth < abs(full) and count < _MOST_PASSES:
+    depth, count = first, 1
+    while depth < full:
         cuts.append(depth)
         count += 1
-        depth = abs(first) * count ** (1.0 / power)
-    cuts += [abs(full)] * (springs + 1)
+        if count > MAX_PASS_COUNT:
+            raise make_error(code.line_number, code.column, "too-many-passes", word=code.text)
+        depth = first * count ** (1.0 / power)
+    cuts += [full] * (springs + 1)
     side = copysign(1.0, peak)
     along = copysign(1.0, z - z0)
     for cut in cuts:
         # Each pass is shifted along the flank, and so is its retract, away from the part.
-        left = abs(full) - cut
+        left = full - cut
         x, clear = x0 + side * (abs(peak) + cut), x0 - side * left
         begin = z0 + along * cut * tan(radians(angle))
         end = z - along * left * tan(radians(angle))
@@ -188,6 +194,19 @@ def append_linuxcnc_thread_cycle(state: SourceState, statement: SourceStatement,
         state.append_move(StepKind.THREAD, statement.line_number, x, end, feed=lead, per_rev=True)
         state.append_rapid(statement.line_number, clear, end)
     state.append_rapid(statement.line_number, x0, z)
+
+
+def _check_linuxcnc_words(words: Mapping[str, SourceWord | None], first: float, full: float) -> None:
+    """Raise ProgramError for a value of G76 that LinuxCNC rejects too."""
+    for letter, value in (("J", first), ("K", full)):
+        word = words[letter]
+        assert word is not None
+        require_positive(word, value)
+    power, springs = words["R"], words["H"]
+    if power is not None and power.value < 1.0:
+        raise make_error(power.line_number, power.column, "thread-degression", word=power.text)
+    if springs is not None and not 0 <= springs.value <= MAX_PASS_COUNT:
+        raise make_error(springs.line_number, springs.column, "too-many-passes", word=springs.text)
 
 
 def _half(state: SourceState, word: SourceWord | None) -> float:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from core.extras.convert.contour_cycles import (
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.cycles.contour_cycles import (
     RoughingValues,
     append_contour_repetitions,
     append_roughing_passes,
@@ -12,25 +13,24 @@ from core.extras.convert.contour_cycles import (
     read_pass_depth,
     store_roughing_words,
 )
-from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.hole_cycles import HOLE_CYCLE_CODES, append_hole_cycle
-from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
-from core.extras.convert.single_cycles import (
+from core.extras.convert.cycles.hole_cycles import HOLE_CYCLE_CODES, append_hole_cycle
+from core.extras.convert.cycles.single_cycles import (
     PeckValues,
     append_facing_cycle,
     append_peck_cycle,
     append_turning_cycle,
 )
-from core.extras.convert.source_flow import ProgramFlow
-from core.extras.convert.source_lines import SourceStatement, SourceWord
-from core.extras.convert.source_state import SourceState
-from core.extras.convert.thread_cycles import (
+from core.extras.convert.cycles.thread_cycles import (
     FanucThreadValues,
     append_linuxcnc_thread_cycle,
     append_single_thread_cycle,
     append_thread_cycle,
     is_first_of_two_lines,
 )
+from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
+from core.extras.convert.source_flow import ProgramFlow
+from core.extras.convert.source_lines import SourceStatement, SourceWord
+from core.extras.convert.source_state import SourceState
 
 ExecuteFunction = Callable[[SourceStatement], None]
 _BOXES: Mapping[int, Callable[[SourceState, SourceStatement, SourceWord], None]] = {
@@ -140,13 +140,13 @@ class SourceCycles:
         """Return the moves of a contour without the rapids at its end, and restore the modal state."""
         state = self._state
         saved = (state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment)
-        spindle, warnings = state.spindle, list(state.warnings)
+        spindle, request, warnings = state.spindle, state.speed_request, list(state.warnings)
         state.steps, state.feed = [], state.feed or 1.0
         for each in lines:
             self._execute(each)
         found = [each for each in state.steps if each.kind in MOVE_KINDS]
         state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment = saved
-        state.spindle, state.warnings = spindle, warnings
+        state.spindle, state.speed_request, state.warnings = spindle, request, warnings
         while len(found) > 1 and found[-1].kind is StepKind.RAPID:
             found.pop()
         return found

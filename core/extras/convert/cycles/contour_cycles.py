@@ -8,13 +8,15 @@ from itertools import pairwise
 from math import copysign
 from typing import NamedTuple
 
-from core.extras.convert.contour_pieces import ContourPiece, Point, find_deeper_sections, has_reversal
 from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.cycles.contour_pieces import ContourPiece, Point, find_deeper_sections, has_reversal
+from core.extras.convert.cycles.cycle_limits import limit_pass_count, require_positive
 from core.extras.convert.path_steps import PathStep, StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_state import SourceState
 
 _SAME = 1e-6  # mm
+_MAX_REPETITIONS = 1000
 
 
 @dataclass(slots=True)
@@ -35,7 +37,10 @@ class RoughingValues:
 def store_roughing_words(
     state: SourceState, statement: SourceStatement, code: SourceWord, rough: RoughingValues
 ) -> bool:
-    """Store the words of the first line of a two-line cycle; return False if it is another line."""
+    """Store the words of a roughing cycle's first line; return whether the line is a first line.
+
+    Raises ProgramError if the contour would be repeated too often.
+    """
     if statement.find_word("P") is not None:
         return False
     u, w, r = (statement.find_word(letter) for letter in "UWR")
@@ -45,6 +50,8 @@ def store_roughing_words(
         rough.repetition_count = (
             max(round(r.value * (1 if not r.has_point or r.value >= 1 else 1000)), 1) if r else 1
         )
+        if r is not None and rough.repetition_count > _MAX_REPETITIONS:
+            raise make_error(r.line_number, r.column, "too-many-passes", word=r.text)
         return True
     depth = u if code.value == 71 else w
     if depth is not None:
@@ -68,15 +75,12 @@ def read_pass_depth(
 ) -> float:
     """Return the depth of a roughing pass in mm.
 
-    Raises ProgramError if the depth is missing.
+    Raises ProgramError if the depth is missing or zero.
     """
     d = statement.find_word("D")
     if d is not None:
-        return (
-            abs(state.convert_increment(d))
-            if state.source_control.has_system_a
-            else abs(state.convert_length(d))
-        )
+        depth = state.convert_increment(d) if state.source_control.has_system_a else state.convert_length(d)
+        return require_positive(d, abs(depth))
     if not rough.depth_mm:
         raise make_error(code.line_number, code.column, "cycle-word", word="U" if code.value == 71 else "W")
     return rough.depth_mm
@@ -92,7 +96,7 @@ def append_roughing_passes(
 ) -> None:
     """Append the roughing passes of G71 or G72, the pass along the contour, and the return move.
 
-    Raises ProgramError if the contour is empty or has an undercut.
+    Raises ProgramError if the contour is empty or has an undercut, or if it needs too many passes.
     """
     start = state.get_position(code)
     across_x = code.value == 71
@@ -108,6 +112,7 @@ def append_roughing_passes(
         raise make_error(code.line_number, code.column, "cycle-undercut", axis="Z" if across_x else "X")
     depths = [each for piece in pieces for each in (piece.start[0], *piece.find_extremes(0), piece.end[0])]
     bottom = max(depths, key=lambda each: toward * each)
+    limit_pass_count(code, abs(bottom - begin[0]), depth)
     state.append_rapid(code.line_number, *first)
     level = begin[0]
     while abs(bottom - level) > depth + _SAME:

@@ -1,0 +1,1 @@
+"""Cycles of other controls, expanded to moves."""
