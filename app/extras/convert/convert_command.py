@@ -156,13 +156,16 @@ def _write(args: argparse.Namespace, text: str, who: str) -> None:
 
 
 def _print(args: argparse.Namespace, control: SourceControl, done: Conversion) -> None:
+    from core.extras.convert.conversion import group_findings
+
     if args.json:
         sys.stdout.write(json.dumps(_in_json(args, control, done)) + "\n")
         return
     if args.out is None and not done.errors:
         sys.stdout.write(done.text)
-    for each in done.findings:
-        sys.stderr.write(f"{each.format_one_line(args.file)}\n")
+    for finding, further_lines in group_findings(done.findings):
+        also = Message(" (also in {lines})", lines=further_lines) if further_lines else ""
+        sys.stderr.write(f"{finding.format_one_line(args.file)}{also}\n")
     sys.stderr.write(f"{_summary(args, control, done)}\n")
 
 
@@ -224,7 +227,7 @@ largest_rounding_mm | number | mm | Largest difference of these coordinates, wit
 findings | list | | Differences and errors.
 findings[].line | integer | | Line of the source; 0 means the whole file.
 findings[].column | integer | | Column of the source; 0 means the whole line.
-findings[].severity | string | | error or warning.
+findings[].severity | string | | error, warning or note.
 findings[].code | string | | Code of the finding.
 findings[].message | string | | What is different or wrong.
 findings[].hint | string | | What to do.

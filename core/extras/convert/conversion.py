@@ -37,6 +37,15 @@ class Conversion:
         return "".join(f"{each.text}\n" for each in self.lines)
 
 
+def group_findings(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, str]]:
+    """Return the first finding of each text, and the numbers of the further lines with this text."""
+    first: dict[tuple[str, str], tuple[Diagnostic, list[int]]] = {}
+    for each in findings:
+        _, lines = first.setdefault((each.code, each.message), (each, []))
+        lines.append(each.line)
+    return [(each, ", ".join(str(line) for line in lines[1:])) for each, lines in first.values()]
+
+
 def convert_program(texts: Sequence[str], options: ConversionOptions, limits: ControlLimits) -> Conversion:
     """Convert the lines of a source program to OmniTurn, and prove the result.
 

@@ -46,13 +46,19 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The contour of the cycle has no moves after its first one.",
         "Add the moves of the contour, or remove the cycle.",
     ),
+    "cycle-nested": ("{word} is in the contour of another cycle.", "Write the contour with moves only."),
     "cycle-positive": ("{word}: this value must be greater than zero.", "Correct the value."),
+    "cycle-sideways": (
+        "{word}: the end point beside the first cut and the step toward it do not match.",
+        "Write both words, or neither of them.",
+    ),
     "cycle-undercut": (
         "The contour of the cycle moves back in {axis}, so that a pass cannot reach it.",
         "Cut the undercut with separate moves.",
     ),
     "cycle-word": ("{word} is missing in the cycle.", "Add the word to the cycle."),
     "division": ("The expression divides by zero or has no value.", "Correct the expression."),
+    "dwell-negative": ("{word}: a dwell cannot be negative.", "Correct the time."),
     "endless": (
         "The program executes more than {most} lines.",
         "Correct the loop, or shorten the program.",
@@ -78,11 +84,19 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "{word} belongs to a milling program.",
         "Choose a turning program, or remove the word if it has no effect.",
     ),
+    "motion-missing": (
+        "No G code for a move is active after G80.",
+        "Write G00 or G01 on this line.",
+    ),
     "no-point": (
         "{word} has no decimal point, and its value depends on a parameter of the other control.",
         "Use --no-point 1 if X1000 is 1000 units, or --no-point 0.001 if X1000 is 1 mm (.1 in).",
     ),
     "parentheses": ("The comment has no closing parenthesis.", "Add the parenthesis."),
+    "plane": (
+        "{word} is not possible while the plane of {plane} is active.",
+        "Write G18 before this line if the program is a turning program.",
+    ),
     "position": (
         "The position in {axis} is unknown here, because no earlier line programs it.",
         "Write an absolute X and Z before this line.",
@@ -90,6 +104,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     "subprogram": (
         "The subprogram {word} is not in this file.",
         "Add the subprogram to the file, after the main program.",
+    ),
+    "preset-cancelled": (
+        "{word} cancels a position preset, so that the positions after it depend on the other control.",
+        "Write the positions that apply after this line, and remove the preset and this code.",
     ),
     "spindle-negative": (
         "{word}: spindle speed cannot be negative.",
@@ -126,6 +144,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "{word} selects a second work offset, whose values are stored in the other control.",
         "Write the shift as G10 before T in the converted program, or convert each part separately.",
     ),
+    "word-twice": (
+        "{word} and {other} on the same line contradict each other.",
+        "Remove one of them, or write two lines.",
+    ),
 }
 WARNINGS: Mapping[str, tuple[str, str]] = {
     "approach-joined": (
@@ -136,7 +158,23 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "The end radius of the arc differs from its start radius by {value} mm; OmniTurn accepts .0005 in.",
         "Check the arc.",
     ),
+    "block-delete": (
+        "{word}: the line is converted as if block delete were off, and / is left out.",
+        "Check whether this line must be executed.",
+    ),
+    "contour-action": (
+        "Line {line} of the contour switches something; roughing does not execute it.",
+        "Check that a G70 executes this line, or move it before the cycle.",
+    ),
     "diameter-assumed": ("X is treated as a diameter.", "If X is a radius, use --x radius."),
+    "dwell-short": (
+        "{word} is shorter than the shortest dwell of OmniTurn; 0.1 s is used.",
+        "Check the dwell.",
+    ),
+    "dwell-unit": (
+        "{word}: the unit of a dwell is a setting of the Mach control; seconds are assumed.",
+        "Check the dwell.",
+    ),
     "feed-limited": (
         "{word} is above the maximum feed of this machine; the maximum is used.",
         "Check the feed.",
@@ -158,6 +196,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Nose compensation uses D{number}.",
         "Enter the nose radius in secondary offset D{number}.",
     ),
+    "not-executed": (
+        "The program does not execute the lines {first} to {last}, so that they are not converted.",
+        "Check that these lines are not needed.",
+    ),
     "offset-cancelled": (
         "{word} cancels the tool offset; the converted program cancels it at the next T or home.",
         "Check the moves that follow.",
@@ -166,10 +208,15 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "The distance before the next peck is a parameter of the other control; {value} mm is used.",
         "Check the pecks.",
     ),
+    "plane": (
+        "{word} has no effect on straight moves in X and Z and is left out.",
+        "Check that the program is a turning program.",
+    ),
     "repeat": (
         "M99 repeats the main program; the converted program ends with M30.",
         "Turn on Cycle Repeat to make several parts.",
     ),
+    "replaced": ("{word} is replaced by {replacement}.", "Check that the codes have the same function."),
     "speed-limited": (
         "{word} is above the maximum spindle speed of this machine; the maximum is used.",
         "Check the speed.",
@@ -178,11 +225,19 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "The thread's pull-out at an angle is replaced by a pull-out straight in X at the end of the thread.",
         "Check that the thread has a relief groove.",
     ),
+    "tool-of-offset": (
+        "{word}: the tool of the converted program is T{number}, because OmniTurn has one number for both.",
+        "Check the number of the tool.",
+    ),
 }
 NOTES: Mapping[str, tuple[str, str]] = {
     "no-change": (
         "{word} changes nothing at this point, so the converted program does not contain it.",
         "No action is needed.",
+    ),
+    "work-offset-used": (
+        "{word}: part zero of the converted program is in the tool offsets.",
+        "Set the tool offsets for this part zero.",
     ),
 }
 PROOF_ERRORS: Mapping[str, tuple[str, str]] = {

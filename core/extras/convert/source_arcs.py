@@ -17,6 +17,9 @@ def append_arc(state: SourceState, statement: SourceStatement, code: SourceWord)
     """Append the arc that a line programs. Raises ProgramError if feed, center or radius is invalid."""
     if state.feed is None:
         raise make_error(code.line_number, code.column, "feed-missing")
+    if state.plane_code != 18:
+        plane = f"G{state.plane_code:g}"
+        raise make_error(code.line_number, code.column, "plane", word=code.text, plane=plane)
     start = state.get_position(code)
     x, z = state.find_target(statement)
     assert x is not None
@@ -26,6 +29,9 @@ def append_arc(state: SourceState, statement: SourceStatement, code: SourceWord)
         clockwise = not clockwise
     r, i, k = (statement.find_word(letter) for letter in "RIK")
     if r is not None:
+        for each in (i, k):
+            if each is not None:
+                state.add_warning(each, "left-out", word=each.text)
         center = _center(start, (x, z), state.convert_length(r), r, clockwise=clockwise)
     elif i is not None or k is not None:
         center = (

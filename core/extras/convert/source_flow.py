@@ -14,6 +14,8 @@ from core.extras.convert.source_options import SourceControl
 MAX_EXECUTED_LINES = 300_000
 _DEEPEST = 16
 _MACRO = re.compile(r"\s*(IF|WHILE|GOTO|END|DO|THEN)\s*(?=[\[#\d])", re.IGNORECASE)
+_TOOL_CHANGE = re.compile(r"M\s*0*6(?![\d.])", re.IGNORECASE)
+_LOOP_END = re.compile(r"END\s*\d+", re.IGNORECASE)
 _ARGUMENTS = {letter: str(n) for n, letter in enumerate("ABCIJK", start=1)} | {
     letter: str(n)
     for letter, n in zip(
@@ -57,6 +59,7 @@ class ProgramFlow:
         self._control = control
         self._calls: list[_Return] = []
         self._left = MAX_EXECUTED_LINES
+        self._executed: set[int] = set()  # indexes of lines
         self._loops: dict[int, int] = {}  # repeat loops: line index and passes left
 
     def iter_statements(self) -> Iterator[SourceStatement]:
@@ -66,16 +69,41 @@ class ProgramFlow:
         """
         while self.at < len(self.lines) and not self.ended:
             line = self.lines[self.at]
+            self._executed.add(self.at)
             self.at += 1
-            self._left -= 1
-            if self._left < 0:
-                raise make_error(line.line_number, 1, "endless", most=MAX_EXECUTED_LINES)
+            self._count_lines(1, line)
             if line.o_keyword:
                 self._o_word(line)
             elif _MACRO.match(line.code, line.start_index):
                 yield from self._macro(line)
             else:
                 yield from self._statement(line)
+
+    def _count_lines(self, count: int, line: SourceLine) -> None:
+        """Raise ProgramError if the program executes too many lines."""
+        self._left -= count
+        if self._left < 0:
+            raise make_error(line.line_number, 1, "endless", most=MAX_EXECUTED_LINES)
+
+    @property
+    def uses_tool_change(self) -> bool:
+        """Return whether a line contains M06."""
+        return any(_TOOL_CHANGE.search(each.code) for each in self.lines)
+
+    def find_unexecuted_lines(self) -> list[tuple[int, int]]:
+        """Return the first and the last line number of each part of the program that was not executed."""
+        found: list[tuple[int, int]] = []
+        for index, line in enumerate(self.lines):
+            code = line.code[line.start_index :].strip()
+            if not code or line.o_keyword or _LOOP_END.fullmatch(code):
+                continue
+            if index in self._executed:
+                found.append((0, 0))
+            elif found and found[-1] != (0, 0):
+                found[-1] = found[-1][0], line.line_number
+            else:
+                found.append((line.line_number, line.line_number))
+        return [each for each in found if each != (0, 0)]
 
     def _statement(self, line: SourceLine) -> Iterator[SourceStatement]:
         statement = read_words(line, self.variables)
@@ -173,6 +201,8 @@ class ProgramFlow:
             end = next((k for k in range(begin, len(self.lines)) if self.lines[k].n == last), None)
         if begin is None or end is None:
             raise make_error(start_index, 1, "cycle-contour", first=f"{first:g}", last=f"{last:g}")
+        self._executed.update(range(begin, end + 1))
+        self._count_lines(end + 1 - begin, self.lines[begin])
         found = [read_words(line, self.variables) for line in self.lines[begin : end + 1]]
         return found, end + 1
 
@@ -194,6 +224,7 @@ class ProgramFlow:
             begin = reader.at
             value, _ = reader.read_value()
             text = line.code[begin : reader.at].strip()
+            self._require_line_end(reader)
             self.at = self._block(value, SourceWord("N", value, False, line.line_number, begin + 1, text))
             return
         if reader.accept_text("END"):
@@ -204,6 +235,11 @@ class ProgramFlow:
         raise make_error(
             line.line_number, line.start_index + 1, "bad-word", text=line.code[line.start_index :].strip()
         )
+
+    def _require_line_end(self, reader: ExpressionReader) -> None:
+        """Raise ProgramError if the line contains more text, because it would have no effect."""
+        if reader.peek_character():
+            raise make_error(reader.line, reader.at + 1, "bad-word", text=reader.text[reader.at :].strip())
 
     def _end_of(self, line: SourceLine, reader: ExpressionReader) -> int:
         if not reader.accept_text("DO"):
@@ -237,11 +273,14 @@ class ProgramFlow:
             self._leave()
         elif line.o_keyword in _KEYWORDS:
             getattr(self, f"_{line.o_keyword}")(line, reader)
+            return
         elif line.o_keyword not in {"endif", "do"}:
             raise make_error(line.line_number, line.start_index + 1, "bad-word", text=line.code.strip())
+        if line.o_keyword not in {"elseif", "endwhile"}:
+            self._require_line_end(reader)
 
     def _while(self, line: SourceLine, reader: ExpressionReader) -> None:
-        is_true = reader.read_bracket()
+        is_true = self._read_condition(reader)
         if self._is_do_end(line):
             self.at = self._find_back(line, ("do",)) + 1 if is_true else self.at
         elif not is_true:
@@ -249,13 +288,18 @@ class ProgramFlow:
 
     def _if(self, line: SourceLine, reader: ExpressionReader) -> None:
         """Execute IF: continue after the first true IF or ELSEIF, or else after ELSE or ENDIF."""
-        while not reader.read_bracket():
+        while not self._read_condition(reader):
             index = self._find(line, ("elseif", "else", "endif"))
             self.at = index + 1
             line = self.lines[index]
             if line.o_keyword != "elseif":
                 return
             reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
+
+    def _read_condition(self, reader: ExpressionReader) -> bool:
+        is_true = bool(reader.read_bracket())
+        self._require_line_end(reader)
+        return is_true
 
     def _is_do_end(self, line: SourceLine) -> bool:
         return any(
@@ -284,6 +328,7 @@ class ProgramFlow:
         passed: dict[str, float] = {}
         while reader.peek_character() == "[":
             passed[str(len(passed) + 1)] = reader.read_bracket()
+        self._require_line_end(reader)
         name = SourceWord("O", 0, True, line.line_number, line.start_index, f"O{line.o_word}")
         passed |= {str(n): 0.0 for n in range(len(passed) + 1, 31)}
         self._enter(name, begin, 1, passed)

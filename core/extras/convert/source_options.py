@@ -24,6 +24,11 @@ class SourceControl(StrEnum):
         return self in {SourceControl.FANUC_A, SourceControl.HAAS}
 
     @property
+    def axis_letters(self) -> str:
+        """Return the letters of the coordinates and increments of the axes X and Z."""
+        return "XZUW" if self.is_fanuc else "XZ"
+
+    @property
     def is_fanuc(self) -> bool:
         """Return whether words, cycles and macros have the same meaning as on Fanuc controls."""
         return self not in {SourceControl.LINUXCNC, SourceControl.MACH}

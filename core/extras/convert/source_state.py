@@ -43,6 +43,10 @@ class SourceState:
     tool_number: int = 0
     nose_code: int = 40
     work_offset: float = 0
+    uses_tool_change: bool = False  # T only prepares the tool, and M06 changes it
+    prepared_tool: SourceWord | None = None
+    has_preset: bool = False
+    move_error: ProgramError | None = None  # raised by the next move
     comment: str = ""
     cycle_code: float = -1  # single cycle whose values are stored
     cycle_end: tuple[float, float] | None = None
@@ -164,7 +168,12 @@ class SourceState:
     def append_move(
         self, kind: StepKind, line: int, x: float | None, z: float | None, **values: float | bool
     ) -> None:
-        """Append a move to the given point, unless its length is zero."""
+        """Append a move to this point, unless its length is zero.
+
+        Raises ProgramError if the position is unknown since an earlier code.
+        """
+        if self.move_error is not None:
+            raise self.move_error
         moves = not (
             self.x is not None
             and self.z is not None

@@ -43,6 +43,14 @@ def test_nothing_is_written_if_a_line_cannot_be_converted(
     assert turndesk("convert", part, "--skip-m", "77,78", "--out", made).status == 0
 
 
+def test_equal_findings_are_printed_once_with_their_lines(turndesk: Turndesk, part: Path) -> None:
+    part.write_text(PART.replace("M41\n", "M41\nM41\nG40\nM41\n"))
+    told = turndesk("convert", part)
+    assert told.err.count("M41") == 1
+    assert "[left-out]" in told.err
+    assert "(also in 9, 11)" in told.err
+
+
 def test_the_keys_of_json_are_declared(turndesk: Turndesk, part: Path) -> None:
     (told,) = turndesk("convert", part, "--json").lines
     assert [each["code"] for each in told["findings"]] == ["left-out"]

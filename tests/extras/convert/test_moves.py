@@ -37,7 +37,7 @@ def test_small_fanuc_program_is_converted_line_by_line() -> None:
         12,
         13,
     ]
-    assert done.findings == ()
+    assert [(each.code, each.line, each.column) for each in done.findings] == [("no-change", 3, 4)]  # G40
     assert done.proof.rounded_move_count == 0
 
 

@@ -3,10 +3,23 @@
 from __future__ import annotations
 
 from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.source_lines import SourceWord
+from core.extras.convert.source_lines import SourceStatement, SourceWord
 
 MAX_PASS_COUNT = 1000
 MIN_INFEED_MM = 1e-6
+
+
+def allow_letters(statement: SourceStatement, letters: str) -> None:
+    """Raise ProgramError if a line contains a word with another letter, which would have no effect."""
+    for word in statement.words:
+        if word.letter not in letters:
+            raise make_error(word.line_number, word.column, "code-unknown", word=word.text)
+
+
+def require_words(statement: SourceStatement, code: SourceWord, letters: str) -> None:
+    """Raise ProgramError if a line contains none of these letters."""
+    if not any(statement.find_word(letter) for letter in letters):
+        raise make_error(code.line_number, code.column, "cycle-word", word=" ".join(letters))
 
 
 def require_positive(word: SourceWord, value: float) -> float:

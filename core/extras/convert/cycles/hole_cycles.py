@@ -7,6 +7,7 @@ from dataclasses import replace
 from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.cycles.cycle_limits import limit_pass_count, require_positive
 from core.extras.convert.path_steps import PathStep, StepKind
+from core.extras.convert.source_dwell import append_dwell, read_seconds
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import SourceControl
 from core.extras.convert.source_state import SourceState
@@ -17,6 +18,11 @@ _USUAL_CLEARANCE = 0.508  # mm
 _SAME = 1e-6  # mm
 
 
+def get_hole_letters(code: int) -> str:
+    """Return the letters that have an effect in a hole cycle, apart from axes and feed."""
+    return "RKL" + {73: "Q", 82: "P", 83: "QP", 84: "P", 89: "P"}.get(code, "")
+
+
 def append_hole_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the moves of a hole cycle.
 
@@ -24,7 +30,9 @@ def append_hole_cycle(state: SourceState, statement: SourceStatement, code: Sour
     missing.
     """
     for word in statement.words:
-        if word.letter in "ZWRQPK":
+        if word.letter in "KL" and word.value != 1:
+            raise make_error(word.line_number, word.column, "code-unknown", word=word.text)
+        if word.letter in "ZWRQP":
             state.hole_words[word.letter] = word
     x, _ = state.find_target(statement)
     x0, z0 = state.get_position(code)
@@ -96,9 +104,7 @@ def _at_bottom(state: SourceState, code: SourceWord) -> None:
     p = state.hole_words.get("P")
     if p is None or code.value not in {82, 83, 89, 84}:
         return
-    seconds = p.value if p.has_point or not state.source_control.is_fanuc else p.value / 1000.0
-    if seconds > 0:
-        state.append_step(PathStep(StepKind.DWELL, code.line_number, number=max(seconds, 0.1)))
+    append_dwell(state, p._replace(line_number=code.line_number), read_seconds(state, p))
 
 
 def _out_at_feed(state: SourceState, code: SourceWord, plane: float) -> None:

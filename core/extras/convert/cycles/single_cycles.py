@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import copysign
 
 from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.cycles.cycle_limits import limit_pass_count
+from core.extras.convert.cycles.cycle_limits import limit_pass_count, require_words
 from core.extras.convert.path_steps import StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import SourceControl
@@ -88,9 +88,9 @@ def append_peck_cycle(
     Raises ProgramError if a word is invalid.
     """
     if not any(each.letter in "XZUW" for each in statement.words):
+        require_words(statement, code, "R")
         r = statement.find_word("R")
-        if r is not None:
-            peck.retract = state.convert_length(r)
+        peck.retract = state.convert_length(r) if r is not None else None
         return
     along_z = code.value == 74
     start = state.get_position(code)
@@ -105,9 +105,8 @@ def append_peck_cycle(
             state.add_warning(code, "peck-clearance", value=back)
     main, cross = (start[1], start[0]) if along_z else (start[0], start[1])
     end, last = (z, x) if along_z else (x, z)
-    for distance, infeed in ((end - main, depth), (last - cross, shift)):
-        if infeed:
-            limit_pass_count(code, abs(distance), infeed)
+    require_words(statement, code, "ZW" if along_z else "XU")
+    _check_sizes(code, (end - main, last - cross), (depth, shift, relief))
     at = cross
     while True:
         _plunge(state, code, at, (main, end), depth, back, along_z=along_z)
@@ -119,6 +118,20 @@ def append_peck_cycle(
         at = last if abs(last - at) <= shift + _SAME else at + copysign(shift, last - cross)
         _go(state, code, StepKind.RAPID, main, at, along_z=along_z)
     _go(state, code, StepKind.RAPID, main, cross, along_z=along_z)
+
+
+def _check_sizes(
+    code: SourceWord,
+    distances: tuple[float, float],
+    sizes: tuple[float, float, float],
+) -> None:
+    """Raise ProgramError for a distance without its step, a step without its distance, or too many steps."""
+    (main, cross), (depth, shift, relief) = distances, sizes
+    if bool(shift) != (abs(cross) > _SAME) or (relief and not shift):
+        raise make_error(code.line_number, code.column, "cycle-sideways", word=code.text)
+    for distance, infeed in ((main, depth), (cross, shift)):
+        if infeed:
+            limit_pass_count(code, abs(distance), infeed)
 
 
 def _sizes(state: SourceState, statement: SourceStatement, *, along_z: bool) -> tuple[float, float, float]:

@@ -13,7 +13,8 @@ from core.extras.convert.cycles.contour_cycles import (
     read_pass_depth,
     store_roughing_words,
 )
-from core.extras.convert.cycles.hole_cycles import HOLE_CYCLE_CODES, append_hole_cycle
+from core.extras.convert.cycles.cycle_limits import allow_letters, require_words
+from core.extras.convert.cycles.hole_cycles import HOLE_CYCLE_CODES, append_hole_cycle, get_hole_letters
 from core.extras.convert.cycles.single_cycles import (
     PeckValues,
     append_facing_cycle,
@@ -30,6 +31,7 @@ from core.extras.convert.cycles.thread_cycles import (
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
 from core.extras.convert.source_flow import ProgramFlow
 from core.extras.convert.source_lines import SourceStatement, SourceWord
+from core.extras.convert.source_options import SourceControl
 from core.extras.convert.source_state import SourceState
 
 ExecuteFunction = Callable[[SourceStatement], None]
@@ -44,9 +46,10 @@ _BOXES_OF_B: Mapping[int, Callable[[SourceState, SourceStatement, SourceWord], N
     79: append_facing_cycle,
 }
 _WORDS = {
-    70: "PQFSUWD", 71: "PQUWDRFSIK", 72: "PQUWDRFSIK", 73: "PQUWRFSD", 74: "RXZUWPQFIKD", 75: "RXZUWPQFIKD",
-    76: "PQRXZUWFKDAIEHJL",
+    70: "PQFUWD", 71: "PQUWDF", 72: "PQUWDF", 73: "PQUWFDIK", 74: "RXZUWPQF", 75: "RXZUWPQF", 76: "PQRF",
 }  # fmt: skip
+_BOX_LETTERS = {90: "RI", 92: "RIE", 94: "RK", 77: "RI", 78: "RIE", 79: "RK"}
+_FIRST_LINE = {71: "URF", 72: "WRF", 73: "UWRF"}
 
 
 class SourceCycles:
@@ -57,6 +60,7 @@ class SourceCycles:
         self._rough = RoughingValues()
         self._thread = FanucThreadValues()
         self._peck = PeckValues()
+        self._is_in_contour = False
 
     def is_modal(self, code: float) -> bool:
         """Return whether this G code remains active on further lines with axis words."""
@@ -78,8 +82,8 @@ class SourceCycles:
         """Execute a line of the active modal cycle. Raises ProgramError if it cannot be converted."""
         number = round(self._state.motion_code)
         code = code._replace(value=number)
-        extra = "RIKFE" if number in self._boxes() else "RQPFKL"
-        self._check(statement, "XZUWGMSTN" + extra)
+        letters = _BOX_LETTERS[number] if number in self._boxes() else get_hole_letters(number)
+        allow_letters(statement, f"GMSTNF{self._state.source_control.axis_letters}{letters}")
         if number in self._boxes():
             self._boxes()[number](self._state, statement, code)
         else:
@@ -87,44 +91,60 @@ class SourceCycles:
                 raise make_error(code.line_number, code.column, "hole-plane", word=f"G{number}")
             append_hole_cycle(self._state, statement, code)
 
-    def execute_one_shot_cycle(self, statement: SourceStatement, code: SourceWord) -> bool:
-        """Execute a cycle that is active only in its own line; return False if the code is another code."""
+    def is_one_shot(self, code: float) -> bool:
+        """Return whether this G code is a cycle that is active only on its own line."""
+        return code in _WORDS if self._state.source_control.is_fanuc else code == 76
+
+    def execute_one_shot_cycle(self, statement: SourceStatement, code: SourceWord) -> None:
+        """Execute a cycle that is active only on its own line. Raises ProgramError for an invalid word."""
         state, number = self._state, code.value
         if not state.source_control.is_fanuc:
-            if number != 76:
-                return False
+            allow_letters(statement, "GMNSTFPZIJKRQHEL")
             append_linuxcnc_thread_cycle(state, statement, code)
-            return True
-        if number not in _WORDS:
-            return False
-        self._check(statement, "GMNST" + _WORDS[round(number)])
+            return
+        if number == 70:
+            for word in statement.words:
+                if word.letter in "UWD":  # Some CAM systems repeat the words of G71 here.
+                    state.add_warning(word, "left-out", word=word.text)
+        allow_letters(statement, "GMNST" + self._get_letters(statement, round(number)))
         if number in {70, 71, 72, 73}:
             self._contour(statement, code)
         elif number in {74, 75}:
             append_peck_cycle(state, statement, code, self._peck)
         elif is_first_of_two_lines(statement):
+            require_words(statement, code, "PQR")
             self._thread.store_words(state, statement)
         else:
             append_thread_cycle(state, statement, code, self._thread)
-        return True
 
-    def _check(self, statement: SourceStatement, letters: str) -> None:
-        for word in statement.words:
-            if word.letter not in letters:
-                raise make_error(word.line_number, word.column, "code-unknown", word=word.text)
+    def _get_letters(self, statement: SourceStatement, number: int) -> str:
+        """Return the letters that have an effect in a line of a cycle."""
+        is_haas = self._state.source_control is SourceControl.HAAS
+        if number in {71, 72, 73} and statement.find_word("P") is None:
+            return _FIRST_LINE[number]
+        if number in {74, 75} and is_first_of_two_lines(statement):
+            return "R"
+        if number in {74, 75} and (is_haas or any(statement.find_word(each) for each in "IKD")):
+            return "XZUWFIKD"
+        if number == 76 and not is_first_of_two_lines(statement):
+            return "XZUWRIFEKDAP" if statement.find_word("K") else "XZUWRIFEPQ"
+        return _WORDS[number]
 
     def _contour(self, statement: SourceStatement, code: SourceWord) -> None:
         state = self._state
+        if not any(statement.find_word(each) for each in "PQUWR"):
+            raise make_error(code.line_number, code.column, "cycle-word", word="P")
         if code.value != 70 and store_roughing_words(state, statement, code, self._rough):
             return
         p, q = statement.find_word("P"), statement.find_word("Q")
         if p is None or q is None:
             raise make_error(code.line_number, code.column, "cycle-word", word="P" if p is None else "Q")
+        if self._is_in_contour:
+            raise make_error(code.line_number, code.column, "cycle-nested", word=code.text)
         lines, after = self._flow.contour(p.value, q.value, self._flow.at)
         start = state.get_position(code)
         if code.value == 70:
-            for each in lines:
-                self._execute(each)
+            self._execute_contour(lines)
             state.append_rapid(code.line_number, *start)
             return
         contour = self._trace(lines)
@@ -134,19 +154,29 @@ class SourceCycles:
         else:
             depth = read_pass_depth(state, statement, code, self._rough)
             append_roughing_passes(state, code, contour, depth, self._rough.retract_mm, allowance)
-        self._flow.at = after
+        # A contour in front of the cycle has been executed already and is not skipped.
+        self._flow.at = max(self._flow.at, after)
+
+    def _execute_contour(self, lines: Sequence[SourceStatement]) -> None:
+        self._is_in_contour = True
+        for each in lines:
+            self._execute(each)
+        self._is_in_contour = False
 
     def _trace(self, lines: Sequence[SourceStatement]) -> list[PathStep]:
         """Return the moves of a contour without the rapids at its end, and restore the modal state."""
         state = self._state
         saved = (state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment)
-        spindle, request, warnings = state.spindle, state.speed_request, list(state.warnings)
+        spindle, request = state.spindle, state.speed_request
         state.steps, state.feed = [], state.feed or 1.0
-        for each in lines:
-            self._execute(each)
+        self._execute_contour(lines)
         found = [each for each in state.steps if each.kind in MOVE_KINDS]
+        for step in state.steps:
+            if step.kind not in MOVE_KINDS and step.kind is not StepKind.NOSE:
+                word = SourceWord("", 0, False, step.line, 1, "")
+                state.add_warning(word, "contour-action", line=step.line)
         state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment = saved
-        state.spindle, state.speed_request, state.warnings = spindle, request, warnings
+        state.spindle, state.speed_request = spindle, request
         while len(found) > 1 and found[-1].kind is StepKind.RAPID:
             found.pop()
         return found

@@ -27,11 +27,18 @@ def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) 
     Raises ProgramError if no lead is programmed.
     """
     letters = "FE" if state.source_control.is_fanuc else "KP"
+    both = [each for each in statement.words if each.letter in "FE"] if state.source_control.is_fanuc else []
+    if len(both) > 1:
+        raise make_error(
+            both[1].line_number, both[1].column, "word-twice", word=both[0].text, other=both[1].text
+        )
     word = next((each for letter in letters if (each := statement.find_word(letter))), None)
     if word is not None:
         if not word.has_point and state.source_control.is_fanuc and state.options.no_point != 1:
             raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
         state.last_lead_mm = abs(word.value) * state.get_unit_mm(word)
+        if word.letter == "F" and state.source_control.is_fanuc:
+            state.feed = state.last_lead_mm if state.is_feed_per_rev else None
     if not state.last_lead_mm:
         raise make_error(code.line_number, code.column, "thread-lead")
     return state.last_lead_mm
@@ -64,8 +71,10 @@ class FanucThreadValues:
         self.least, self.allowance = 0.0, 0.0
 
     def store_words(self, state: SourceState, statement: SourceStatement) -> None:
-        """Store the words of the first line of the cycle."""
+        """Store the words of the first line of the cycle. Raises ProgramError if the lead is invalid."""
         p, q, r = (statement.find_word(letter) for letter in "PQR")
+        if any(each.letter in "FE" for each in statement.words):
+            read_lead(state, statement, statement.words[0])
         if p is not None:
             passes, rest = divmod(round(p.value), 10000)
             self.finishing = max(passes, 1)
@@ -123,6 +132,8 @@ def _depths(
     p, q, k, d, a = (statement.find_word(letter) for letter in "PQKDA")
     if k is not None and d is not None:  # the form of one line
         angle = a.value if a is not None else 0.0
+        if p is not None and p.value != 1:
+            raise make_error(p.line_number, p.column, "code-unknown", word=p.text)
         depth = require_positive(k, state.convert_length(k))
         return depth, require_positive(d, state.convert_increment(d)), 0.0, 0.0, 1, angle
     if p is None or q is None:
@@ -159,7 +170,9 @@ def append_linuxcnc_thread_cycle(state: SourceState, statement: SourceStatement,
     for letter in "PZIJK":
         if words[letter] is None:
             raise make_error(code.line_number, code.column, "cycle-word", word=letter)
-    taper = words["L"]
+    taper, length = words["L"], words["E"]
+    if length is not None and (taper is None or not taper.value):
+        state.add_warning(length, "left-out", word=length.text)
     if taper is not None and taper.value == 2:
         state.add_warning(code, "thread-pull-out")
     elif taper is not None and taper.value:
