@@ -38,10 +38,20 @@ CORNER_ANGLES: Mapping[str, tuple[float, ...]] = {
     "O": (135.0,) * 8,
     "R": (),
 }
-_CLEARANCES = {"A": 3.0, "B": 5.0, "C": 7.0, "D": 15.0, "E": 20.0, "F": 25.0, "G": 30.0, "N": 0.0, "P": 11.0}
+CLEARANCE_ANGLES = {
+    "A": 3.0,
+    "B": 5.0,
+    "C": 7.0,
+    "D": 15.0,
+    "E": 20.0,
+    "F": 25.0,
+    "G": 30.0,
+    "N": 0.0,
+    "P": 11.0,
+}
 _LETTERS: tuple[tuple[str, Iterable[str]], ...] = (
     ("shape", CORNER_ANGLES),
-    ("clearance", _CLEARANCES),
+    ("clearance", CLEARANCE_ANGLES),
     ("tolerance class", "ACEFGHJKLMNU"),
     ("insert type (hole and chip breaker)", "ABCFGHJMNQRTUWX"),
 )
@@ -60,7 +70,7 @@ _THIN: Mapping[tuple[str, str], float] = {
     **{("03", "01"): 3.5, ("03", "S1"): 3.5, ("04", "T0"): 4.3, ("04", "T1"): 4.3},
 }
 _METRIC_ROUND = 12.0  # mm; RCMT 1204M0, compared with 12.7 mm of RNMG 120400
-_THICKNESS = {
+THICKNESSES = {
     **{
         "S1": 1.39,
         "01": 1.59,
@@ -75,7 +85,7 @@ _THICKNESS = {
     **{"T4": 4.96, "05": 5.56, "T5": 5.95, "06": 6.35, "T6": 6.75, "07": 7.94, "09": 9.52, "T9": 9.72},
     **{"11": 11.11, "12": 12.7},
 }
-_CORNER = {
+CORNER_RADII = {
     f"{tenths:02d}": tenths / 10.0 for tenths in (0, 1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20, 24, 28, 32)
 }
 _K_EDGE = 16.15  # mm, the long edge of KNUX 1604.., the only K insert used for turning
@@ -214,7 +224,7 @@ def decode_insert_code(code: str) -> Insert:
     read = _read_metric_sizes if metric else _read_inch_sizes
     circle, thickness, nose = read(_CodeDigits(code, head[0], size, len(head)))
     return replace(
-        make_insert(head[0], circle, nose), thickness=thickness, clearance_angle=_CLEARANCES[head[1]]
+        make_insert(head[0], circle, nose), thickness=thickness, clearance_angle=CLEARANCE_ANGLES[head[1]]
     )
 
 
@@ -312,12 +322,12 @@ def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     )
     if size.shape == "C":
         circle = _THIN.get((edge, size.remaining_digits[:2]), circle)
-    thickness = size.remove_digits(size.remaining_digits[:2], "thickness", _THICKNESS)
+    thickness = size.remove_digits(size.remaining_digits[:2], "thickness", THICKNESSES)
     if size.shape != "R":
         return (
             circle,
             thickness,
-            size.remove_digits(size.remaining_digits[:2], "corner radius (tenths of a mm)", _CORNER),
+            size.remove_digits(size.remaining_digits[:2], "corner radius (tenths of a mm)", CORNER_RADII),
         )
     if (
         size.remove_digits(

@@ -20719,6 +20719,151 @@
       <translation>{text} es desconocido; use {range}</translation>
     </message>
     <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>a tool bit has no tool number; add --number</source>
+      <translation>una herramienta de FreeCAD no tiene número; añada --number</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>shape {name} is not supported; only the remark is imported</source>
+      <translation>la forma {name} no se admite; sólo se importa el comentario</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>the file has neither a list "tools" nor a shape; use a .fctl or .fctb file of FreeCAD</source>
+      <translation>el archivo no tiene la lista "tools" ni una forma; use un archivo .fctl o .fctb de FreeCAD</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>the library has more than {most} tools; divide it</source>
+      <translation>la biblioteca tiene más de {most} herramientas; divídala</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>the name {name} contains no valid ISO code; enter the insert</source>
+      <translation>el nombre {name} no contiene un código ISO válido; introduzca la plaquita</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>the tool is not a JSON object; export the file again</source>
+      <translation>la herramienta no es un objeto JSON; exporte el archivo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>tool {count}</source>
+      <translation>herramienta {count}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>{name} cannot be read ({cause}); put it in the folder of the library or in the folder Bit next to it</source>
+      <translation>no se puede leer {name} ({cause}); póngalo en la carpeta de la biblioteca o en la carpeta Bit contigua</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>{name} is not UTF-8; save it with FreeCAD</source>
+      <translation>{name} no es UTF-8; guárdelo con FreeCAD</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>{text} is not a number with a known unit; correct it</source>
+      <translation>{text} no es un número con una unidad conocida; corríjalo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/freecad_tools.py" />
+      <source>{text} is not the name of a .fctb file in the library's folder; correct it</source>
+      <translation>{text} no es el nombre de un archivo .fctb de la carpeta de la biblioteca; corríjalo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>check the insert: {code} by its sizes, but {recognized} in the description</source>
+      <translation>revise la plaquita: {code} según sus medidas, pero {recognized} en la descripción</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>insert {shape}: its sizes have no ISO code; enter the insert</source>
+      <translation>plaquita {shape}: sus medidas no tienen código ISO; introduzca la plaquita</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>kind {name} is not supported; only the remark is imported</source>
+      <translation>el tipo {name} no se admite; sólo se importa el comentario</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>not imported: holder style {style}</source>
+      <translation>no se importa: estilo de portaherramientas {style}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>not imported: holder {name}</source>
+      <translation>no se importa: portaherramientas {name}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>the file has no list "data" with up to {most} tools; export it from Fusion</source>
+      <translation>el archivo no tiene una lista "data" de hasta {most} herramientas; expórtelo de Fusion</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>the tap is left-hand</source>
+      <translation>el macho es de rosca izquierda</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>the tool has no number; add it in Fusion</source>
+      <translation>la herramienta no tiene número; añádalo en Fusion</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>{name} contains more than 16 MB, so it is not a tool table; check the name</source>
+      <translation>{name} contiene más de 16 MB, así que no es una tabla de herramientas; revise el nombre</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>{name} is not an archive that contains {member} ({error}); export the library again</source>
+      <translation>{name} no es un archivo comprimido que contenga {member} ({error}); exporte la biblioteca de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/fusion_library.py" />
+      <source>{text} is not a unit; use millimeters or inches</source>
+      <translation>{text} no es una unidad; use millimeters o inches</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>not imported: {words}</source>
+      <translation>no se importa: {words}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>not valid JSON ({error}); export the file again</source>
+      <translation>JSON no válido ({error}); exporte el archivo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>not valid JSON; export the file again</source>
+      <translation>JSON no válido; exporte el archivo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>the file is not a JSON object; check the format with --from</source>
+      <translation>el archivo no es un objeto JSON; revise el formato con --from</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>{key} is not a JSON object; correct it</source>
+      <translation>{key} no es un objeto JSON; corríjalo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>{place}, line {line}</source>
+      <translation>{place}, línea {line}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/json_fields.py" />
+      <source>{text} is not a number; correct it</source>
+      <translation>{text} no es un número; corríjalo</translation>
+    </message>
+    <message>
       <location filename="core/extras/tool_tables/linuxcnc_table.py" />
       <source>Q{value} is not an orientation; use 0 to 9</source>
       <translation>Q{value} no es una orientación; use 0 a 9</translation>
@@ -20730,11 +20875,6 @@
     </message>
     <message>
       <location filename="core/extras/tool_tables/linuxcnc_table.py" />
-      <source>not imported: {words}</source>
-      <translation>no se importa: {words}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/tool_tables/linuxcnc_table.py" />
       <source>{letter} is on the line twice; remove one</source>
       <translation>{letter} está dos veces en la línea; quite una</translation>
     </message>
@@ -20742,6 +20882,16 @@
       <location filename="core/extras/tool_tables/linuxcnc_table.py" />
       <source>{word} is not a word of a LinuxCNC tool table; use T P X Z D I J Q, and start a remark with a semicolon</source>
       <translation>{word} no es una palabra de una tabla de herramientas de LinuxCNC; use T P X Z D I J Q y empiece el comentario con punto y coma</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>FreeCAD tool bits</source>
+      <translation>herramientas de FreeCAD</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>Fusion tool library</source>
+      <translation>biblioteca de herramientas de Fusion</translation>
     </message>
     <message>
       <location filename="core/extras/tool_tables/table_file.py" />
@@ -20842,11 +20992,6 @@
       <location filename="core/extras/tool_tables/tool_entry.py" />
       <source>{name} has no tools to import; check the file and --only</source>
       <translation>{name} no tiene herramientas que importar; revise el archivo y --only</translation>
-    </message>
-    <message>
-      <location filename="core/extras/tool_tables/tool_entry.py" />
-      <source>{text} is not a number; correct it</source>
-      <translation>{text} no es un número; corríjalo</translation>
     </message>
     <message>
       <location filename="core/extras/tool_tables/tool_entry.py" />

@@ -83,7 +83,7 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 
     Raises CommandError if the file is not a valid tool table.
     """
-    options = ReadingOptions(args.unit, args.x, _columns(args.columns), 0, _only(args.only))
+    options = ReadingOptions(args.unit, args.x, _columns(args.columns), args.number, _only(args.only))
     try:
         word = args.format or find_format(path.name)
         return word, read_table(path, word, options)

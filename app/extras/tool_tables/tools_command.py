@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from app.cli.change_author import add_as_option, add_consent_options
 from core.extras.tool_tables.table_file import FORMATS
+from core.store.store_rows import OFFSET_NUMBERS
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-
-_FORMATS = ", ".join(FORMATS)
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -52,6 +51,14 @@ def _add_import(actions: SubParsers) -> None:
         help="meaning of X in a CSV file whose headings do not specify it",
     )
     action.add_argument("--only", metavar="TOOLS", default="", help="tools to import, such as 1,3-6")
+    action.add_argument(
+        "--number",
+        type=int,
+        metavar="T",
+        default=0,
+        choices=OFFSET_NUMBERS,
+        help="tool number for a file that contains one tool without a number, such as a .fctb file",
+    )
     action.add_argument(
         "--no-positions",
         action="store_true",

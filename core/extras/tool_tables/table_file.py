@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from core.extras.tool_tables import csv_table, linuxcnc_table
+from core.extras.tool_tables import csv_table, freecad_tools, fusion_library, linuxcnc_table
 from core.extras.tool_tables.tool_entry import ReadingOptions, TableReader, ToolTable, ToolTableError
 from core.input_file import BYTES_PER_MB, TooLargeError, read_input_bytes
 from core.message import Message
@@ -22,18 +22,25 @@ _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
 class TableFormat(NamedTuple):
     """A format of tool tables.
 
-    The format has a name for users, file suffixes, and a function that reads the text of a table.
+    The format has a name for users, file suffixes, and a function that reads the text of a table. If the
+    file can be an archive, ``unpack`` returns the text in it; its parameters are the file name, the data and
+    the maximum number of bytes.
     """
 
     title: str
     suffixes: tuple[str, ...]
     read_text: Callable[[TableReader, str], None]
+    unpack: Callable[[str, bytes, int], bytes] | None = None
 
 
 FORMATS: Mapping[str, TableFormat] = {
     "linuxcnc": TableFormat("LinuxCNC tool table", (".tbl",), linuxcnc_table.read_tools),
     "mach": TableFormat("Mach tool table", (".dat",), csv_table.read_tools),
     "csv": TableFormat("CSV", (".csv", ".txt", ".tsv"), csv_table.read_tools),
+    "fusion": TableFormat(
+        "Fusion tool library", (".json", ".tools"), fusion_library.read_tools, fusion_library.unpack
+    ),
+    "freecad": TableFormat("FreeCAD tool bits", (".fctb", ".fctl"), freecad_tools.read_tools),
 }
 """Readable table formats, by the value of the option --from."""
 
@@ -58,8 +65,12 @@ def read_table(path: Path, format_name: str, options: ReadingOptions) -> ToolTab
     Raises ToolTableError if the file is unreadable, is too large or is not UTF-8 text, if the table has
     mistakes, or if it has no tools.
     """
-    table = TableReader(path.name, options)
-    FORMATS[format_name].read_text(table, _text(path.name, _bytes(path), format_name))
+    table = TableReader(path.name, options, path.parent)
+    table_format = FORMATS[format_name]
+    data = _bytes(path)
+    if table_format.unpack:
+        data = table_format.unpack(path.name, data, MAX_TABLE_BYTES)
+    table_format.read_text(table, _text(path.name, data, format_name))
     return table.make_table()
 
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
+from pathlib import Path
 from typing import NamedTuple
 
 from core.extras.tool_tables.iso_code_recognition import ROUND_KINDS, recognize_shape_fields
@@ -88,13 +89,14 @@ class ToolTable(NamedTuple):
 
 @dataclass(slots=True)
 class TableReader:
-    """Collector of the tools and the mistakes in a table file.
+    """Collector of the tools in a file, and of the mistakes that it reports under ``file_name``.
 
-    ``file_name`` is the name of the file in error messages.
+    ``folder`` is the folder of the file, in which a library finds the files that it names.
     """
 
     file_name: str
     options: ReadingOptions
+    folder: Path = Path()
     tools: dict[int, ToolEntry] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     mistakes: list[CodedError] = field(default_factory=list)

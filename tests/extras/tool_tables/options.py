@@ -5,7 +5,7 @@ from __future__ import annotations
 _IMPORT = "tests/extras/tool_tables/test_tools_import.py"
 _OPTIONS = ("--from", "--map", "--unit", "--x", "--only", "--no-positions", "--replace", "--json", "--yes")
 COVERED = {
-    **{("tools import", option): _IMPORT for option in (*_OPTIONS, "--machine", "--why")},
+    **{("tools import", option): _IMPORT for option in (*_OPTIONS, "--machine", "--number", "--why")},
     ("tools import", "--as"): "tests/cli/test_access.py",
 }
 CHANGES = {"tools import": ("{file}", "--yes")}

@@ -204,3 +204,32 @@ def test_import_below_setup_level_is_rejected(
     assert codes(refusals) == ["level-too-low"]
     assert rows(home) == ({}, {})
     assert json.loads(say("tools", "import", table, "--unit", "in", "--json")[1])["tools"]
+
+
+def test_tool_bit_of_freecad_gets_its_number_from_the_option(
+    turndesk: Turndesk, tmp_path: Path, home: Path
+) -> None:
+    path = tmp_path / "drill.fctb"
+    path.write_text('{"name": "drill", "shape": "drill.fcstd", "parameter": {"Diameter": "5 mm"}}')
+    assert turndesk("tools", "import", path, "--yes").code == "no-number"
+    assert turndesk("tools", "import", path, "--yes", "--number", "6").status == 0
+    assert rows(home)[1][6].diameter == 5.0
+
+
+def test_fusion_library_does_not_change_an_offset_in_use(
+    turndesk: Turndesk, tmp_path: Path, home: Path
+) -> None:
+    set_tool(home, 1, x=38.0, z=-50.0, wear_x=0.1, nose_radius=0.4)
+    tool = {"type": "turning general", "unit": "millimeters", "post-process": {"number": 1}}
+    path = tmp_path / "lathe.json"
+    path.write_text(json.dumps({"data": [{**tool, "geometry": {"SC": "C", "RE": 0.8}}]}))
+    assert "T1" in turndesk("tools", "import", path, "--yes").err
+    assert rows(home)[0][1].nose_radius == 0.4
+    assert turndesk("tools", "import", path, "--yes", "--replace").status == 0
+    offset = rows(home)[0][1]
+    assert (offset.x, offset.z, offset.wear_x, offset.nose_radius) == (38.0, -50.0, 0.1, 0.8)
+
+
+def test_number_that_does_not_exist_is_rejected(turndesk: Turndesk, table: Path, home: Path) -> None:
+    assert turndesk("tools", "import", table, "--number", "33").status == 2
+    assert rows(home) == ({}, {})
