@@ -10334,6 +10334,26 @@
       <translation>no se importa hasta tocar la herramienta: {names}; toque T{number} y vuelva a importar el archivo con --replace</translation>
     </message>
     <message>
+      <location filename="app/extras/tool_tables/table_options.py" />
+      <source>--map specifies {key} twice; remove one</source>
+      <translation>--map indica {key} dos veces; quite una</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tool_tables/table_options.py" />
+      <source>--map {entry} is incomplete; write FIELD=COLUMN, such as x=Dia</source>
+      <translation>--map {entry} está incompleto; escriba CAMPO=COLUMNA, por ejemplo x=Dia</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tool_tables/table_options.py" />
+      <source>--map: {text}</source>
+      <translation>--map: {text}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tool_tables/table_options.py" />
+      <source>--only {part} is not valid; use tool numbers 1 to 32, such as 1,3-6</source>
+      <translation>--only {part} no es válido; use números de herramienta de 1 a 32, por ejemplo 1,3-6</translation>
+    </message>
+    <message>
       <location filename="app/jog/held_jog.py" />
       <source>JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN</source>
       <translation>SE PERDIÓ LA SEÑAL DE LA TECLA. SUÉLTELA Y PÚLSELA OTRA VEZ</translation>

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -18,7 +17,7 @@ from app.cli.change_author import get_change_author
 from app.cli.store_command import open_store
 from app.compose.machine.machine_setup import read_machine
 from app.desk.command_errors import EXIT_OK, CommandError
-from app.desk.toml_file import describe_unknown_key, raise_mistakes
+from app.desk.toml_file import raise_mistakes
 from app.extras.tool_tables.import_plan import (
     FieldChange,
     ImportStatus,
@@ -26,20 +25,18 @@ from app.extras.tool_tables.import_plan import (
     ToolPlan,
     collect_changes,
 )
+from app.extras.tool_tables.table_options import parse_columns, parse_tool_numbers
 from core.access.access_table import ProtectedChange
-from core.extras.tool_tables.csv_columns import FIELD_NAMES
 from core.extras.tool_tables.table_file import find_format, read_table
 from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTable, ToolTableError
 from core.json_keys import JsonOutput, declare_keys
 from core.message import Message
 from core.store.offsets import offset_tables
 from core.store.offsets.offset_tables import ChangeReason
-from core.store.store_rows import FIELDS_BY_KIND, OFFSET_NUMBERS, FieldType, FieldValue, convert_to_inches
+from core.store.store_rows import FIELDS_BY_KIND, FieldType, FieldValue, convert_to_inches
 
 if TYPE_CHECKING:
     from core.store.store import Store
-
-_ALIASES = {"t": "number", "tool": "number", "r": "nose_radius", "tip": "quadrant", "q": "quadrant"}
 
 
 def import_table(args: argparse.Namespace) -> int:
@@ -83,54 +80,14 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 
     Raises CommandError if the file is not a valid tool table.
     """
-    options = ReadingOptions(args.unit, args.x, _columns(args.columns), args.number, _only(args.only))
+    options = ReadingOptions(
+        args.unit, args.x, parse_columns(args.columns), args.number, parse_tool_numbers(args.only)
+    )
     try:
         word = args.format or find_format(path.name)
         return word, read_table(path, word, options)
     except ToolTableError as error:
         raise CommandError(str(error), error.code) from error
-
-
-def _columns(entries: Iterable[str]) -> dict[str, str]:
-    """Return the file columns that the option ``--map`` assigns to the fields.
-
-    Raises CommandError if the option is invalid.
-    """
-    found: dict[str, str] = {}
-    parts = [part for entry in entries for part in re.split(r",(?=\s*\w+\s*=)", entry)]
-    for entry in parts:
-        key, equals, column = entry.partition("=")
-        name = key.strip().lower().replace("-", "_")
-        field = _ALIASES.get(name, name)
-        if not equals or not column.strip():
-            text = Message("--map {entry} is incomplete; write FIELD=COLUMN, such as x=Dia", entry=entry)
-            raise CommandError(text, "no-value")
-        if field not in FIELD_NAMES:
-            raise CommandError(
-                Message("--map: {text}", text=describe_unknown_key(key.strip(), FIELD_NAMES)), "unknown-key"
-            )
-        if field in found:
-            raise CommandError(Message("--map specifies {key} twice; remove one", key=field), "key-twice")
-        found[field] = column.strip()
-    return found
-
-
-def _only(text: str) -> frozenset[int]:
-    """Return the tool numbers that the option ``--only`` specifies.
-
-    Raises CommandError if the option is invalid.
-    """
-    found: set[int] = set()
-    for part in filter(None, (each.strip() for each in text.split(","))):
-        match = re.fullmatch(r"[Tt]?(\d{1,2})(?:\s*-\s*[Tt]?(\d{1,2}))?", part)
-        first, last = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
-        if first not in OFFSET_NUMBERS or last not in OFFSET_NUMBERS or first > last:
-            message = Message(
-                "--only {part} is not valid; use tool numbers 1 to 32, such as 1,3-6", part=part
-            )
-            raise CommandError(message, "unknown-number")
-        found |= set(range(first, last + 1))
-    return frozenset(found)
 
 
 # --- questions ---------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Command ``turndesk tools``, which imports tool tables from other programs."""
+"""Command ``turndesk tools``, which imports and exports the tool tables of other programs."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser = subparsers.add_parser("tools")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     _add_import(actions)
+    _add_export(actions)
 
 
 def _add_import(actions: SubParsers) -> None:
@@ -80,11 +81,41 @@ def _add_import(actions: SubParsers) -> None:
     )
 
 
+def _add_export(actions: SubParsers) -> None:
+    """Add the action that exports the tools."""
+    action = actions.add_parser("export", help="write the tools to a new tool table for another program")
+    action.add_argument(
+        "file", metavar="FILE", help="tool table to write; an existing file is not overwritten"
+    )
+    action.add_argument(
+        "--to",
+        dest="format",
+        choices=[word for word, each in FORMATS.items() if each.exported_fields],
+        help="format of the file (default: recognized from the suffix of its name)",
+    )
+    action.add_argument(
+        "--map",
+        dest="columns",
+        metavar="FIELD=COLUMN",
+        action="append",
+        default=[],
+        help="column of a CSV file for a field, such as x=Dia; the file then has only these columns",
+    )
+    action.add_argument(
+        "--unit", choices=["in", "mm"], default="in", help="unit of the lengths in the file (default: in)"
+    )
+    action.add_argument("--only", metavar="TOOLS", default="", help="tools to export, such as 1,3-6")
+
+
 def run(args: argparse.Namespace) -> int:
     """Run the action that the user specified.
 
     Raises CommandError if the action fails.
     """
+    if args.action == "export":
+        from app.extras.tool_tables.export_command import export_table
+
+        return export_table(args)
     from app.extras.tool_tables.import_command import import_table
 
     return import_table(args)

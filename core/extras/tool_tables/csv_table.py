@@ -11,7 +11,6 @@ import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from core.extras.tool_tables.csv_columns import (
-    FIELD_NAMES,
     NOSE_DIAMETER,
     NUMBER,
     X_DIAMETER,
@@ -216,6 +215,33 @@ def format_table(tools: Iterable[ToolEntry], unit: str) -> str:
     return out.getvalue()
 
 
+DERIVED_FIELDS = (X_DIAMETER, NOSE_DIAMETER)
+"""Columns with twice the value of a radius, which a file can have in addition to the stored fields."""
+_RADIUS_OF = {X_DIAMETER: "x", NOSE_DIAMETER: "nose_radius"}
+
+
+def list_written_fields(columns: Iterable[str]) -> frozenset[str]:
+    """Return the stored fields that columns of these fields contain."""
+    return frozenset(_RADIUS_OF.get(each, each) for each in columns)
+
+
+def format_columns(tools: Iterable[ToolEntry], unit: str, columns: Mapping[str, str]) -> str:
+    """Return the tools as a CSV table with these headings by field, in this order."""
+    out = io.StringIO()
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow(columns.values())
+    for tool in tools:
+        values: dict[str, FieldValue] = {**tool.offset_values, **tool.shape_values}
+        for diameter, radius in _RADIUS_OF.items():
+            if radius in values:
+                values[diameter] = 2.0 * float(values[radius])
+        table.writerow(
+            str(tool.tool_number) if name == NUMBER else _cell(name, values.get(name, ""), MM_PER_UNIT[unit])
+            for name in columns
+        )
+    return out.getvalue()
+
+
 def _heading(name: str, unit: str) -> str:
     text = _HEADINGS.get(name, name.replace("_", " ").capitalize())
     return f"{text} ({unit})" if TABLE_FIELDS[name].field_type is FieldType.LENGTH else text
@@ -224,20 +250,19 @@ def _heading(name: str, unit: str) -> str:
 def _cells(tool: ToolEntry, names: Iterable[str], factor: float) -> Iterator[str]:
     values: Mapping[str, FieldValue] = {**tool.offset_values, **tool.shape_values}
     yield str(tool.tool_number)
-    for name in names:
-        value = values.get(name, "")
-        if isinstance(value, bool):
-            yield "1" if value else "0"
-        elif isinstance(value, float) and TABLE_FIELDS[name].field_type is FieldType.LENGTH:
-            yield f"{value / factor:.6f}"
-        else:
-            yield f"{value:g}" if isinstance(value, float) else _harmless(value)
+    yield from (_cell(name, values.get(name, ""), factor) for name in names)
+
+
+def _cell(name: str, value: FieldValue, factor: float) -> str:
+    """Return a value as the text of a cell; lengths are divided by ``factor``."""
+    if isinstance(value, bool):
+        return "1" if value else "0"
+    if isinstance(value, float) and _field(name).field_type is FieldType.LENGTH:
+        return f"{value / factor:.6f}"
+    return f"{value:g}" if isinstance(value, float) else _harmless(value)
 
 
 def _harmless(value: FieldValue) -> str:
     """Return the value as a text that a spreadsheet does not evaluate as a formula."""
     text = str(value)
     return f" {text}" if text[:1] in {"=", "+", "-", "@"} else text
-
-
-__all__ = ["FIELD_NAMES", "format_table", "read_tools"]

@@ -25,7 +25,10 @@ _SHAPES: tuple[tuple[str, str], ...] = (
     ("torus", "end-mill"),
 )
 """Kind of tool by the beginning of the name of a FreeCAD shape; the first match applies."""
-_LENGTHS: Mapping[str, str] = {"Diameter": "diameter", "CuttingEdgeLength": "length", "Pitch": "pitch"}
+_LENGTHS: Mapping[str, str] = {
+    **{"Diameter": "diameter", "CuttingEdgeLength": "length", "CuttingEdgeHeight": "length"},
+    "Pitch": "pitch",
+}
 _RADII = ("TipRadius", "FlatRadius", "TorusRadius", "CornerRadius")
 _QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([^\s\d]*)\s*")
 _UNITS_MM: Mapping[str, float] = {
@@ -149,7 +152,7 @@ def _read_parameters(parameters: JsonFields, kind: str) -> dict[str, FieldValue]
     values: dict[str, FieldValue] = {}
     if kind in ROUND_KINDS:
         for key, name in _LENGTHS.items():
-            values[name] = _read_quantity(parameters, key, _UNITS_MM)
+            values[name] = _read_quantity(parameters, key, _UNITS_MM) or values.get(name, 0.0)
         values["flutes"] = int(_read_quantity(parameters, "Flutes", {"": 1.0}))
         if kind in {"drill", "centre-drill"}:
             values["point"] = _read_quantity(parameters, "TipAngle", dict.fromkeys(_ANGLE_UNITS, 1.0))

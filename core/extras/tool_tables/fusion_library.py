@@ -53,6 +53,7 @@ _LENGTHS: Mapping[str, Mapping[str, str]] = {
 _UNITS = {"millimeters": "mm", "mm": "mm", "inches": "in", "in": "in"}
 _MEMBER = "tools.json"
 _MOST_TOOLS = 10_000
+_SAME_SIZE_MM = 0.05  # more than the difference between 1/64 in and 0.4 mm
 
 
 def unpack(name: str, data: bytes, max_bytes: int) -> bytes:
@@ -227,11 +228,20 @@ def _read_insert_code(geometry: JsonFields, shape: str, clearance: float, factor
 
 
 def _choose_insert(shape: str, code: str, recognized: str, values: dict[str, FieldValue]) -> list[str]:
-    """Set the insert to the code of the sizes or, without one, of the text; return notes."""
-    values["insert"] = code or recognized
+    """Set the insert to the code of the text or, if the sizes contradict it, of the sizes; return notes."""
+    values["insert"] = recognized or code
     if not code and not recognized and shape:
         return [Message("insert {shape}: its sizes have no ISO code; enter the insert", shape=shape[:20])]
-    if code and recognized and decode_insert_code(code) != decode_insert_code(recognized):
+    if code and recognized and not _is_same_insert(code, recognized):
+        values["insert"] = code
         text = "check the insert: {code} by its sizes, but {recognized} in the description"
         return [Message(text, code=code, recognized=recognized)]
     return []
+
+
+def _is_same_insert(one_code: str, other_code: str) -> bool:
+    """Return whether two codes differ at most by the rounding of inches."""
+    one, other = decode_insert_code(one_code), decode_insert_code(other_code)
+    sizes = ((one.inscribed_circle, other.inscribed_circle), (one.nose_radius, other.nose_radius))
+    letters = (one.shape, one.clearance_angle) == (other.shape, other.clearance_angle)
+    return letters and all(abs(a - b) <= _SAME_SIZE_MM for a, b in sizes)

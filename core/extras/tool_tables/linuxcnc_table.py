@@ -17,6 +17,10 @@ QUADRANT_BY_ORIENTATION = {1: 4, 2: 3, 3: 2, 4: 1, 5: 5, 6: 8, 7: 7, 8: 6, 9: 9}
 """TurnDesk tip quadrant by the LinuxCNC tool orientation Q."""
 ORIENTATION_BY_QUADRANT = {quadrant: orientation for orientation, quadrant in QUADRANT_BY_ORIENTATION.items()}
 
+EXPORTED_FIELDS = frozenset(
+    {"x", "z", "nose_radius", "quadrant", "remark", "diameter", "kind", "insert", "holder"}
+)
+"""Fields that a LinuxCNC table can contain; the kind, insert and holder are in the remark."""
 _LENGTHS = {"X": "x", "Z": "z", "D": DIAMETER_FIELD}
 _WORDS = frozenset("TPXYZABCUVWDIJQ")
 _UNUSED = frozenset("YABCUVW")  # axes that the lathe does not have; P, I and J have no equivalent either

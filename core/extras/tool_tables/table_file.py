@@ -6,12 +6,19 @@ The format name or the file suffix determines the format.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from core.extras.tool_tables import csv_table, freecad_tools, fusion_library, linuxcnc_table
-from core.extras.tool_tables.tool_entry import ReadingOptions, TableReader, ToolTable, ToolTableError
+from core.extras.tool_tables import csv_table, freecad_tools, fusion_export, fusion_library, linuxcnc_table
+from core.extras.tool_tables.tool_entry import (
+    TABLE_FIELDS,
+    ReadingOptions,
+    TableReader,
+    ToolEntry,
+    ToolTable,
+    ToolTableError,
+)
 from core.input_file import BYTES_PER_MB, TooLargeError, read_input_bytes
 from core.message import Message
 
@@ -24,21 +31,39 @@ class TableFormat(NamedTuple):
 
     The format has a name for users, file suffixes, and a function that reads the text of a table. If the
     file can be an archive, ``unpack`` returns the text in it; its parameters are the file name, the data and
-    the maximum number of bytes.
+    the maximum number of bytes. If the format can be written, ``exported_fields`` are the fields that it can
+    contain, and ``format_text`` returns the text of a table in a unit of ``MM_PER_UNIT``.
     """
 
     title: str
     suffixes: tuple[str, ...]
     read_text: Callable[[TableReader, str], None]
     unpack: Callable[[str, bytes, int], bytes] | None = None
+    exported_fields: frozenset[str] = frozenset()
+    format_text: Callable[[Iterable[ToolEntry], str], str] = csv_table.format_table
+    can_export: Callable[[ToolEntry], bool] = bool
 
 
 FORMATS: Mapping[str, TableFormat] = {
-    "linuxcnc": TableFormat("LinuxCNC tool table", (".tbl",), linuxcnc_table.read_tools),
+    "linuxcnc": TableFormat(
+        "LinuxCNC tool table",
+        (".tbl",),
+        linuxcnc_table.read_tools,
+        exported_fields=linuxcnc_table.EXPORTED_FIELDS,
+        format_text=linuxcnc_table.format_table,
+    ),
     "mach": TableFormat("Mach tool table", (".dat",), csv_table.read_tools),
-    "csv": TableFormat("CSV", (".csv", ".txt", ".tsv"), csv_table.read_tools),
+    "csv": TableFormat(
+        "CSV", (".csv", ".txt", ".tsv"), csv_table.read_tools, exported_fields=frozenset(TABLE_FIELDS)
+    ),
     "fusion": TableFormat(
-        "Fusion tool library", (".json", ".tools"), fusion_library.read_tools, fusion_library.unpack
+        "Fusion tool library",
+        (".json", ".tools"),
+        fusion_library.read_tools,
+        fusion_library.unpack,
+        fusion_export.EXPORTED_FIELDS,
+        fusion_export.format_library,
+        fusion_export.can_export,
     ),
     "freecad": TableFormat("FreeCAD tool bits", (".fctb", ".fctl"), freecad_tools.read_tools),
 }
