@@ -17,6 +17,7 @@ from pathlib import Path
 from core.message import CodedError, Message
 
 BYTES_PER_MB = 1024 * 1024
+_BYTES_PER_KB = 1024
 # Opening a pipe without a writer must not block. A terminal must not become the process's controlling
 # terminal.
 _FLAGS = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
@@ -75,9 +76,17 @@ def read_input_text(path: Path, max_bytes: int, encoding: str = "utf-8") -> str:
 def _too_large(path: Path, most: int) -> TooLargeError:
     return TooLargeError(
         errno.EINVAL,
-        Message("the file is larger than {most_bytes} MB", most_bytes=most // BYTES_PER_MB),
+        Message("the file is larger than {limit}", limit=format_file_size(most)),
         str(path),
     )
+
+
+def format_file_size(size_bytes: int) -> str:
+    """Return a size with its unit, such as 16 MB or 64 KB."""
+    for unit_bytes, unit in ((BYTES_PER_MB, "MB"), (_BYTES_PER_KB, "KB")):
+        if size_bytes >= unit_bytes:
+            return f"{size_bytes / unit_bytes:.4g} {unit}"
+    return f"{size_bytes} bytes"
 
 
 @contextmanager

@@ -10135,8 +10135,8 @@
     </message>
     <message>
       <location filename="app/extras/sharing/local_program_files.py" />
-      <source>the file is larger than {most_bytes} MB</source>
-      <translation>el archivo es mayor de {most_bytes} MB</translation>
+      <source>the file is larger than {limit}</source>
+      <translation>el archivo es mayor de {limit}</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/local_program_files.py" />

@@ -131,6 +131,25 @@ def test_file_size_is_limited(tmp_path: Path) -> None:
         read_input_bytes(path, 99)
 
 
+@pytest.mark.parametrize(
+    ("limit", "shown"),
+    [
+        (99, "99 bytes"),
+        (64 * 1024, "64 KB"),
+        (1536, "1.5 KB"),
+        (16 * 1024**2, "16 MB"),
+        (1_600_000, "1.526 MB"),
+    ],
+)
+def test_file_size_limit_is_reported_with_its_unit(tmp_path: Path, limit: int, shown: str) -> None:
+    path = tmp_path / "a"
+    with path.open("wb") as file:
+        file.truncate(limit + 1)
+    with pytest.raises(TooLargeError) as told:
+        read_input_bytes(path, limit)
+    assert told.value.strerror == f"the file is larger than {shown}"
+
+
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no files here whose size is not known")
 def test_file_that_reports_zero_size_is_also_limited() -> None:
     with pytest.raises(TooLargeError):

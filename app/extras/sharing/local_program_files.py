@@ -11,7 +11,7 @@ from pathlib import Path
 from app.desk.programs.program_folder import PROGRAM_EXTENSIONS
 from core.extras.sharing.shared_versions import make_program_key
 from core.extras.sharing.version_record import MAX_PROGRAM_BYTES
-from core.input_file import read_input_bytes
+from core.input_file import format_file_size, read_input_bytes
 from core.message import Message
 from core.store.program_records import check_program_name
 from core.store.store_errors import StoreError
@@ -96,7 +96,7 @@ def _why_not(name: str, size: int, *, twice: bool) -> str:
             "program only in upper and lower case: rename one of the programs"
         )
     if size > MAX_PROGRAM_BYTES:
-        return Message("the file is larger than {most_bytes} MB", most_bytes=MAX_PROGRAM_BYTES // 2**20)
+        return Message("the file is larger than {limit}", limit=format_file_size(MAX_PROGRAM_BYTES))
     try:
         check_program_name(name)
     except StoreError as error:
