@@ -199,7 +199,10 @@ def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
     Raises QualityError if a sample does not have 2 to 10 values, if a value is not finite, or if there are
     fewer than 2 samples.
     """
-    table = np.asarray(samples, dtype=np.float64)
+    try:
+        table = np.asarray(samples, dtype=np.float64)
+    except ValueError:  # rows of different lengths
+        table = np.empty(0)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
         raise QualityError(
             "the samples of an X-bar chart must all have the same size, 2 to 10 values", "sample-size"

@@ -91,6 +91,9 @@ def test_invalid_values_or_sample_size_are_rejected(values: list[float], size: i
         make_charts(values, size)
 
 
-def test_ragged_samples_are_rejected() -> None:
+@pytest.mark.parametrize(
+    "samples", [[1, 2, 3], [[1.0, 2.0], [1.0]], [[], []], [[1.0], [2.0]], [list(range(11))]]
+)
+def test_samples_without_one_size_of_2_to_10_are_rejected(samples: list[object]) -> None:
     with raises_code(QualityError, "sample-size"):
-        make_xbar_r_charts([1, 2, 3])
+        make_xbar_r_charts(samples)  # type: ignore[arg-type]
