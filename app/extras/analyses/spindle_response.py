@@ -82,7 +82,8 @@ def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> Spindle
     groups = np.split(changes, np.flatnonzero(np.diff(times[changes]) > _ONE) + 1) if len(changes) else []
     for number in reversed(range(len(groups))):
         first, last = int(groups[number][0]), int(groups[number][-1]) + 1
-        speed_change_rpm, band = abs(asked[last] - asked[first]), model.at_speed * abs(asked[last])
+        # Each tolerance band is analyzed, so the change must exceed the widest one.
+        speed_change_rpm, band = abs(asked[last] - asked[first]), max(_shares(model)) * abs(asked[last])
         if abs(asked[last]) <= _CHANGE or speed_change_rpm <= 2.0 * band:
             continue
         end = float(times[groups[number + 1][0]]) if number + 1 < len(groups) else np.inf

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -67,6 +68,16 @@ def test_last_acceleration_of_several_is_used_and_stops_are_ignored() -> None:
     response = found(turned((1.0, 1000.0), (4.0, 2000.0), (8.0, 0.0)))
     assert (response.commanded_rpm[0], response.commanded_rpm[-1]) == (1000.0, 2000.0)
     assert response.step_responses[0].step_size_mm == 1000.0
+
+
+def test_change_within_a_fixed_band_does_not_hide_the_run_up_before_it() -> None:
+    """With a band of 1 %, 30 rpm exceed twice the band, 20.6 rpm, but not twice the band of 2 %, 41.2 rpm."""
+    record = turned((1.0, 1000.0), (5.0, 1030.0))
+    response = find_last_run_up(record, replace(MODEL, at_speed=0.01))
+    assert [step.step_size_mm for step in response.step_responses] == [1000.0] * 3
+    record = turned((1.0, 1000.0), (5.0, 1060.0))  # more than 4 %
+    response = find_last_run_up(record, replace(MODEL, at_speed=0.01))
+    assert [step.step_size_mm for step in response.step_responses] == [60.0] * 3
 
 
 def test_reverse_speed_is_also_analyzed() -> None:
