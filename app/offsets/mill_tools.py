@@ -13,7 +13,7 @@ from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.production.tool_life import ToolLifeState
 from core.store.store_rows import (
-    MAX_TOOL_LIFE_MIN,
+    MAX_TOOL_LIFE_MINUTES,
     MILL_TOOL_NUMBERS,
     FieldType,
     FieldValue,
@@ -22,7 +22,7 @@ from core.store.store_rows import (
 )
 
 CUTTING_TIME_FIELD = "used"  # The column of the cutting time, which is counted and is not part of the row.
-_USED_FIELD = RowField("CUR.TIME", 0.0, MAX_TOOL_LIFE_MIN, FieldType.MINUTES, name=CUTTING_TIME_FIELD)
+_USED_FIELD = RowField("CUR.TIME", 0.0, MAX_TOOL_LIFE_MINUTES, FieldType.MINUTES, name=CUTTING_TIME_FIELD)
 _LIFE_TONES = {ToolLifeState.WARNING: Tone.PAUSE, ToolLifeState.USED_UP: Tone.ALARM}
 
 

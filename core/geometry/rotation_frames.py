@@ -18,7 +18,7 @@ X_AXIS: Vector = (1.0, 0.0, 0.0)
 Y_AXIS: Vector = (0.0, 1.0, 0.0)
 Z_AXIS: Vector = (0.0, 0.0, 1.0)
 
-MIN_DISTANCE_MM = 1e-6  # mm; closer points do not define a direction
+MIN_VECTOR_LENGTH = 1e-6  # mm, or without a unit; a shorter vector does not define a direction
 MIN_SINE = 1e-6  # sine of the angle at the first point, below which three points do not define a plane
 
 _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
@@ -109,9 +109,9 @@ def make_frame_from_points(first: Vector, second: Vector, third: Vector) -> Matr
     """
     u, v = subtract_vectors(second, first), subtract_vectors(third, first)
     along, aside = math.hypot(*u), math.hypot(*v)
-    if along < MIN_DISTANCE_MM:
+    if along < MIN_VECTOR_LENGTH:
         raise InvalidFrameError("the first and second points are the same", "first-and-second-point-equal")
-    if aside < MIN_DISTANCE_MM:
+    if aside < MIN_VECTOR_LENGTH:
         raise InvalidFrameError("the first and third points are the same", "first-and-third-point-equal")
     x = scale_vector(u, 1.0 / along)
     normal = cross_product(x, scale_vector(v, 1.0 / aside))
@@ -142,7 +142,7 @@ def make_frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
     Raises InvalidFrameError if a vector has no length or if the vectors are parallel.
     """
     long, wide = math.hypot(*normal), math.hypot(*base)
-    if long < MIN_DISTANCE_MM or wide < MIN_DISTANCE_MM:
+    if long < MIN_VECTOR_LENGTH or wide < MIN_VECTOR_LENGTH:
         raise InvalidFrameError("a vector has zero length", "vector-without-length")
     z = scale_vector(normal, 1.0 / long)
     y = cross_product(z, scale_vector(base, 1.0 / wide))

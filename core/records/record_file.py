@@ -142,8 +142,8 @@ def _check_size(data: io.BytesIO) -> None:
     if size > MAX_RECORD_BYTES:
         raise InconsistentRecordError(
             Message(
-                "the uncompressed file is larger than {most_bytes} MB",
-                most_bytes=MAX_RECORD_BYTES // BYTES_PER_MB,
+                "the uncompressed file is larger than {limit_mb} MB",
+                limit_mb=MAX_RECORD_BYTES // BYTES_PER_MB,
             )
         )
 

@@ -45,7 +45,7 @@ TABLES_BY_FILE_NAME = {  # complete tables of measured parts and mills, in mm an
 }
 MILL_FILE_NAMES = {OffsetKind.MILL_TOOL: "mill_tools.csv", OffsetKind.PRESET: "presets.csv"}
 _ALL = 2**62
-_LARGEST = 64 * BYTES_PER_MB  # limit for one table or program
+_MAX_FILE_BYTES = 64 * BYTES_PER_MB  # limit for one table or program
 
 
 def export_store(store: Store, folder: Path) -> int:
@@ -176,7 +176,7 @@ def _rows(path: Path, kind: OffsetKind) -> dict[int, dict[str, FieldValue]]:
     if not path.exists():
         return {}
     try:
-        text = read_input_bytes(path, _LARGEST).decode("utf-8")
+        text = read_input_bytes(path, _MAX_FILE_BYTES).decode("utf-8")
         table = list(csv.DictReader(io.StringIO(text, newline="")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise StoreError(
@@ -234,7 +234,10 @@ def read_exported_programs(folder: Path) -> dict[str, bytes]:
     MB.
     """
     try:
-        return {path.name: read_input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
+        return {
+            path.name: read_input_bytes(path, _MAX_FILE_BYTES)
+            for path in sorted((folder / PROGRAMS).iterdir())
+        }
     except OSError as error:
         raise StoreError(
             Message(

@@ -26,7 +26,7 @@ MAX_OUTLINE_LENGTH = 600  # characters
 ZERO_OFFSET_LIMIT_MM = 5000.0  # mm, more than the travel of any such lathe
 MILL_TOOL_LIMIT_MM = 1000.0  # mm, more than the length or diameter of any mill tool
 OVERSIZE_LIMIT_MM = 99.999  # mm, as in TOOL CALL
-MAX_TOOL_LIFE_MIN = 100_000.0  # minutes
+MAX_TOOL_LIFE_MINUTES = 100_000.0  # minutes
 ANGLE_LIMIT_DEG = 360.0  # degrees; larger angles repeat the same positions
 TOOL_KINDS = (
     *("turning", "boring", "grooving", "parting", "threading", "drill"),
@@ -233,7 +233,7 @@ class MillRow(NamedTuple):
     dr2: Annotated[float, _reach("DR2", OVERSIZE_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
     teeth: Annotated[int, RowField("CUT", 0, 99, FieldType.INTEGER)] = 0
     point: Annotated[float, RowField("T-ANGLE", 0.0, 180.0, FieldType.ANGLE)] = 0.0
-    life: Annotated[float, RowField("TIME2", 0.0, MAX_TOOL_LIFE_MIN, FieldType.MINUTES)] = 0.0
+    life: Annotated[float, RowField("TIME2", 0.0, MAX_TOOL_LIFE_MINUTES, FieldType.MINUTES)] = 0.0
     stops: Annotated[bool, RowField("STOP", 0, 1, FieldType.BOOLEAN)] = False
 
 

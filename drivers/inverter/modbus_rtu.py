@@ -204,14 +204,14 @@ class ModbusMaster:
                     raise
         raise NoResponseError("the inverter's responses do not match the requests")
 
-    def _send_write(self, pdu: bytes, tries: int, yields_to_stop: bool) -> None:
+    def _send_write(self, pdu: bytes, tries: int, is_canceled_by_stop: bool) -> None:
         """Send a write request, and check its response.
 
         The response must repeat the address and the value or count of the request.
         """
         for left in reversed(range(tries)):
             try:
-                if self._once(pdu, yields_to_stop)[1:6] == pdu[:5]:
+                if self._once(pdu, is_canceled_by_stop)[1:6] == pdu[:5]:
                     return
                 self._failed()
             except NoResponseError:

@@ -18,7 +18,7 @@ from drivers.simulators.plant_config import SimAxis
 
 # Lowest speed in mm/s and fraction of the rapid between which an axis is assumed to cut.
 _FEEDS, _CUTS = 0.05, 0.25
-_SETTLED_MM = 1e-4  # Mm or degrees; an axis closer than this and almost at rest is set to its setpoint.
+_SETTLED_DISTANCE = 1e-4  # Mm or degrees; an axis closer than this and almost at rest is set to its setpoint.
 
 
 class SimulatedServo:
@@ -192,7 +192,10 @@ class SimulatedServo:
         """Settle the axis at ``position`` if it is almost there, and return whether it is at rest."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
-        if abs(self._encoder_reading() - position) < _SETTLED_MM and abs(self.v) < _SETTLED_MM * self._wn:
+        if (
+            abs(self._encoder_reading() - position) < _SETTLED_DISTANCE
+            and abs(self.v) < _SETTLED_DISTANCE * self._wn
+        ):
             self.p = self.p if self.worn.has_encoder_error else position
             self.v = self.over = self.load = 0.0
             return True

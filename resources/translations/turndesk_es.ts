@@ -19120,8 +19120,8 @@
     </message>
     <message>
       <location filename="core/extras/drawings/drawing_file.py" />
-      <source>{path} is larger than {most_bytes} MB. Save only the contour of the part.</source>
-      <translation>{path} tiene más de {most_bytes} MB. Guarde solo el contorno de la pieza.</translation>
+      <source>{path} is larger than {limit_mb} MB. Save only the contour of the part.</source>
+      <translation>{path} tiene más de {limit_mb} MB. Guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/drawing_file.py" />
@@ -23805,8 +23805,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
-      <source>(~{name}) needs the tool on the negative X side, but X is {pixels}.</source>
-      <translation>(~{name}) necesita la herramienta en el lado X negativo, pero X es {pixels}.</translation>
+      <source>(~{name}) needs the tool on the negative X side, but X is {x}.</source>
+      <translation>(~{name}) necesita la herramienta en el lado X negativo, pero X es {x}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
@@ -31795,8 +31795,8 @@
     </message>
     <message>
       <location filename="core/records/record_file.py" />
-      <source>the uncompressed file is larger than {most_bytes} MB</source>
-      <translation>el archivo descomprimido es mayor de {most_bytes} MB</translation>
+      <source>the uncompressed file is larger than {limit_mb} MB</source>
+      <translation>el archivo descomprimido es mayor de {limit_mb} MB</translation>
     </message>
     <message>
       <location filename="core/records/record_file.py" />

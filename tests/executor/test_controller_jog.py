@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN_MM, JogLine
+from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, JogLine
 from core.executor.hand_motion.jogging import BlockJogger, Jogger, create_jogger
 from core.executor.machine_context import MachineContext
 from tests.executor.played_controller import PlayedController, context_of
@@ -52,7 +52,7 @@ def test_jog_command_carries_reduced_travel_and_lease_of_at_most_1_s() -> None:
     jogger, context = jogger_on(controller)
     low, high = context.machine.find_axis("X").travel or (0.0, 0.0)
     assert jogger.start_or_renew_jog("X", -5.0, 7.0)
-    assert controller.jogged == [("X", -5.0, 1.0, (low + SOFT_LIMIT_MARGIN_MM, high - SOFT_LIMIT_MARGIN_MM))]
+    assert controller.jogged == [("X", -5.0, 1.0, (low + SOFT_LIMIT_MARGIN, high - SOFT_LIMIT_MARGIN))]
     assert jogger.axis_name == "X"
 
 
@@ -186,7 +186,7 @@ def test_three_axis_jog_is_limited_by_first_end_and_weakest_axis() -> None:
     x, z, y = three_axes().machine.axes
     axes = (
         dataclasses.replace(x, travel=(-100.0, 100.0), max_acceleration=3000.0),
-        dataclasses.replace(z, travel=(-100.0, 8.0 + SOFT_LIMIT_MARGIN_MM), max_acceleration=800.0),
+        dataclasses.replace(z, travel=(-100.0, 8.0 + SOFT_LIMIT_MARGIN), max_acceleration=800.0),
         dataclasses.replace(y, travel=(0.0, 0.0)),
     )
     line = JogLine.from_direction(axes, (0.6, 1e-12, 0.8))

@@ -341,7 +341,7 @@ class ReadingsSection(QualitySection):
         try:
             found = make_proposal(self.parts_data, feature, self.control_unit)
             if found.reason:
-                mean = format_size(found.mean_deviation_mm, self.control_unit)
+                mean = format_size(found.mean_size_mm, self.control_unit)
                 self.desk.say(f"{feature.name} {mean}: {tr(found.reason)}")
                 return
             change = make_correction(found, self.desk, self.control_unit)

@@ -130,7 +130,7 @@ def make_correction_plot(
     last, first = parts[-1], parts[-min(proposal.reading_count, len(parts))]
     now = PlotCurve(
         np.array([first, last]),
-        np.full(2, proposal.mean_deviation_mm / unit_mm),
+        np.full(2, proposal.mean_size_mm / unit_mm),
         1,
         has_dots=False,
         name=names[0],

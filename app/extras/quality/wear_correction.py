@@ -82,7 +82,7 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueM
         Message(
             "{name} measured: the mean of {count} readings is {mean}, offset change {change}",
             name=feature.name,
-            mean=format_size(proposal.mean_deviation_mm, value_mode),
+            mean=format_size(proposal.mean_size_mm, value_mode),
             count=proposal.reading_count,
             change=change,
         )
@@ -100,7 +100,7 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueM
             offset=feature.corrected_by,
             change=change,
             feature=feature.name,
-            old=format_size(proposal.mean_deviation_mm, value_mode),
+            old=format_size(proposal.mean_size_mm, value_mode),
             new=format_size(proposal.expected_size_mm, value_mode),
         )
     )
@@ -224,7 +224,7 @@ class CorrectionPreview:
             return ChartDrawing()
         of = (self.question, self._readings, value_mode)
         if self._drawn[0] != of:
-            change = format_deviation(found.expected_size_mm - found.mean_deviation_mm, value_mode)
+            change = format_deviation(found.expected_size_mm - found.mean_size_mm, value_mode)
             title = tr(Message("{name}: {change} FROM NEXT PART", name=found.feature.name, change=change))
             newest = self._readings[-CHART_READING_COUNT:]
             plot = make_correction_plot(newest, found, title, (tr("NOW"), tr("AFTER")), value_mode.unit_mm)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from core.executor.commands import SelectHandwheel
-from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN_MM, Ramp
+from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, Ramp
 from core.executor.hand_motion.jog_ramps import plan_stop_at_distance
 from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, make_travel_end_message
 from core.executor.machine_context import MachineContext
@@ -223,7 +223,7 @@ class Handwheel:
         if axis.travel is None or not self._context.axis_sample.homed[index]:
             return wanted
         here = self._context.axis_sample.demand[index]
-        low, high = axis.travel[0] + SOFT_LIMIT_MARGIN_MM, axis.travel[1] - SOFT_LIMIT_MARGIN_MM
+        low, high = axis.travel[0] + SOFT_LIMIT_MARGIN, axis.travel[1] - SOFT_LIMIT_MARGIN
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
             self._refuse_once(make_travel_end_message(axis.name, wanted - allowed))

@@ -19,7 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 Ramp = tuple[float, float, float]  # seconds, speed at its start, acceleration
 Direction = tuple[float, float, float]  # unit vector in the machine's X, Y and Z
 
-SOFT_LIMIT_MARGIN_MM = 0.01  # mm or degrees of clearance to the soft limit
+SOFT_LIMIT_MARGIN = 0.01  # mm or degrees of clearance to the soft limit
 _UNIT_TOLERANCE = 1e-6  # tolerance of the length of a direction
 _MIN_SHARE = 1e-9  # share below which an axis does not move
 
@@ -29,7 +29,7 @@ def get_distance_to_limit(axis: Axis, position: float, direction: float) -> floa
     if axis.travel is None:
         return math.inf
     low, high = axis.travel
-    left = (high - position if direction > 0.0 else position - low) - SOFT_LIMIT_MARGIN_MM
+    left = (high - position if direction > 0.0 else position - low) - SOFT_LIMIT_MARGIN
     return left if left > axis.count_size else 0.0
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from core.block_ports import BlockController
 from core.executor.hand_motion.jog_line import (
-    SOFT_LIMIT_MARGIN_MM,
+    SOFT_LIMIT_MARGIN,
     Direction,
     FloatArray,
     JogLine,
@@ -423,7 +423,7 @@ class BlockJogger(Jogger):
         axis = self._context.machine.axes[index]
         limits = axis.travel if self._context.axis_sample.homed[index] else None
         if limits is not None:
-            limits = limits[0] + SOFT_LIMIT_MARGIN_MM, limits[1] - SOFT_LIMIT_MARGIN_MM
+            limits = limits[0] + SOFT_LIMIT_MARGIN, limits[1] - SOFT_LIMIT_MARGIN
         moves = self._sink.start_jog(name, math.copysign(top, velocity), min(lease_s, MAX_LEASE_S), limits)
         if moves:
             self._axis = index

@@ -46,9 +46,9 @@ def read_drawing(path: Path) -> Drawing:
 def _unreadable(path: Path, error: Exception) -> DrawingError:
     if isinstance(error, TooLargeError):
         words = Message(
-            "{path} is larger than {most_bytes} MB. Save only the contour of the part.",
+            "{path} is larger than {limit_mb} MB. Save only the contour of the part.",
             path=path.name,
-            most_bytes=MAX_DRAWING_BYTES // BYTES_PER_MB,
+            limit_mb=MAX_DRAWING_BYTES // BYTES_PER_MB,
         )
         return DrawingError(words, "too-large")
     if isinstance(error, OSError) and error.errno is not None:

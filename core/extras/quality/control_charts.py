@@ -144,7 +144,7 @@ class ControlChart:
     upper_limit: float
 
     @property
-    def standard_deviation_mm(self) -> float:
+    def standard_deviation(self) -> float:
         """Return the standard deviation that corresponds to the limits.
 
         The result is 0 if the points do not vary.
@@ -271,13 +271,10 @@ class RuleViolation(NamedTuple):
 
 
 def find_rule_violations(chart: ControlChart) -> tuple[RuleViolation, ...]:
-    """Return the violations of all chart rules, in the order of the points.
-
-    The result is empty if the points do not vary.
-    """
-    if chart.standard_deviation_mm <= 0.0 or not len(chart.point_values):
+    """Return the violations of all rules, sorted by point, or () if the points do not vary."""
+    if chart.standard_deviation <= 0.0 or not len(chart.point_values):
         return ()
-    zones = (chart.point_values - chart.center_line) / chart.standard_deviation_mm
+    zones = (chart.point_values - chart.center_line) / chart.standard_deviation
     found = [
         RuleViolation(point, number, words)
         for number, (words, rule) in CONTROL_RULES.items()

@@ -191,7 +191,7 @@ class CorrectionProposal:
 
     feature: MeasuredFeature
     reading_count: int  # number of readings used
-    mean_deviation_mm: float
+    mean_size_mm: float
     change_mm: float
     offset_change_mm: float  # the change of the offset, X as a radius
     expected_size_mm: float  # expected size of parts with the correction

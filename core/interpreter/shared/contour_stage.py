@@ -359,5 +359,5 @@ class ContourStage(ABC):
         """
 
     @abstractmethod
-    def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
+    def _make_gouge_error(self, block: Block, reason: str) -> ProgramError:
         """Return the error for a move along which the nose would gouge the contour."""

@@ -76,7 +76,7 @@ def test_only_the_newest_readings_are_averaged() -> None:
     sizes = inches(0.52 - 0.018, 0.502, 0.5002, 0.5003, 0.5004, 0.5005, 0.5006)
     found = propose_correction(SPIGOT, sizes, TENTH, FULL)
     assert found.reading_count == 5
-    assert found.mean_deviation_mm == pytest.approx(0.5004 * IN)
+    assert found.mean_size_mm == pytest.approx(0.5004 * IN)
 
 
 def test_deviation_within_the_dead_band_is_not_corrected() -> None:

@@ -189,12 +189,12 @@ class _Contour(ContourStage):
             raise lead.make_error("", text, "Move off the part in a straight line.")
         lead.check_path(departure_path, departure_path.end, (block.x0, block.z0), self._log)
 
-    def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
+    def _make_gouge_error(self, block: Block, reason: str) -> ProgramError:
         text = Message(
             "{name} with a nose radius of {nose} cannot compensate this move: {why}.",
             name=self._mark.name,
             nose=block.modal.format_length(self.nose_radius_mm),
-            why=code_suffix,
+            why=reason,
         )
         return _refused(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
 

@@ -207,9 +207,9 @@ def _enter(state: State, statement: Statement, name: str) -> None:
     check_conditions(state, statement, FLOW_CODES[f"~{name}"])
     if state.px > -_SAME:
         text = Message(
-            "(~{name}) needs the tool on the negative X side, but X is {pixels}.",
+            "(~{name}) needs the tool on the negative X side, but X is {x}.",
             name=name,
-            pixels=state.modal.format_length(state.px),
+            x=state.modal.format_length(state.px),
         )
         raise make_plane_error(statement, "plane-side", text, "Move to negative X before this line.")
     if name == "PLXC":

@@ -300,11 +300,11 @@ class _Contour(ContourStage):
     def _centre(self, tip: Point) -> Point:
         return tip[0] - self.tip_offset[0], tip[1] - self.tip_offset[1]
 
-    def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
+    def _make_gouge_error(self, block: Block, reason: str) -> ProgramError:
         text = Message(
             "a nose radius of {radius} mm does not fit this contour: {why}.",
             radius=f"{self.nose_radius_mm:g}",
-            why=code_suffix,
+            why=reason,
         )
         return _fault(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
 
