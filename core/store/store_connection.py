@@ -66,9 +66,17 @@ def _damaged() -> sqlite3.DatabaseError:
 
 
 def has_write_ahead_log(path: Path) -> bool:
-    """Return whether the write-ahead log of the store exists and is not empty."""
+    """Return whether the write-ahead log of the store exists and is not empty.
+
+    Raises StoreError if the system reports another error than a missing file.
+    """
     log, _ = get_log_and_index_paths(path)
-    return log.exists() and log.stat().st_size > 0
+    try:
+        return log.stat().st_size > 0
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        raise why(log, error) from error
 
 
 def configure_connection(connection: sqlite3.Connection) -> sqlite3.Connection:

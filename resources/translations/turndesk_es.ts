@@ -32140,8 +32140,8 @@
     </message>
     <message>
       <location filename="core/store/log_damage.py" />
-      <source>the index of the log is too short</source>
-      <translation>el índice del registro es demasiado corto</translation>
+      <source>the index of its log is incomplete</source>
+      <translation>el índice de su bitácora está incompleto</translation>
     </message>
     <message>
       <location filename="core/store/log_damage.py" />
