@@ -113,6 +113,18 @@ def test_every_line_is_written_as_it_is_read() -> None:
         assert format_block(again) == format_block(line)
 
 
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("TOOL CALL 5 Z S(VC = 120) F500 DR2:+0.1 DR-0.5", "TOOL CALL 5 Z F500 DR-0.5 DR2:+0.1 S(VC = 120)"),
+        ("TOOL CALL Q5 Z S900 FU0.1 DL+Q1 DR2-0.05", "TOOL CALL Q5 Z S900 FU0.1 DL+Q1 DR2:-0.05"),
+    ],
+)
+def test_all_words_of_a_tool_call_are_written(text: str, written: str) -> None:
+    assert format_block(parse_line(1, text)) == written
+    assert format_block(parse_line(1, written)) == written
+
+
 # --- flow ------------------------------------------------------------------------------------------------
 
 

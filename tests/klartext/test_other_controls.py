@@ -46,6 +46,8 @@ def test_ln_moves_to_its_point_without_compensation() -> None:
     ("text", "setup"),
     [
         ("TOOL CALL 5 Z S2000 F500 DR+0.1\nLN X+3 NX+0 NY+0 NZ+1", {}),
+        ("TOOL CALL 5 Z S2000 F500 DR2:+0.1\nLN X+3 NX+0 NY+0 NZ+1", {}),
+        ("TOOL CALL DR2+0.1\nLN X+3 NX+0 NY+0 NZ+1", {}),
         ("LN X+3 NX+0 NY+0 NZ+1", {"mill_tools": {5: MillTool(0.0, 4.0, delta_corner_radius=0.02)}}),
         ("LN X+3 NX+0 NY+0 NZ+1 RL", {}),
         ("LN X+3 NX+0 NY+0 NZ+1 TX+0 TY+0 TZ+1", {}),

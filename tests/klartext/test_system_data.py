@@ -43,7 +43,7 @@ def test_lengths_are_in_the_unit_of_the_program() -> None:
     assert read("ID50 NR15", unit="INCH") == 4.0
 
 
-CALL = "TOOL CALL 1 Z S1200 F600 DL+1 DR-0.5\nL X+7 Y+0 Z+50 R0 FMAX M3"
+CALL = "TOOL CALL 1 Z S1200 F600 DL+1 DR-0.5 DR2:+0.25\nL X+7 Y+0 Z+50 R0 FMAX M3"
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ CALL = "TOOL CALL 1 Z S1200 F600 DL+1 DR-0.5\nL X+7 Y+0 Z+50 R0 FMAX M3"
         ("ID35 NR1", 0.0), ("ID60 NR3", 1200.0), ("ID60 NR4", 1.0), ("ID60 NR5", -0.5),
         ("ID200 NR1 IDX1", 5.0), ("ID200 NR1 IDX2", 4.98), ("ID200 NR1 IDX3", 4.48),
         ("ID200 NR2 IDX3", 101.1), ("ID210 NR6", 0.0), ("ID280 NR1", 0.0), ("ID230 NR5", 0.0),
-        ("ID270 NR1 IDX1", 7.0), ("ID270 NR1 IDX6", 0.0),
+        ("ID270 NR1 IDX1", 7.0), ("ID270 NR1 IDX6", 0.0), ("ID60 NR7", 0.25),
     ],
 )  # fmt: skip
 def test_sysread_reads_values_of_tool_call(place: str, value: float) -> None:

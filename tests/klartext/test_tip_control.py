@@ -84,7 +84,8 @@ def test_tool_call_with_speed_or_feed_is_accepted_under_m128(call: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "call", ["TOOL CALL 2", "TOOL CALL 1 Z S100", "TOOL CALL DL+0.1", "TOOL CALL S100 DR-0.1"]
+    "call",
+    ["TOOL CALL 2", "TOOL CALL 1 Z S100", "TOOL CALL DL+0.1", "TOOL CALL S100 DR-0.1", "TOOL CALL DR2:+0.1"],
 )
 def test_tool_call_with_tool_or_oversize_is_rejected_under_m128(call: str) -> None:
     assert run(f"L Z+50 R0 FMAX M3\nL M128\n{call}").codes == ["Not permitted with M128"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from core.geometry.rotary_axes import FrameTransform, Kinematics, RotaryAxis
 from core.geometry.rotation_frames import (
@@ -49,6 +50,14 @@ class ActivePlane:
     frame: Matrix
     target_angles: Mapping[str, float]
     line_number: int
+
+
+class ToolDeltas(NamedTuple):
+    """The oversizes DL, DR and DR2 of a TOOL CALL, in mm."""
+
+    length: float = 0.0
+    radius: float = 0.0
+    corner_radius: float = 0.0
 
 
 LINEAR_AXES = "XYZ"
@@ -111,7 +120,7 @@ class State:
         self.pole_plane: AxisOrder = XY_ORDER
         self.rotation_direction = ""  # active DR, + or -
         self.tool_radius_mm = 0.0
-        self.tool_deltas_mm = (0.0, 0.0)  # DL and DR of the last TOOL CALL, mm
+        self.tool_deltas_mm = ToolDeltas()  # of the last TOOL CALL
         self.tool_definitions: dict[int | str, tuple[float, float]] = {}  # length and radius of TOOL DEF, mm
         # values of FN 17 by tool and column, which FN 18 returns
         self.system_written_values: dict[tuple[int, int], float] = {}

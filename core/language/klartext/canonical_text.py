@@ -69,11 +69,19 @@ def _path(node: nodes.PathFunction) -> str:
 
 
 def _tool_call(node: nodes.ToolCall) -> str:
-    words = (("S", node.speed), (f"F{node.feed_base}", node.feed), ("DL", node.length), ("DR", node.radius))
+    words = (
+        ("S", node.speed),
+        (f"F{node.feed_base}", node.feed),
+        ("DL", node.length),
+        ("DR", node.radius),
+        ("DR2:", node.corner_radius),
+    )
     tool = _value(node.tool, plus=False) if isinstance(node.tool, klartext_words.Value) else ""
     if isinstance(node.tool, (int, str)):
         tool = format_name(node.tool)
     shown = [f"{word}{_value(value, plus=word[0] == 'D')}" for word, value in words if value is not None]
+    if node.cutting_speed is not None:
+        shown.append(f"S(VC = {_value(node.cutting_speed, plus=False)})")
     return _joined("TOOL CALL", tool, node.tool_axis, *shown)
 
 

@@ -62,6 +62,7 @@ class ToolCall:
     feed: Value | None = None
     length: Value | None = None  # DL
     radius: Value | None = None  # DR
+    corner_radius: Value | None = None  # DR2
     column: int = 0  # of the tool
     feed_base: str = ""  # U or Z of FU and FZ
     cutting_speed: Value | None = None  # S(VC = 120), m/min

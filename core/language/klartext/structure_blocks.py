@@ -142,7 +142,7 @@ def _demand_all(cursor: LineCursor, corner: tuple[AxisWord, ...]) -> None:
 
 
 def read_tool_call(cursor: LineCursor) -> ToolCall:
-    """Read the words after ``TOOL CALL``: the tool, the tool axis, S, F (FU, FZ), DL and DR."""
+    """Read the words after ``TOOL CALL``: the tool, the tool axis, S, F (FU, FZ), DL, DR and DR2."""
     column = cursor.column
     tool: int | str | Value | None = None
     _check_no_index(cursor)
@@ -171,8 +171,8 @@ def read_tool_call(cursor: LineCursor) -> ToolCall:
         name, per = match.group(1), match.group(2) or per
         check_not_repeated(cursor, at, name in words, name)
         words[name] = cursor.read_value(name)
-    length, radius = words.get("DL"), words.get("DR")
-    return ToolCall(tool, axis, words.get("S"), words.get("F"), length, radius, column, per, words.get("VC"))
+    deltas = words.get("DL"), words.get("DR"), words.get("DR2")
+    return ToolCall(tool, axis, words.get("S"), words.get("F"), *deltas, column, per, words.get("VC"))
 
 
 def _check_no_index(cursor: LineCursor) -> None:

@@ -224,8 +224,8 @@ def _row(state: State, tool: int) -> MillTool | None:
     if row is not None:
         return row
     if tool == state.modal.tool:  # a tool with only an offset, or with a name in TOOL DEF
-        longer, thicker = state.tool_deltas_mm
-        return MillTool(state.tool_length_mm - longer, state.tool_radius_mm - thicker)
+        off = state.tool_deltas_mm
+        return MillTool(state.tool_length_mm - off.length, state.tool_radius_mm - off.radius)
     offset = state.setup.tools.get(tool)
     return None if offset is None else MillTool(offset.z, offset.nose_radius)
 
@@ -288,8 +288,9 @@ _PLAIN: Mapping[tuple[int, int], Callable[[State, int], float]] = {
     (60, 1): lambda state, _: float(state.modal.tool),
     (60, 2): lambda _state, _: 2.0,
     (60, 3): lambda state, _: state.modal.rpm,
-    (60, 4): lambda state, _: state.tool_deltas_mm[0] / state.mm_per_unit,
-    (60, 5): lambda state, _: state.tool_deltas_mm[1] / state.mm_per_unit,
+    (60, 4): lambda state, _: state.tool_deltas_mm.length / state.mm_per_unit,
+    (60, 5): lambda state, _: state.tool_deltas_mm.radius / state.mm_per_unit,
+    (60, 7): lambda state, _: state.tool_deltas_mm.corner_radius / state.mm_per_unit,
     (210, 1): lambda state, _: state.kinematics.basic_rotation_deg,
     (210, 2): lambda state, _: state.transformation.rotation_deg,
     (210, 3): lambda state, _: float(
@@ -332,8 +333,8 @@ def _compensation(state: State, number: int, index: int) -> float:
     """
     row = _row(state, state.modal.tool) or MillTool()
     plain, off, called = {
-        1: (row.radius, row.delta_radius, state.tool_deltas_mm[1]),
-        2: (row.length, row.delta_length, state.tool_deltas_mm[0]),
-        3: (row.corner_radius, row.delta_corner_radius, 0.0),
+        1: (row.radius, row.delta_radius, state.tool_deltas_mm.radius),
+        2: (row.length, row.delta_length, state.tool_deltas_mm.length),
+        3: (row.corner_radius, row.delta_corner_radius, state.tool_deltas_mm.corner_radius),
     }[number]
     return plain + (off if index > 1 else 0.0) + (called if index > 2 else 0.0)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from core.interpreter.klartext.flow import word_values
-from core.interpreter.klartext.klartext_state import State
+from core.interpreter.klartext.klartext_state import State, ToolDeltas
 from core.interpreter.klartext.motion.feed_rates import MAX_FEED, REVOLUTION
 from core.interpreter.shared.actions import ProgramStop, SpindleRun, SpindleStop, ToolChange
 from core.interpreter.shared.elementary_blocks import Block
@@ -30,8 +30,9 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
     The axes do not move, but the tip position changes with the new tool length. If ProgramError is raised,
     the state has not changed.
     """
-    changes = node.tool is not None or node.length is not None or node.radius is not None
-    if state.is_tcpm_active and changes:
+    words = {"DL": node.length, "DR": node.radius, "DR2": node.corner_radius}
+    has_deltas = any(word is not None for word in words.values())
+    if state.is_tcpm_active and (node.tool is not None or has_deltas):
         text = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
         raise state.make_error(1, NOT_ALLOWED_WITH_M128, text, "Switch M128 off with M129 before this block.")
     if node.tool_axis not in {"", "Z"}:
@@ -41,7 +42,7 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
     number = _number(state, node.tool, node.column)
     rpm = _speed(state, node, number)
     feed = _feed(state, node)
-    longer, thicker = _oversize(state, node.length, "DL"), _oversize(state, node.radius, "DR")
+    deltas_mm = ToolDeltas(*(_oversize(state, word, name) for name, word in words.items()))
     state.tool_axis = node.tool_axis or state.tool_axis
     if feed is not None:
         state.feed = state.tool_feed = feed
@@ -50,9 +51,9 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
     elif node.tool is not None:
         state.tool_feed = None
     if number is not None:
-        yield from _change(state, number, longer, thicker, usage, node.column)
-    elif node.length is not None or node.radius is not None:
-        _measure(state, state.modal.tool, longer, thicker, usage, node.column)
+        yield from _change(state, number, deltas_mm, usage, node.column)
+    elif has_deltas:
+        _measure(state, state.modal.tool, deltas_mm, usage, node.column)
     if rpm is not None:
         state.modal = state.modal._replace(rpm=rpm)
         if state.modal.spindle:
@@ -92,16 +93,14 @@ def _oversize(state: State, value: Value | None, what: str, most: float = 99.999
     return 0.0 if value is None else word_values.number(state, value, what, most) * state.mm_per_unit
 
 
-def _change(
-    state: State, tool: int, delta_length_mm: float, delta_radius_mm: float, usage: ToolUsage, column: int
-) -> Iterator[Block]:
+def _change(state: State, tool: int, deltas_mm: ToolDeltas, usage: ToolUsage, column: int) -> Iterator[Block]:
     """Yield the blocks of a tool change: spindle stop, tool, and a program stop for a manual change."""
     before = state.modal.tool
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0, oriented=None)
         yield state.make_action_block(SpindleStop())
     state.modal = state.modal._replace(tool=tool)
-    _measure(state, tool, delta_length_mm, delta_radius_mm, usage, column)
+    _measure(state, tool, deltas_mm, usage, column)
     yield state.make_action_block(ToolChange(tool))
     if tool and before not in {0, tool}:
         yield state.make_action_block(
@@ -109,14 +108,12 @@ def _change(
         )
 
 
-def _measure(
-    state: State, tool: int, delta_length_mm: float, delta_radius_mm: float, usage: ToolUsage, column: int
-) -> None:
+def _measure(state: State, tool: int, deltas_mm: ToolDeltas, usage: ToolUsage, column: int) -> None:
     """Set the tool dimensions from TOOL DEF or from the tool offset.
 
     If the tool has not been measured, the dimensions are 0 and a warning is logged.
     """
-    state.tool_deltas_mm = delta_length_mm, delta_radius_mm
+    state.tool_deltas_mm = deltas_mm
     if 0 < tool < FIRST_NAMED_TOOL:
         usage.record_tool(tool)
     if _defined(state, tool) is None and tool and usage.use_tool_offset(tool, state.setup.tools) is None:
@@ -130,11 +127,11 @@ def _measure(
 
 def update_tool_dimensions(state: State) -> None:
     """Update the length and radius of the active tool from the current TOOL DEF or tool table."""
-    tool, (longer, thicker) = state.modal.tool, state.tool_deltas_mm
+    tool, deltas_mm = state.modal.tool, state.tool_deltas_mm
     offset = state.setup.tools.get(tool)
     table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)
     length, radius = _defined(state, tool) or table
-    state.tool_length_mm, state.tool_radius_mm = length + longer, radius + thicker
+    state.tool_length_mm, state.tool_radius_mm = length + deltas_mm.length, radius + deltas_mm.radius
     state.update_derived_values()
 
 
