@@ -46,12 +46,18 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The contour of the cycle has no moves after its first one.",
         "Add the moves of the contour, or remove the cycle.",
     ),
+    "cycle-incremental": ("{word} is not converted while G91 is active.", "Write G90 before the cycle."),
     "cycle-nested": ("{word} is in the contour of another cycle.", "Write the contour with moves only."),
+    "cycle-offset": (
+        "{word}: a segment of the contour is too short for the distance of the cycle.",
+        "Reduce the distance, or write the contour with longer segments.",
+    ),
     "cycle-positive": ("{word}: this value must be greater than zero.", "Correct the value."),
     "cycle-sideways": (
         "{word}: the end point beside the first cut and the step toward it do not match.",
         "Write both words, or neither of them.",
     ),
+    "cycle-start": ("The cycle starts inside its contour.", "Start the cycle outside the contour."),
     "cycle-undercut": (
         "The contour of the cycle moves back in {axis}, so that a pass cannot reach it.",
         "Cut the undercut with separate moves.",
@@ -85,7 +91,7 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Choose a turning program, or remove the word if it has no effect.",
     ),
     "motion-missing": (
-        "No G code for a move is active after G80.",
+        "No G code for a move is active here.",
         "Write G00 or G01 on this line.",
     ),
     "no-point": (
@@ -165,6 +171,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
     "contour-action": (
         "Line {line} of the contour switches something; roughing does not execute it.",
         "Check that a G70 executes this line, or move it before the cycle.",
+    ),
+    "cycle-version": (
+        "{word}: newer LinuxCNC versions add a move straight out at the end of this contour.",
+        "Check the end of the contour, or write this move at its end.",
     ),
     "diameter-assumed": ("X is treated as a diameter.", "If X is a radius, use --x radius."),
     "dwell-short": (

@@ -38,7 +38,8 @@ def is_mode(state: SourceState, code: float) -> bool:
         or code in get_feed_codes(state)
         or 54 <= code < 60
         or (code in {90, 91, 98, 99} and not system_a)
-        or (code in _PRESET_CANCEL | {7, 8, 70, 71} and not fanuc)
+        or (code in _PRESET_CANCEL | {7, 8} and not fanuc)
+        or (code in {70, 71} and state.source_control is SourceControl.MACH)
     )
 
 
@@ -50,7 +51,7 @@ def get_feed_codes(state: SourceState) -> frozenset[int]:
 def _select_numbers(state: SourceState, word: SourceWord) -> bool:
     """Execute a code for units, X diameter or increments; return whether the word is such a code."""
     fanuc, code = state.source_control.is_fanuc, word.value
-    if code in {20, 21} or (code in {70, 71} and not fanuc):
+    if code in {20, 21} or (code in {70, 71} and state.source_control is SourceControl.MACH):
         state.is_metric = code in {21, 71}
     elif code in {7, 8} and not fanuc:
         state.is_x_diameter = code == 7

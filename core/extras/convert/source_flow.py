@@ -68,16 +68,35 @@ class ProgramFlow:
         Raises ProgramError if the program cannot be executed, for example because a loop is endless.
         """
         while self.at < len(self.lines) and not self.ended:
-            line = self.lines[self.at]
-            self._executed.add(self.at)
-            self.at += 1
-            self._count_lines(1, line)
-            if line.o_keyword:
-                self._o_word(line)
-            elif _MACRO.match(line.code, line.start_index):
-                yield from self._macro(line)
-            else:
-                yield from self._statement(line)
+            yield from self._execute_line()
+
+    def _execute_line(self) -> Iterator[SourceStatement]:
+        line = self.lines[self.at]
+        self._executed.add(self.at)
+        self.at += 1
+        self._count_lines(1, line)
+        if line.o_keyword:
+            self._o_word(line)
+        elif _MACRO.match(line.code, line.start_index):
+            yield from self._macro(line)
+        else:
+            yield from self._statement(line)
+
+    def read_subprogram(self, word: SourceWord) -> list[SourceStatement]:
+        """Return the statements of the LinuxCNC subprogram whose number is in ``word``, as executed.
+
+        Raises ProgramError if the file does not contain this subprogram.
+        """
+        depth, found = len(self._calls), list[SourceStatement]()
+        self._enter(word, self._find_sub(f"{word.value:g}"), 1, {str(n): 0.0 for n in range(1, 31)})
+        while len(self._calls) > depth and self.at < len(self.lines) and not self.ended:
+            found += self._execute_line()
+        return found
+
+    def _find_sub(self, name: str) -> int | None:
+        return next(
+            (k for k, each in enumerate(self.lines) if each.o_word == name and each.o_keyword == "sub"), None
+        )
 
     def _count_lines(self, count: int, line: SourceLine) -> None:
         """Raise ProgramError if the program executes too many lines."""
@@ -317,14 +336,7 @@ class ProgramFlow:
             self._loops[index] = left - 1
 
     def _call(self, line: SourceLine, reader: ExpressionReader) -> None:
-        begin = next(
-            (
-                k
-                for k, each in enumerate(self.lines)
-                if each.o_word == line.o_word and each.o_keyword == "sub"
-            ),
-            None,
-        )
+        begin = self._find_sub(line.o_word)
         passed: dict[str, float] = {}
         while reader.peek_character() == "[":
             passed[str(len(passed) + 1)] = reader.read_bracket()

@@ -75,6 +75,25 @@ M2
 """
 
 
+G7X_BEGIN = "G21 G18 G7 G94 F100\nT1 M6\nS500 M3\nG0 X50 Z5\n"
+SHAFT = "G0 X10\nG1 Z-10\nX20 Z-15\nZ-20\nX44"
+ROUNDED = "G0 X0 Z0\nG1 X10\nG3 X20 Z-5 K-5\nG1 Z-12\nG2 X26 Z-15 R3\nG1 X30\nX44 Z-20"
+BORE = "G0 X40\nG1 Z-5\nX30 Z-10\nZ-20\nX18"
+FACE = "G0 Z-10\nG1 X20\nZ-5\nX10 Z-2\nG2 X4 Z1 R3\nG1 X0\nZ2"
+G7X = [
+    (SHAFT, "G71 Q100 X42 Z1 D0.3 I2 R0.5"),
+    (SHAFT, "G71.1 Q100 X42 Z1 D0 I3 R0"),
+    (SHAFT, "G70 Q100 X42 Z1 D0.4 E0.1 P2"),
+    (ROUNDED, "G71 Q100 X44 Z2 D0.3 I2 R0.5"),
+    (ROUNDED, "G71 Q100 X44 Z2"),
+    (ROUNDED, "G70 Q100 X44 Z2 D0.4 E0.1 P3"),
+    (BORE, "G71 Q100 X18 Z2 D0.3 I2 R0.5"),
+    (BORE, "G70 Q100 X18 Z2 D0.4 E0.1 P2"),
+    (FACE, "G72 Q100 X44 Z2 D0.3 I2 R0.5"),
+    (FACE, "G72.1 Q100 D0.1 I.7"),
+]
+
+
 class Move(NamedTuple):
     """A move in mm: X is a radius; the center is 0 for straight moves."""
 
@@ -127,13 +146,41 @@ def without_standstill(moves: list[Move]) -> list[Move]:
 
 @pytest.mark.parametrize("text", [CONTOUR, THREAD, MACRO], ids=["contour", "thread", "macro"])
 def test_the_reader_moves_as_linuxcnc_does(text: str, tmp_path: Path) -> None:
-    wanted, made = canon(text, tmp_path), ours(text)
+    wanted = canon(text, tmp_path)
+    assert_same_moves(ours(text), wanted)
+    assert len(wanted) > 6
+
+
+def assert_same_moves(made: list[Move], wanted: list[Move]) -> None:
     assert [(each.kind, each.turn) for each in made] == [(each.kind, each.turn) for each in wanted]
     for one, other in zip(made, wanted, strict=True):
         assert (one.x, one.z, one.cx, one.cz) == pytest.approx(
             (other.x, other.z, other.cx, other.cz), abs=NEAR
         )
+
+
+@pytest.mark.parametrize(("contour", "call"), G7X)
+def test_contour_cycles_move_as_linuxcnc_does(contour: str, call: str, tmp_path: Path) -> None:
+    text = f"{G7X_BEGIN}O100 SUB\n{contour}\nO100 ENDSUB\n{call}\nM2\n"
+    wanted = canon(text, tmp_path)
     assert len(wanted) > 6
+    assert_same_moves(ours(text), wanted)
+
+
+@pytest.mark.parametrize(
+    ("contour", "out", "call"),
+    [
+        ("G0 X10\nG1 Z-10\nX20 Z-20\nZ-30", "X44", "G71 Q100 X44 Z2 D0.3 I1.4"),
+        ("G1 X50 Z0\nG1 X0", "Z1", "G72 Q100 X50 Z1 D0.03 I0.4 R0.5"),
+        ("G0 X40\nG1 Z-5\nX30 Z-10\nZ-20", "X18", "G71 Q100 X18 Z2 D0.1 I1 R.5"),
+    ],
+)
+def test_missing_way_out_is_added_as_newer_versions_do(
+    contour: str, out: str, call: str, tmp_path: Path
+) -> None:
+    """Version 2.9.0 of rs274 does not add the move straight out, so it is written for rs274."""
+    text = f"{G7X_BEGIN}O100 SUB\n{{}}\nO100 ENDSUB\n{call}\nM2\n"
+    assert_same_moves(ours(text.format(contour)), canon(text.format(f"{contour}\n{out}"), tmp_path))
 
 
 def test_comparison_detects_a_difference(tmp_path: Path) -> None:

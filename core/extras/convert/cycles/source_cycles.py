@@ -15,6 +15,7 @@ from core.extras.convert.cycles.contour_cycles import (
 )
 from core.extras.convert.cycles.cycle_limits import allow_letters, require_words
 from core.extras.convert.cycles.hole_cycles import HOLE_CYCLE_CODES, append_hole_cycle, get_hole_letters
+from core.extras.convert.cycles.linuxcnc_contours import LINUXCNC_CONTOUR_CODES, LinuxcncContourCycle
 from core.extras.convert.cycles.single_cycles import (
     PeckValues,
     append_facing_cycle,
@@ -93,11 +94,21 @@ class SourceCycles:
 
     def is_one_shot(self, code: float) -> bool:
         """Return whether this G code is a cycle that is active only on its own line."""
-        return code in _WORDS if self._state.source_control.is_fanuc else code == 76
+        control = self._state.source_control
+        if control.is_fanuc:
+            return code in _WORDS
+        return code == 76 or (control is SourceControl.LINUXCNC and code in LINUXCNC_CONTOUR_CODES)
 
     def execute_one_shot_cycle(self, statement: SourceStatement, code: SourceWord) -> None:
         """Execute a cycle that is active only on its own line. Raises ProgramError for an invalid word."""
         state, number = self._state, code.value
+        if not state.source_control.is_fanuc and number != 76:
+            q = statement.find_word("Q")
+            if q is None:
+                raise make_error(code.line_number, code.column, "cycle-word", word="Q")
+            cycle = LinuxcncContourCycle(state, statement, code)
+            cycle.append_moves(self._flow.read_subprogram(q))
+            return
         if not state.source_control.is_fanuc:
             allow_letters(statement, "GMNSTFPZIJKRQHEL")
             append_linuxcnc_thread_cycle(state, statement, code)
