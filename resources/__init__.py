@@ -1,4 +1,4 @@
-"""Data files that are shipped with the product: machine files, sample programs and fonts."""
+"""Data files that are shipped with the product: machine files, sample programs, post-processors and fonts."""
 
 from __future__ import annotations
 
@@ -10,6 +10,11 @@ _HERE = Path(__file__).parent
 def list_machine_names() -> frozenset[str]:
     """Return the names of the shipped machine files without their file extension."""
     return frozenset(each.stem for each in (_HERE / "machines").glob("*.toml"))
+
+
+def get_posts_folder() -> Path:
+    """Return the folder of the post-processors for CAM programs."""
+    return _HERE / "posts"
 
 
 def read_machine_file(name: str) -> str:

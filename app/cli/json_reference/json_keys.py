@@ -347,6 +347,7 @@ programs | string | | Folder of the user's programs.
 logs | string | | Folder of the logs and crash files.
 backups | string | | Folder of the daily backups.
 scope_records | string | | Folder of the scope records.
+posts | string | | Folder of the post-processors for CAM programs.
 machine_file | string | | The machine file that is used.
 code | string | | Main file of the installed package.
 """

@@ -1,0 +1,1 @@
+"""Post-processors that CAM programs run to write programs for TurnDesk."""
