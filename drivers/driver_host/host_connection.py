@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import logging
 import queue
-import select
 import socket
 import time
 from collections import deque
@@ -22,13 +21,14 @@ from drivers.driver_host.host_messages import (
     NO_NUMBERS,
     PROTOCOL_VERSION,
     Message,
-    MessageDecoder,
+    convert_messages,
     encode_message,
     parse_texts,
     read_fault,
-    text,
 )
 from drivers.driver_host.host_server import DriverHost
+from drivers.process_messages import MessageSocket, decode_message, text
+from drivers.silence import CONTROL_HOST_TIMEOUT_S, MAX_STEP_S, SilenceTimer
 from drivers.wakeups import ConnectionAttempt, ProcessWakeup
 
 _log = logging.getLogger(__name__)
@@ -248,11 +248,8 @@ class HostConnection:
 # --- Two links to the driver host: within one thread, and by a socket.
 
 
-_REPLY_TIMEOUT_S = 0.5  # Seconds for a reply; the driver host needs milliseconds.
-_MAX_WAIT_SLICE_S = 0.05  # Maximum in s that one wait counts, so that a delay of this process is not counted.
 # Seconds for commands that wait for a drive; clearing a fault may configure a complete bus.
 _LONG_TIMEOUTS_S = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
-_RECEIVE_SIZE = 1 << 16
 
 
 class InProcessLink:
@@ -272,8 +269,8 @@ class InProcessLink:
         The message and the reply are encoded and decoded.
         """
         self._host.run_cycle()
-        (request,) = MessageDecoder().decode(encode_message(message))
-        (answer,) = MessageDecoder().decode(encode_message(self._host.handle_message(request)))
+        (request,) = convert_messages([decode_message(encode_message(message))])
+        (answer,) = convert_messages([decode_message(encode_message(self._host.handle_message(request)))])
         return answer
 
     def disconnect(self) -> None:
@@ -292,9 +289,7 @@ class SocketLink:
     """
 
     def __init__(self, sock: socket.socket) -> None:
-        self._socket = sock
-        self._socket.setblocking(True)
-        self._inbox = MessageDecoder()
+        self._socket = MessageSocket(sock)
 
     @property
     def end_signals(self) -> tuple[int, ...]:
@@ -306,42 +301,43 @@ class SocketLink:
 
         Raises DriverError after a loss of the connection or a timeout.
         """
-        limit = _LONG_TIMEOUTS_S.get(text(message.header, "what"), _REPLY_TIMEOUT_S)
+        limit = _LONG_TIMEOUTS_S.get(text(message.header, "what"), CONTROL_HOST_TIMEOUT_S)
         try:
-            self._socket.settimeout(limit)
-            self._socket.sendall(encode_message(message))
-            return self._answer(limit)
+            self._socket.send(encode_message(message), limit)
+            return self.wait_for_message(limit)
         except TimeoutError as error:
             raise DriverError(
                 "no response from the driver host for {seconds} s; the axes stop on their path",
                 "feeder-silent",
                 seconds=f"{limit:g}",
             ) from error
+        except EOFError as error:
+            raise DriverError("the driver host has ended", "feeder-gone") from error
         except OSError as error:
             raise DriverError(
                 "the driver host has ended ({cause})", "feeder-gone", cause=error.strerror
             ) from error
 
+    def wait_for_message(self, timeout_s: float) -> Message:
+        """Return the next message.
+
+        Raises TimeoutError if none arrives in time, EOFError if the driver host has ended, OSError if the
+        connection fails, and DriverError for invalid data.
+        """
+        silence = SilenceTimer(timeout_s, time.monotonic(), MAX_STEP_S)
+        while True:
+            self._socket.wait(MAX_STEP_S)
+            for message in convert_messages(self._socket.receive()):
+                return message
+            if silence.check(time.monotonic()):
+                raise TimeoutError
+
     def disconnect(self) -> None:
         """Shut down both directions of the socket, even while another thread waits for a reply."""
         with suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
+            self._socket.disconnect()
 
     def close(self) -> None:
         """Disconnect and close the socket, after which the driver host stops the machine."""
         self.disconnect()
         self._socket.close()
-
-    def _answer(self, left: float) -> Message:
-        while left > 0.0:
-            began = time.monotonic()
-            ready, _, _ = select.select([self._socket], [], [], min(left, _MAX_WAIT_SLICE_S))
-            left -= min(time.monotonic() - began, _MAX_WAIT_SLICE_S)
-            if not ready:
-                continue
-            data = self._socket.recv(_RECEIVE_SIZE)
-            if not data:
-                raise DriverError("the driver host has ended", "feeder-gone")
-            for message in self._inbox.decode(data):
-                return message
-        raise TimeoutError

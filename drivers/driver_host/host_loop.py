@@ -5,7 +5,6 @@ It runs with real-time priority if this is permitted.
 
 from __future__ import annotations
 
-import select
 import socket
 from collections.abc import Mapping
 from contextlib import suppress
@@ -13,13 +12,14 @@ from functools import partial
 
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.driver_host.host_messages import MessageDecoder, encode_message
+from drivers.driver_host.host_messages import convert_messages, encode_message
 from drivers.driver_host.host_server import DriverBundle, DriverHost
+from drivers.process_messages import MessageSocket
 from drivers.process_rights import lock_process_memory, request_scheduling
 from drivers.wakeups import RealClock
 
 REAL_TIME_PRIORITY = 50
-_CHUNK = 1 << 16
+_SEND_TIMEOUT_S = 0.05  # Seconds for the control to accept a reply.
 TRIAL_TIME_S = 0.3  # s
 _STOP_TIME_LIMIT_S = (
     30.0  # Seconds for an orphaned driver host to bring the axes to rest; no queue is longer.
@@ -117,10 +117,8 @@ class MessageListener:
     """A listener for messages of the control between two cycles."""
 
     def __init__(self, sock: socket.socket, host: DriverHost, clock: Clock) -> None:
-        self._sock, self._host, self._clock = sock, host, clock
-        self._inbox = MessageDecoder()
+        self._socket, self._host, self._clock = MessageSocket(sock), host, clock
         self._listened = clock.now()
-        sock.setblocking(False)
 
     def listen_until_due(self, due_time: float, *, is_punctual: bool) -> float:
         """Reply to messages until the next cycle is due, and return the due time of that cycle.
@@ -139,36 +137,22 @@ class MessageListener:
             slept, self._listened = host.is_asleep, now
             if host.is_orphaned:
                 clock.sleep_until(due_time)
-            elif select.select([self._sock], [], [], max(left - keep, 0.0))[0]:
-                host.is_orphaned = not _handle_messages(self._sock, self._inbox, host)
+            elif self._socket.wait(max(left - keep, 0.0)):
+                host.is_orphaned = not _handle_messages(self._socket, host)
                 if host.is_asleep and not is_punctual and 0.0 < due_time - clock.now() < EARLY_CYCLE_S:
                     return clock.now()
             if slept and not host.is_asleep:
                 return clock.now()
 
 
-def _handle_messages(sock: socket.socket, inbox: MessageDecoder, host: DriverHost) -> bool:
-    """Reply to the received messages, and return False if the control has ended."""
-    try:
-        data = sock.recv(_CHUNK)
-        if not data:
-            return False
-        for message in inbox.decode(data):
-            _send_bytes(sock, encode_message(host.handle_message(message)))
-    except BlockingIOError:
-        return True
-    except (OSError, DriverError):
-        return False
-    return True
-
-
-def _send_bytes(sock: socket.socket, data: bytes) -> None:
-    """Send all bytes, or raise an error.
+def _handle_messages(sock: MessageSocket, host: DriverHost) -> bool:
+    """Reply to the received messages, and return False if the control has ended.
 
     A control that does not read its replies is considered to have ended.
     """
-    sock.settimeout(0.05)
     try:
-        sock.sendall(data)
-    finally:
-        sock.setblocking(False)
+        for message in convert_messages(sock.receive()):
+            sock.send(encode_message(host.handle_message(message)), _SEND_TIMEOUT_S)
+    except (OSError, EOFError, DriverError):
+        return False
+    return True

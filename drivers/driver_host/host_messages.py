@@ -1,21 +1,18 @@
-"""Socket messages of the driver host: two length fields, a JSON header and binary numbers."""
+"""Messages of the driver host, and the values in them."""
 
 from __future__ import annotations
 
-import json
-import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, get_args
 
 import numpy as np
 
 from core.faults import get_fault_code
 from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, MotionSegments
+from drivers import process_messages
+from drivers.process_messages import ReceivedMessage, text
 
-_LENGTHS = struct.Struct("<II")  # Lengths of the head and of the numbers in bytes.
-MAX_MESSAGE_BYTES = 64_000_000  # Maximum size of a message in bytes.
 _MAX_NUMBER = 1e300  # Larger numbers and NaN are invalid.
-_NO_MESSAGE: tuple[str, FaultCode] = "the driver host's socket received an invalid message", "feeder-silent"
 PROTOCOL_VERSION = 5  # Version of the protocol, which both sides exchange first.
 
 
@@ -31,44 +28,22 @@ NO_NUMBERS: FloatArray = np.empty(0)
 
 def encode_message(message: Message) -> bytes:
     """Return a message encoded as bytes."""
-    head = json.dumps(message.header).encode()
-    numbers = np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
-    return _LENGTHS.pack(len(head), len(numbers)) + head + numbers
+    return process_messages.encode_message(
+        message.header, np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
+    )
 
 
-class MessageDecoder:
-    """A decoder that extracts messages from received bytes."""
+def convert_messages(received: Iterable[ReceivedMessage]) -> Iterator[Message]:
+    """Yield the received messages.
 
-    def __init__(self) -> None:
-        self._bytes = bytearray()
-
-    def decode(self, data: bytes) -> Iterator[Message]:
-        """Add received bytes, and yield every complete message.
-
-        Raises DriverError for invalid data.
-        """
-        self._bytes += data
-        while len(self._bytes) >= _LENGTHS.size:
-            head, numbers = _LENGTHS.unpack_from(self._bytes)
-            end = _LENGTHS.size + head + numbers
-            if end > MAX_MESSAGE_BYTES or numbers % 8:
-                raise DriverError(*_NO_MESSAGE, reason="no-message")
-            if len(self._bytes) < end:
-                return
-            text = bytes(self._bytes[_LENGTHS.size : _LENGTHS.size + head])
-            row = np.frombuffer(bytes(self._bytes[_LENGTHS.size + head : end]), dtype="<f8")
-            del self._bytes[:end]
-            yield Message(_head(text), row)
-
-
-def _head(text: bytes) -> Mapping[str, object]:
+    Raises DriverError for invalid data.
+    """
     try:
-        head = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise DriverError(*_NO_MESSAGE, reason="no-message") from error
-    if not isinstance(head, dict):
-        raise DriverError(*_NO_MESSAGE, reason="no-message")
-    return head
+        for head, numbers in received:
+            yield Message(head, np.frombuffer(numbers))
+    except ValueError as error:
+        words = "the driver host's socket received an invalid message"
+        raise DriverError(words, "feeder-silent", reason="no-message") from error
 
 
 def flatten_segments(segments: MotionSegments | None) -> FloatArray:
@@ -117,12 +92,6 @@ def number(head: Mapping[str, object], key: str) -> float:
             key=key,
         )
     return float(value)
-
-
-def text(head: Mapping[str, object], key: str) -> str:
-    """Return the string named ``key`` in a message header, or an empty string if it is missing."""
-    value = head.get(key)
-    return value if isinstance(value, str) else ""
 
 
 def decode_cam(message: Message, axis_count: int) -> Cam:

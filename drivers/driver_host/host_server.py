@@ -23,9 +23,15 @@ from drivers.driver_host.host_messages import (
     make_fault_entries,
     number,
     parse_segments,
-    text,
 )
 from drivers.driver_host.trip_guard import TripGuard
+from drivers.process_messages import text
+from drivers.silence import (
+    HOST_CONTROL_TIMEOUT_S,
+    HOST_SLEEP_TIMEOUT_S,
+    SilenceStop,
+    StopSteps,
+)
 
 _Part = TypeVar("_Part")
 # Text and reason code for each missing optional part of the machine.
@@ -115,13 +121,10 @@ MAX_CYCLE_GAP_S = 0.25  # Seconds without a cycle; modules set their error value
 MAX_WAKEUP_DELAY_S = (
     0.05  # Seconds; the drives' queues buffer twice this time, and a splice of 6000 pieces takes 0.03 s.
 )
-CONTROL_TIMEOUT_S = 0.2  # Seconds without a message after which the control counts as stalled.
-SLEEP_TIMEOUT_S = 0.5  # The same for a sleeping control, when nothing is on.
 _MAX_NOTES = 50
 _MAX_REPLY_SAMPLES = 400  # Samples in one reply; a delayed control receives the rest with its next polls.
 _STANDSTILL_RPM = 5.0  # rpm
 _STATION_FIELDS = tuple(field.name for field in fields(StationState))
-_SPINDLE_STOP_S = 8.0  # Maximum wait in s for a spindle to brake.
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,15 +180,23 @@ class DriverHost:
         self._ports = drivers.ports
         self._warnings = list(warnings)
         self._refresh = dict(refresh_periods or {})
-        self._heard = self._ports.clock.now()
-        self._parted = False
-        self._parted_at = 0.0
+        axes = self._ports.axes
+        self._silence = SilenceStop(
+            HOST_CONTROL_TIMEOUT_S,
+            self._ports.clock.now(),
+            StopSteps(
+                self._resting,
+                self._brake_waiting_cam,
+                self._switch_off,
+                lambda: self._carefully(lambda: axes.stop(StopMode.RAMP_OFF)),
+                lambda: abs(self._ports.spindle.speed()) < _STANDSTILL_RPM,
+            ),
+        )
         self._latest = 0.0  # Maximum delay so far in s.
         self._answering = 0.0  # Duration of commands since the last cycle in s; some wait for a drive.
         self._notes: list[str] = []
         self._guard = TripGuard()
         self.is_orphaned = False
-        self.is_done = False  # Orphaned, at rest and switched off.
         self._answers: Mapping[str, Callable[[Message], Message]] = {
             "hello": self._hello,
             "look": self._look,
@@ -198,15 +209,21 @@ class DriverHost:
             "rest": lambda _: _value(0.0),
         }
 
+    @property
+    def is_done(self) -> bool:
+        """Return whether the control has ended and the machine is at rest and switched off."""
+        return self._silence.is_done
+
     def handle_message(self, message: Message) -> Message:
         """Handle a message and return the reply.
 
         If the drivers reject the request, the reply contains the entry ``error``.
         """
-        self._hear()
-        began = self._heard
+        began = self._ports.clock.now()
+        self._hear(began)
         what = text(message.header, "do")
         self.is_asleep = what == "rest" or (what == "look" and message.header.get("rests") is True)
+        self._silence.timeout_s = HOST_SLEEP_TIMEOUT_S if self.is_asleep else HOST_CONTROL_TIMEOUT_S
         answer = self._answers.get(what)
         if answer is None:
             return _refused(
@@ -222,18 +239,18 @@ class DriverHost:
         except DriverError as error:
             return _refused(error.fault, error.reason)
         finally:
-            self._heard = self._ports.clock.now()
-            self._answering += self._heard - began
+            ended = self._ports.clock.now()
+            self._silence.hear(ended)
+            self._answering += ended - began
 
     def run_cycle(self) -> None:
         """Run the drivers, and then check whether the control still sends messages."""
         self._driven.run_cycle()
         for note in self._driven.collect_notes():
             self._note(note)
-        silent = self._ports.clock.now() - self._heard
-        self._expire_outputs(silent)
-        if self.is_orphaned or silent > self._longest:
-            self._supervise_control()
+        now = self._ports.clock.now()
+        self._expire_outputs(self._silence.measure(now))
+        self._silence.advance(now, has_ended=self.is_orphaned)
         if self.is_asleep and not (self._rung or self._driven.has_sent_requests()) and self._has_news():
             self._rung = True
             self._ring()
@@ -244,10 +261,6 @@ class DriverHost:
             return self._told is None or _without_times(self._read_state()) != self._told()
         except DriverError:
             return True
-
-    @property
-    def _longest(self) -> float:
-        return SLEEP_TIMEOUT_S if self.is_asleep else CONTROL_TIMEOUT_S
 
     def get_next_cycle_time(self, last_cycle_time: float) -> float:
         """Return the due time of the next cycle.
@@ -286,18 +299,12 @@ class DriverHost:
         axes = self._ports.axes
         return not axes.sample().moving and is_queue_finished(axes.horizon(), axes.now())
 
-    def _is_stopped_on_cam(self) -> bool:
-        """Return whether axes that follow the spindle are waiting because the spindle is stopped.
-
-        The setpoint queue never ends in this state.
-        """
-        gear = self._ports.gear
-        follows = gear is not None and gear.geared() is not None
-        return (
-            follows
-            and not self._ports.axes.sample().moving
-            and abs(self._ports.spindle.speed()) < _STANDSTILL_RPM
-        )
+    def _brake_waiting_cam(self) -> None:
+        """Brake axes that follow a spindle that is stopped, because their queue never ends."""
+        ports = self._ports
+        follows = ports.gear is not None and ports.gear.geared() is not None
+        if follows and not ports.axes.sample().moving and abs(ports.spindle.speed()) < _STANDSTILL_RPM:
+            self._carefully(lambda: ports.axes.stop(StopMode.RAMP_HOLD))
 
     def _trip(self, silence_s: float, *, spindle: bool = True) -> None:
         """Set the outputs to their safe states, stop the spindle, and record the functions that were on.
@@ -319,14 +326,12 @@ class DriverHost:
         off = [name for name, on in before.items() if on and not after.get(name)]
         self._guard.record_trip(silence_s, off, is_spindle_stopped=spindle, is_c_canceled=changes_to_c)
 
-    def _hear(self) -> None:
-        now = self._ports.clock.now()
-        if now - self._heard > self._longest:
-            silent = f"{now - self._heard:.2f}"
-            self._note(Text("no messages from TurnDesk for {seconds} s", seconds=silent))
-            self._guard.update_silence(now - self._heard)
-        self._heard = now
-        self._parted = False
+    def _hear(self, now: float) -> None:
+        if self._silence.check(now):
+            silent = self._silence.measure(now)
+            self._note(Text("no messages from TurnDesk for {seconds} s", seconds=f"{silent:.2f}"))
+            self._guard.update_silence(silent)
+        self._silence.hear(now)
 
     def _expire_outputs(self, silence_s: float) -> None:
         """Switch off outputs that the control does not renew, without waiting for the axes to stop."""
@@ -342,26 +347,13 @@ class DriverHost:
                 self._carefully(partial(self._ports.io.write, name, False))
                 self._guard.record_output_off(silence_s, name)
 
-    def _supervise_control(self) -> None:
-        """Stop the machine if the control is silent, after the queue has ended at rest."""
-        axes = self._ports.axes
-        if not self._resting():
-            if self._is_stopped_on_cam():
-                self._carefully(lambda: axes.stop(StopMode.RAMP_HOLD))
-            return
-        if not self._parted:
-            self._parted = True
-            self._note(
-                "no messages were received from TurnDesk; the spindle is stopped and the "
-                "outputs are in their safe state"
-            )
-            self._trip(axes.now() - self._heard)
-            self._parted_at = axes.now()
-        if self.is_orphaned and not self.is_done:
-            self._carefully(lambda: axes.stop(StopMode.RAMP_OFF))
-            # Closing removes the spindle's power, so a turning spindle would coast.
-            waited = axes.now() - self._parted_at
-            self.is_done = abs(self._ports.spindle.speed()) < _STANDSTILL_RPM or waited > _SPINDLE_STOP_S
+    def _switch_off(self) -> None:
+        """Switch off the spindle and the outputs, because the control is silent and the axes are at rest."""
+        self._note(
+            "no messages were received from TurnDesk; the spindle is stopped and the "
+            "outputs are in their safe state"
+        )
+        self._trip(self._silence.measure(self._ports.clock.now()))
 
     def _carefully(self, *steps: Callable[[], None]) -> None:
         for step in steps:
@@ -463,7 +455,7 @@ def _without_times(state: Mapping[str, object]) -> Mapping[str, object]:
         **state,
         "sample": {**sample, "t": 0.0},
         "angle": angle[1:] if isinstance(angle, tuple) else None,
-        "station": {**station, "age": station["age"] > CONTROL_TIMEOUT_S},
+        "station": {**station, "age": station["age"] > HOST_CONTROL_TIMEOUT_S},
     }
 
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from core.faults import DriverHostTrip, TrippedError
 from core.message import Message as Text
-from drivers.driver_host.host_messages import Message, number, text
+from drivers.driver_host.host_messages import Message, number
+from drivers.process_messages import text
 
 _MOTION_COMMANDS = frozenset(("splice", "mesh"))
 _SWITCHING_COMMANDS = frozenset(("write", "hold"))  # Rejected only with ``on``.

@@ -10,14 +10,12 @@ from contextlib import suppress
 from typing import get_args
 
 from core.ports import Clock, DriverError, Fault, FaultCode
-from drivers.hal.bridge.packets import BridgeConfig, PacketHead, build_packets, number, pack_packet, text
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead, build_packets, number, pack_packet
 from drivers.hal.hal_session import INVALID_PACKET, BridgeLink
+from drivers.process_messages import text
 from drivers.setpoint_pieces import MotionPiece
+from drivers.silence import DRIVER_BRIDGE_TIMEOUT_S, MAX_STEP_S, SilenceTimer
 
-_BRIDGE_TIMEOUT_S = 0.15  # Seconds without a report.
-_MAX_WAIT_SLICE_S = (
-    0.05  # Maximum silence in s that one check counts, so that a delay of this process is not counted.
-)
 _SETTLING_TIME_S = 0.5  # Seconds after which debounced inputs are valid.
 _START_TIMEOUT_S = 5.0  # Seconds for bus slaves to become operational after HAL was loaded.
 _SHUTDOWN_TIMEOUT_S = 4.0  # Seconds for HAL to shut down, including its continuation after a crashed bridge.
@@ -46,7 +44,7 @@ class HalLink:
         self._link: BridgeLink | None = None
         self._sent = 0
         self._reports = 0  # Number of reports of this bridge.
-        self._looked, self._silent = 0.0, 0.0  # Time of the last check, and the silence at that time in s.
+        self._silence = SilenceTimer(DRIVER_BRIDGE_TIMEOUT_S, max_step_s=MAX_STEP_S)
         self.last_report: PacketHead = {}
         self.sample_rows: list[Sequence[float]] = []  # Samples that have not been taken.
         self.failure: Fault | str = ""  # Reason why the connection is lost.
@@ -67,7 +65,7 @@ class HalLink:
         except DriverError as error:
             self.failure = error.fault  # The next Reset tries again.
             raise
-        self._looked, self._silent = self._clock.now(), 0.0
+        self._silence.hear(self._clock.now())
         if not self.wait_until(lambda: self._reports > 0, 3.0):
             raise DriverError("the HAL bridge does not send reports; restart TurnDesk", "hal-silent")
         self.wait_until(lambda: False, _SETTLING_TIME_S)
@@ -95,12 +93,13 @@ class HalLink:
         """
         if self._link is None or self.failure:
             return
-        self._silent, self._looked = self.report_age_s, self._clock.now()
+        now = self._clock.now()
+        self._silence.check(now)
         try:
             for head, numbers in self._link.receive_packets():
                 self.last_report = head
                 self._reports += 1
-                self._silent = 0.0
+                self._silence.hear(now)
                 self.max_bridge_delay_s = max(self.max_bridge_delay_s, number(head, "late"))
                 if len(numbers):
                     self.sample_rows.append(numbers)
@@ -114,7 +113,7 @@ class HalLink:
     def failure_reason(self) -> Fault | str:
         """Return the reason why the state of the machine is unknown, or an empty string."""
         silent = self.report_age_s
-        if self.failure or silent <= _BRIDGE_TIMEOUT_S:
+        if self.failure or silent <= DRIVER_BRIDGE_TIMEOUT_S:
             return self.failure
         return Fault(
             "the HAL bridge has not sent a report for {silent} s", "hal-silent", silent=f"{silent:.2f}"
@@ -144,11 +143,7 @@ class HalLink:
 
         Only the time during which this process was receiving is counted.
         """
-        return (
-            float("inf")
-            if self.failure
-            else self._silent + min(self._clock.now() - self._looked, _MAX_WAIT_SLICE_S)
-        )
+        return float("inf") if self.failure else self._silence.measure(self._clock.now())
 
     @property
     def warnings(self) -> tuple[str, ...]:

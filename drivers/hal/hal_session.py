@@ -31,8 +31,6 @@ from drivers.hal.bridge.packets import (
     PacketHead,
     number,
     pack_packet,
-    text,
-    unpack_packet,
 )
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_section import (
@@ -44,6 +42,7 @@ from drivers.hal.hal_section import (
     insert_section,
     list_bridge_nets,
 )
+from drivers.process_messages import MessageSocket, ReceivedMessage, text
 
 # --- Session folders, and the remains of sessions whose control was killed.
 
@@ -120,8 +119,8 @@ _END_TIMEOUT_S = 15.0
 _CRASH_DELAY_S = (
     0.5  # Seconds for which HAL continues after the end of its setpoints when the bridge has crashed.
 )
+_START_POLL_S = 0.2  # Seconds between two checks whether halrun is still running.
 _POLL_INTERVAL_S = 0.05  # Seconds between two checks for another session.
-_LARGEST = 1 << 17
 _ALIVE_FILE = "alive"  # File that the bridge locks while it runs.
 _ENDED_FILE = "ended"  # File that the bridge creates when it ends normally.
 # The shared memory of streamer and bridge remains when the last of them is killed. halrun -U removes only
@@ -231,11 +230,11 @@ class HalSession:
     # Process of the bridge; HAL's processes keep its socket open, so the end of the bridge causes no end of
     # file.
     _bridge: int | None = None
-    _socket: socket.socket | None = None
+    _socket: MessageSocket | None = None
 
     def _start(self, config: HalConfig, zero: float, *, only_check: bool) -> None:
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._socket = ours
+        self._socket = MessageSocket(ours)
         with theirs:
             self._write(config, theirs.fileno(), zero, check_only=only_check)
             log = (self._folder / "halrun.log").open("wb")
@@ -251,7 +250,6 @@ class HalSession:
                     start_new_session=True,
                 )
         self._wait_for_bridge(only_check=only_check)
-        ours.setblocking(False)
 
     def _write(self, config: HalConfig, fd: int, zero: float, *, check_only: bool) -> None:
         """Write the session's files, including the HAL file and the bridge configuration."""
@@ -329,22 +327,20 @@ class HalSession:
         assert self._socket is not None
         assert self._halrun is not None
         while time.monotonic() < deadline:
-            self._socket.settimeout(0.2)
+            has_ended = self._halrun.poll() is not None
+            has_data = self._socket.wait(0.0 if has_ended else _START_POLL_S)
             try:
-                data = self._socket.recv(_LARGEST)
-            except TimeoutError:
-                if self._halrun.poll() is None:
-                    continue
-                data = b""
-            if not data:
+                for head, _ in self._socket.receive():
+                    return head
+            except (OSError, EOFError):
+                has_ended, has_data = True, False
+            except ValueError as error:
+                raise DriverError(INVALID_PACKET, "hal-setup") from error
+            if has_ended and not has_data:
                 with suppress(subprocess.TimeoutExpired):
                     self._halrun.wait(3.0)
                 words = Message("halrun ended during startup: {output}", output=self._read_output() or _MUTE)
                 raise DriverError(words, "hal-setup")
-            try:
-                return unpack_packet(data)[0]
-            except ValueError as error:
-                raise DriverError(INVALID_PACKET, "hal-setup") from error
         words = Message(
             "HAL did not start within {seconds} s: {output}",
             seconds=f"{_START:g}",
@@ -378,22 +374,16 @@ class HalSession:
                 "the HAL bridge has ended ({cause})", "hal-bridge", cause=error.strerror
             ) from error
 
-    def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
+    def receive_packets(self) -> Iterator[ReceivedMessage]:
         """Yield all received packets.
 
         Raises DriverError if the bridge has ended, and ValueError for an invalid packet.
         """
         assert self._socket is not None
-        while True:
-            try:
-                data = self._socket.recv(_LARGEST)
-            except BlockingIOError:
-                break
-            except OSError:
-                data = b""
-            if not data:
-                raise DriverError(_ENDED, "hal-bridge")
-            yield unpack_packet(data)
+        try:
+            yield from self._socket.receive()
+        except (OSError, EOFError):
+            raise DriverError(_ENDED, "hal-bridge") from None
         if self._bridge is not None and select.select([self._bridge], [], [], 0.0)[0]:
             raise DriverError(": ".join(filter(None, (_ENDED, self._read_output()))), "hal-bridge")
 
@@ -402,7 +392,7 @@ class HalSession:
         assert self._socket is not None
         with suppress(OSError):
             self._socket.send(pack_packet({"do": "ramp-off"}))
-            self._socket.shutdown(socket.SHUT_RDWR)
+            self._socket.disconnect()
 
     @property
     def has_shut_down(self) -> bool:

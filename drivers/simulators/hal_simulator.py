@@ -9,16 +9,16 @@ from __future__ import annotations
 import math
 import re
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import cache
 from typing import NamedTuple
 
 from core.ports import Clock, DriverError
 from drivers.hal.bridge.hal_bridge import HalBridge
-from drivers.hal.bridge.packets import PacketHead, unpack_packet
 from drivers.hal.hal_config import HalAxis, HalConfig
 from drivers.hal.hal_section import HalSection, build_section
 from drivers.hal.hal_session import create_bridge_config
+from drivers.process_messages import ReceivedMessage, decode_message
 from drivers.simulators.hal_components import (
     RowFifo,
     SignalCells,
@@ -233,9 +233,9 @@ class HalSimulator:
         """
         if self.is_bridge_killed:
             raise DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
-        self.bridge.queue_packet(*unpack_packet(data))
+        self.bridge.queue_packet(*decode_message(data))
 
-    def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
+    def receive_packets(self) -> Iterator[ReceivedMessage]:
         """Yield the packets that the bridge has sent.
 
         Raises DriverError if the bridge process has ended.
@@ -245,7 +245,7 @@ class HalSimulator:
             raise DriverError("HAL bridge process has ended", "hal-bridge")
         while len(self._outbox) > self.delayed_report_count:
             data = self._outbox.popleft()
-            yield unpack_packet(data[3:] if self.has_invalid_packets else data)
+            yield decode_message(data[3:] if self.has_invalid_packets else data)
 
     has_shut_down = True  # Takes no time in the simulator.
 

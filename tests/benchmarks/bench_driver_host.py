@@ -51,7 +51,7 @@ from drivers.driver_host.host_loop import (
     request_real_time,
     run_driver_host,
 )
-from drivers.driver_host.host_messages import NO_NUMBERS, Message, MessageDecoder, encode_message
+from drivers.driver_host.host_messages import NO_NUMBERS, Message, encode_message
 from drivers.driver_host.host_ports import create_host_ports
 from drivers.setpoint_queue import plan_axis_move
 from drivers.wakeups import RealClock
@@ -298,12 +298,10 @@ def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: boo
     child = started(["--driver-host", *words], theirs.fileno(), near)
     for each in (theirs, *(pair or ())):
         each.close()
-    ours.settimeout(60.0)
-    inbox = MessageDecoder()
-    while not list(inbox.decode(ours.recv(1 << 16))):
-        pass
+    link = SocketLink(ours)
+    link.wait_for_message(60.0)
     try:
-        ports = create_host_ports(HostConnection(SocketLink(ours), clock))
+        ports = create_host_ports(HostConnection(link, clock))
         with load(busy), witnesses(folder) as seen:
             fault = to_and_fro(ports, seconds)
     except DriverError as error:

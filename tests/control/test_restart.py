@@ -113,7 +113,7 @@ def desk(folder: Path, machine: Machine = MACHINE) -> Iterator[Desk]:
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """An operator who waits less long for a control that hangs."""
-    monkeypatch.setattr(live_control, "HANG_TIMEOUT_S", 1.0)
+    monkeypatch.setattr(live_control, "SCREEN_CONTROL_TIMEOUT_S", 1.0)
     monkeypatch.setattr(live_control, "END_TIMEOUT_S", 0.5)
 
 
@@ -161,7 +161,7 @@ def test_reset_replaces_a_hanging_control(folder: Path) -> None:
 
 
 def test_control_that_responds_again_is_not_replaced(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live_control, "HANG_TIMEOUT_S", 600.0)
+    monkeypatch.setattr(live_control, "SCREEN_CONTROL_TIMEOUT_S", 600.0)
     with desk(folder) as screen:
         screen.run()
         process = screen.process

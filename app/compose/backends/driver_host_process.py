@@ -32,7 +32,6 @@ from drivers.driver_host.host_loop import (
 from drivers.driver_host.host_messages import (
     NO_NUMBERS,
     Message,
-    MessageDecoder,
     encode_message,
     make_fault_entries,
     read_fault,
@@ -128,7 +127,7 @@ class DriverHostProcess:
         with self.process.stdin as pipe:
             pipe.write(pickle.dumps(machine))
         self._link = SocketLink(ours)
-        ready = self._read_first_message(ours)
+        ready = self._read_first_message()
         if self._closed:  # closed during a restart
             self._end()
             raise DriverError("the control is shutting down", "feeder-gone")
@@ -151,22 +150,20 @@ class DriverHostProcess:
             self.process.kill()
             self.process.wait()
 
-    def _read_first_message(self, sock: socket.socket) -> Message:
+    def _read_first_message(self) -> Message:
         """Return the first message of the driver host.
 
         The message reports either readiness or the reason for a failure.
         """
-        inbox = MessageDecoder()
-        sock.settimeout(_START_TIMEOUT_S)
         try:
-            while data := sock.recv(1 << 16):
-                for message in inbox.decode(data):
-                    return message
+            return self._link.wait_for_message(_START_TIMEOUT_S)
         except TimeoutError:
-            return Message({"error": "the driver host does not start"}, NO_NUMBERS)
+            why = "the driver host does not start"
+        except EOFError:
+            why = "the driver host ended during start-up; see its message above"
         except OSError as error:  # closed during the start
-            return Message({"error": f"no response from the driver host ({error.strerror})"}, NO_NUMBERS)
-        return Message({"error": "the driver host ended during start-up; see its message above"}, NO_NUMBERS)
+            why = f"no response from the driver host ({error.strerror})"
+        return Message({"error": why}, NO_NUMBERS)
 
 
 def get_setpoint_interval(machine: Machine) -> float:

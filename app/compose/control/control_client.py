@@ -50,11 +50,11 @@ from core.records.record_ring import ScopeRing
 from core.records.recordings import ScopeRecordings
 from core.store.store_rows import EventOrigin
 from drivers.operator_station import PostedControls
+from drivers.silence import SCREEN_ALIVE_INTERVAL_S
 from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
 START_TIMEOUT_S = 20.0  # s until the first message, because drives may have to be configured
-ALIVE_INTERVAL_S = 0.25  # s
 JOIN_TIMEOUT_S = 1.0  # =
 REPLY_TIMEOUT_S = 2.0  # s until the first message of a control that is already running
 # Exceptions that ``recv`` raises at the end of the connection, and for messages of another version.
@@ -146,7 +146,7 @@ class ControlClient:
         """Wait until ``is_expected`` returns True for a snapshot, or until the response times out."""
         until = time.monotonic() + REPLY_TIMEOUT_S
         while not is_expected(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
-            self._came.wait(ALIVE_INTERVAL_S)
+            self._came.wait(SCREEN_ALIVE_INTERVAL_S)
             self._came.clear()
 
     def operate_station(self, name: str, *values: object) -> None:
@@ -176,7 +176,7 @@ class ControlClient:
         """
         now = self.clock.now()
         if now >= self._next_alive and not self.is_lost:
-            self._next_alive = now + ALIVE_INTERVAL_S
+            self._next_alive = now + SCREEN_ALIVE_INTERVAL_S
             self._outbox.put(ScreenAliveMessage())
         if self._kept and snapshot.state not in CYCLE_STATES:
             with self._keeping:

@@ -77,11 +77,13 @@ from core.message import Message
 from core.ports import DriverError
 from core.store.store_rows import EventOrigin, EventRow, format_utc
 from drivers.process_rights import lower_thread_priority
+from drivers.silence import CONTROL_SCREEN_TIMEOUT_S
 from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
 CHECK_INTERVAL_S = 0.1  # s between two checks of the screen
-SILENT_CHECK_COUNT = 30  # checks without a message after which the screen is treated as hung (3 s)
+# checks without a message after which the screen is treated as hung
+SILENT_CHECK_COUNT = round(CONTROL_SCREEN_TIMEOUT_S / CHECK_INTERVAL_S)
 REST_CHECK_COUNT = 150  # checks without a screen after which a machine at rest is closed (15 s)
 STOPPED_CHECK_COUNT = 600  # the same for a stopped program (60 s)
 _STARTING_ACTIONS = frozenset({"press_left", "press_right"})

@@ -21,11 +21,9 @@ from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
+from drivers.silence import SCREEN_CONTROL_TIMEOUT_S
 
 _log = logging.getLogger(__name__)
-# s without a message after which a control is ended; no setpoint queue is longer, so the axes are at rest,
-# and a driver host has switched spindle and outputs off
-HANG_TIMEOUT_S = 5.0
 END_TIMEOUT_S = 3.0  # s for a control that can still close its drivers in order
 KILL_TIMEOUT_S = 5.0  # s between SIGKILL and the end of the process
 _LOOK = 0.1  # =
@@ -115,7 +113,7 @@ class LiveControl:
         self._closing.set()
         worker = self._worker
         if worker is not None:
-            worker.join(HANG_TIMEOUT_S + END_TIMEOUT_S + KILL_TIMEOUT_S)
+            worker.join(SCREEN_CONTROL_TIMEOUT_S + END_TIMEOUT_S + KILL_TIMEOUT_S)
         self._client.stop_and_close()
         if self._line is not None:
             self._line.close()
@@ -151,7 +149,7 @@ class LiveControl:
         """
         self._say(tr("CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP"))
         last_response_at = client.heard_at
-        while client.silent_time_s < HANG_TIMEOUT_S and not client.is_lost:
+        while client.silent_time_s < SCREEN_CONTROL_TIMEOUT_S and not client.is_lost:
             if client.heard_at != last_response_at:
                 self._say(tr("THE CONTROL RESPONDS AGAIN. IT WAS NOT RESTARTED"))
                 return False

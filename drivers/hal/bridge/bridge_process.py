@@ -10,12 +10,11 @@ import fcntl
 import importlib
 import json
 import os
-import select
 import signal
 import socket
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +22,13 @@ sys.path.append(str(Path(__file__).resolve().parents[3]))
 
 from drivers.hal.bridge import hal_pins
 from drivers.hal.bridge.hal_bridge import HalBridge
-from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, PacketHead, pack_packet, unpack_packet
+from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, pack_packet
+from drivers.process_messages import MessageSocket
+from drivers.process_rights import request_scheduling
 
 _PERIOD = 0.002  # Seconds between two cycles.
 _CYCLES_PER_REPORT = 2  # Cycles between two reports.
 _PRIORITY = 45  # Below the priority of the driver host.
-_LARGEST = 1 << 17
 _PIN_KINDS = {"float": "HAL_FLOAT", "bit": "HAL_BIT", "s32": "HAL_S32"}
 _PIN_DIRECTIONS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
 
@@ -41,7 +41,7 @@ def main(arguments: list[str]) -> int:
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     said = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
-    sock = socket.socket(fileno=said["fd"])
+    sock = MessageSocket(socket.socket(fileno=said["fd"]))
     try:
         hal = importlib.import_module("hal")  # Only the system's Python has this module.
     except ImportError as error:
@@ -57,14 +57,17 @@ def main(arguments: list[str]) -> int:
         )
         return 1
     try:
-        component = _create_component(hal, said)
+        component = _create_component(hal, sock, said)
     except (RuntimeError, OSError, hal.error) as error:
         sock.send(pack_packet({"error": str(error)}))
         return 1
     if component is None:
         return 1
     bridge = _bridge(hal, component, said)
-    sock.send(pack_packet({"ready": True, "pid": os.getpid(), "warnings": _request_real_time()}))
+    cause = request_scheduling("SCHED_FIFO", _PRIORITY)
+    words = f"the HAL bridge runs without real-time priority ({cause}); see docs/integrator/computer.md"
+    warnings = [words] if cause else []
+    sock.send(pack_packet({"ready": True, "pid": os.getpid(), "warnings": warnings}))
     with Path(said["alive"]).open("wb") as alive:
         fcntl.flock(alive, fcntl.LOCK_EX)
         component.ready()
@@ -73,12 +76,11 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _create_component(hal: Any, settings: Mapping[str, Any]) -> Any | None:
+def _create_component(hal: Any, sock: MessageSocket, settings: Mapping[str, Any]) -> Any | None:
     """Create the HAL component and connect its pins.
 
     Returns None if pins do not match or if only a check was requested.
     """
-    sock = socket.socket(fileno=os.dup(settings["fd"]))
     wanted = [hal_pins.ExpectedPin(*each) for each in settings["wanted"]]
     pins = hal_pins.parse_pins(hal_pins.run_halcmd("-s", "show", "pin"))
     signals = hal_pins.parse_signals(pins, hal_pins.run_halcmd("-s", "show", "sig"))
@@ -112,20 +114,7 @@ def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> HalBridge:
     )
 
 
-def _request_real_time() -> list[str]:
-    """Request SCHED_FIFO, and return a message for the operator if the request is refused."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
-    except OSError as error:
-        return [
-            f"the HAL bridge runs without real-time priority ({error.strerror}); "
-            "see docs/integrator/computer.md"
-        ]
-    return []
-
-
-def _serve(sock: socket.socket, bridge: HalBridge, now: Callable[[], float]) -> None:
-    sock.setblocking(False)
+def _serve(sock: MessageSocket, bridge: HalBridge, now: Callable[[], float]) -> None:
     due, count = now(), 0
     while not bridge.is_done:
         late = now() - due
@@ -134,17 +123,19 @@ def _serve(sock: socket.socket, bridge: HalBridge, now: Callable[[], float]) -> 
             due = max(due + _PERIOD, now())
             count += 1
             if count % _CYCLES_PER_REPORT == 0 and not bridge.has_driver_ended:
-                _tell(sock, bridge)
+                _send_report(sock, bridge)
         left = max(due - now(), 0.0)
         if bridge.has_driver_ended:
             time.sleep(left)
-        elif select.select([sock], [], [], left)[0]:  # Received packets are executed at once.
-            for head, numbers in _heard(sock, bridge):
-                bridge.queue_packet(head, numbers)
+        elif sock.wait(left):  # Received packets are executed at once.
+            _receive_packets(sock, bridge)
 
 
-def _tell(sock: socket.socket, bridge: HalBridge) -> None:
-    """Send a state report to the driver, or skip this report if the driver is not reading."""
+def _send_report(sock: MessageSocket, bridge: HalBridge) -> None:
+    """Send a report.
+
+    If the driver is not reading, this report is skipped.
+    """
     try:
         sock.send(bridge.encode_report())
     except BlockingIOError:
@@ -153,18 +144,12 @@ def _tell(sock: socket.socket, bridge: HalBridge) -> None:
         bridge.has_driver_ended = True
 
 
-def _heard(sock: socket.socket, bridge: HalBridge) -> Iterator[tuple[PacketHead, Any]]:
-    while not bridge.has_driver_ended:
-        try:
-            data = sock.recv(_LARGEST)
-        except BlockingIOError:
-            return
-        except OSError:
-            data = b""
-        if not data:
-            bridge.has_driver_ended = True
-            return
-        yield unpack_packet(data)
+def _receive_packets(sock: MessageSocket, bridge: HalBridge) -> None:
+    try:
+        for head, numbers in sock.receive():
+            bridge.queue_packet(head, numbers)
+    except (OSError, EOFError):
+        bridge.has_driver_ended = True
 
 
 if __name__ == "__main__":

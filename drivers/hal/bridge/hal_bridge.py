@@ -20,24 +20,26 @@ from drivers.hal.bridge.packets import (
     number,
     pack_packet,
     parse_pieces,
-    text,
 )
 from drivers.hal.bridge.row_streams import HalPins, RowStream, RowStreams, SampleStream
 from drivers.hal.bridge.setpoint_player import SetpointPlayer, make_row_function
 from drivers.hal.bridge.spindle_pins import SpindlePins
+from drivers.process_messages import text
 from drivers.setpoint_pieces import INFINITY, MotionPiece
-
-DRIVER_TIMEOUT_S = 0.25  # Seconds without a packet of the driver.
-_SAMPLE_TIMEOUT_S = 0.25  # Seconds without a sample after which the servo thread counts as stopped.
-_MAX_CYCLE_SLICE_S = (
-    0.05  # Maximum in s that one cycle counts, so that a delay of this process is not counted.
+from drivers.silence import (
+    BRIDGE_DRIVER_TIMEOUT_S,
+    BRIDGE_THREAD_TIMEOUT_S,
+    MAX_STEP_S,
+    SilenceStop,
+    SilenceTimer,
+    StopSteps,
 )
+
 _CHAIN_CLOSE_S = 0.1  # Seconds in which the chain must close.
 _MAX_SLEW_IN_MOTION = 1e-3  # Maximum rate difference between rows and this computer's clock in motion.
 _MAX_SLEW_AT_REST = 0.05
 _CORRECTION_TIME_S = 0.5  # Seconds in which a difference is corrected.
 _HISTORY_S = 0.5  # Age in s of setpoints that are still available.
-_SPINDLE_STOP_S = 8.0  # Seconds for a spindle to brake.
 _STANDSTILL_REV_PER_S = 0.1  # turns/s
 _SAFE_TIME_FRACTION = 0.9  # Fraction of the time until the spindle reaches a position at its present speed.
 _MAX_REPORT_SAMPLES = 300  # Samples in one report.
@@ -71,11 +73,19 @@ class HalBridge:
         self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # Measured positions.
         self._off_by = 0.0  # Difference between rows and this computer's clock in s.
         self._sampled = False  # A sample has been read.
-        self._quiet = 0.0  # Seconds without a sample.
-        self._heard = self._round_at = now()
-        self._parted, self._left_at = False, 0.0
+        self._thread_silence = SilenceTimer(BRIDGE_THREAD_TIMEOUT_S, now(), MAX_STEP_S)
+        self._driver_silence = SilenceStop(
+            BRIDGE_DRIVER_TIMEOUT_S,
+            now(),
+            StopSteps(
+                lambda: self.setpoint_player.get_end_time(self._now()) <= self._now(),
+                self._brake_waiting_cam,
+                self._switch_off,
+                self._power_off,
+                self._is_spindle_stopped,
+            ),
+        )
         self.has_driver_ended = False  # The driver has ended.
-        self.is_done = False
         self.fault, self.fault_code = "", ""
         self._on = False  # Power is requested.
         self._grant_at = INFINITY  # Time when power is switched on.
@@ -114,7 +124,7 @@ class HalBridge:
 
     def queue_packet(self, head: PacketHead, numbers: Sequence[float]) -> None:
         """Queue one packet, which is executed in the next cycle."""
-        self._heard = self._now()
+        self._driver_silence.hear(self._now())
         self._orders.append((head, numbers))
 
     def run_cycle(self, delay_s: float = 0.0) -> None:
@@ -125,8 +135,7 @@ class HalBridge:
         now = self._now()
         self._latest = max(self._latest, delay_s)
         self.pins["heartbeat"] = not self.pins["heartbeat"]
-        self._quiet += min(now - self._round_at, _MAX_CYCLE_SLICE_S)
-        self._round_at = now
+        self._thread_silence.check(now)
         self._take_samples(now)
         self._supervise(now)
         while self._orders and not self.row_streams.is_changing:
@@ -136,7 +145,7 @@ class HalBridge:
                 act(head, numbers)
             self._handled = number(head, "n", self._handled)
         self._update_power(now)
-        self._without_driver(now)
+        self._driver_silence.advance(now, has_ended=self.has_driver_ended)
         self._fill(now)
         self.setpoint_player.queue.discard_pieces_before(now - _HISTORY_S)
 
@@ -169,7 +178,7 @@ class HalBridge:
             "least": None if self._least == INFINITY else self._least,
             "off_by": self._off_by,
             "dry": self._dry,
-            "parted": self._parted,
+            "parted": self._driver_silence.has_switched_off,
             "stands": self._is_thread_stopped,
             "stale": self._is_stale,
             "orients": self.spindle_pins.is_orienting,
@@ -202,7 +211,8 @@ class HalBridge:
                 for name in self._following_monitor.find_faulty_axes(command, actual):
                     self._trip(f"{name}: following error", "following")
             self._samples += (t, *command, *actual, *sample[axes : self._width])
-            self._sampled, self._quiet = True, 0.0
+            self._sampled = True
+            self._thread_silence.hear(now)
         if self.row_streams.played_row_number != before:
             self._off_by += 0.05 * (self.row_streams.played_row_due_s - now - self._off_by)
         if len(self._samples) > 40 * _MAX_REPORT_SAMPLES * self._width:  # The samples are not read.
@@ -266,7 +276,7 @@ class HalBridge:
     @property
     def _is_thread_stopped(self) -> bool:
         """Return whether HAL's servo thread has stopped, which means that its pins are no longer updated."""
-        return self._sampled and self._quiet > _SAMPLE_TIMEOUT_S
+        return self._sampled and self._thread_silence.is_exceeded
 
     @property
     def _is_stale(self) -> bool:
@@ -452,26 +462,24 @@ class HalBridge:
 
     # --- without a driver ---------------------------------------------------------------------------------
 
-    def _without_driver(self, now: float) -> None:
-        if not self.has_driver_ended and now - self._heard <= DRIVER_TIMEOUT_S:
-            self._parted = False
-            return
-        if (
-            not self.setpoint_player.is_cam_inactive
-            and abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
-        ):
+    @property
+    def is_done(self) -> bool:
+        """Return whether the driver has ended and the machine is at rest and switched off."""
+        return self._driver_silence.is_done
+
+    @property
+    def _is_spindle_at_standstill(self) -> bool:
+        return abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
+
+    def _brake_waiting_cam(self) -> None:
+        """Brake axes that follow a spindle that is stopped, because their queue never ends."""
+        if not self.setpoint_player.is_cam_inactive and self._is_spindle_at_standstill:
             self._brake_axes()
-        if self.setpoint_player.get_end_time(now) > now:
-            return
-        if not self._parted:
-            self._parted, self._heard = True, min(self._heard, now - DRIVER_TIMEOUT_S)
-            self._left_at = now
-            self.spindle_pins.switch_off()
-            self._output_pins.set_safe()
-        if self.has_driver_ended:
-            self._power_off()
-            blind = not self.config.turns or self._is_thread_stopped
-            is_stopped = (
-                blind or abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
-            )
-            self.is_done = is_stopped or now - self._left_at > _SPINDLE_STOP_S
+
+    def _switch_off(self) -> None:
+        self.spindle_pins.switch_off()
+        self._output_pins.set_safe()
+
+    def _is_spindle_stopped(self) -> bool:
+        """Return whether the spindle is stopped, or True if its position is not known."""
+        return not self.config.turns or self._is_thread_stopped or self._is_spindle_at_standstill

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from drivers.hal.bridge.packets import BridgeConfig, PacketHead, text
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead
 from drivers.hal.bridge.row_streams import HalPins
+from drivers.process_messages import text
 from drivers.setpoint_pieces import INFINITY
 
 _WATCHDOG_RESTART_S = 0.006  # Seconds for which the watchdog is off to restart it.

@@ -1,45 +1,22 @@
-"""Packets between the driver and its bridge, and the configuration of the bridge.
-
-A packet consists of the length of a JSON header, the header, and a sequence of doubles.
-"""
+"""Packets between the driver and its bridge, and the configuration of the bridge."""
 
 from __future__ import annotations
 
-import json
-import struct
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from drivers.process_messages import MessageHead, encode_message
 from drivers.setpoint_pieces import MotionPiece
 
-_LENGTH = struct.Struct("<I")
 MAX_PACKET_NUMBERS = 8000  # Maximum number of doubles in a packet, limited by the packet socket.
 
-PacketHead = dict[str, object]
+PacketHead = MessageHead
 
 
 def pack_packet(head: Mapping[str, object], numbers: Iterable[float] = ()) -> bytes:
     """Return a packet encoded as bytes."""
-    text = json.dumps(head, separators=(",", ":")).encode()
-    return _LENGTH.pack(len(text)) + text + array("d", numbers).tobytes()
-
-
-def unpack_packet(data: bytes) -> tuple[PacketHead, Sequence[float]]:
-    """Return the header and the numbers of a packet.
-
-    Raises ValueError for invalid data, such as a head that is not a JSON object.
-    """
-    try:
-        (length,) = _LENGTH.unpack_from(data)
-        head = json.loads(data[_LENGTH.size : _LENGTH.size + length])
-    except (struct.error, RecursionError) as error:
-        raise ValueError(f"the head of a packet is invalid: {error}") from error
-    if isinstance(head, dict):
-        numbers = array("d")
-        numbers.frombytes(data[_LENGTH.size + length :])
-        return head, numbers
-    raise ValueError("the head of a packet is not an object")
+    return encode_message(head, array("d", numbers).tobytes())
 
 
 def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
@@ -86,12 +63,6 @@ def number(head: Mapping[str, object], key: str, default: float = 0.0) -> float:
         return float(value) if isinstance(value, int | float) else default
     except OverflowError:  # a whole number beyond the range of a double
         return default
-
-
-def text(head: Mapping[str, object], key: str) -> str:
-    """Return the string named ``key`` in a packet header, or an empty string if it is missing."""
-    value = head.get(key)
-    return value if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, slots=True)

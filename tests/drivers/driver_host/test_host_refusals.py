@@ -11,7 +11,8 @@ from collections.abc import Callable
 import pytest
 
 from core.ports import DriverError
-from drivers.driver_host import host_connection, host_loop
+from drivers import process_messages
+from drivers.driver_host import host_loop
 from drivers.driver_host.host_connection import HostConnection, InProcessLink, SocketLink, clear_host_faults
 from drivers.driver_host.host_messages import NO_NUMBERS, Message, encode_message, parse_floats
 from drivers.driver_host.host_ports import create_host_ports
@@ -130,7 +131,7 @@ def test_a_reset_that_the_drives_refuse_starts_no_driver_host(monkeypatch: pytes
 
 def test_reply_received_in_pieces_is_reassembled(monkeypatch: pytest.MonkeyPatch) -> None:
     """A socket gives what has come: half a message is none yet, and no end of the driver host."""
-    monkeypatch.setattr(host_connection, "_RECEIVE_SIZE", 5)  # bytes
+    monkeypatch.setattr(process_messages, "_RECEIVE_SIZE", 5)  # bytes
     ours, theirs = socket.socketpair()
     theirs.sendall(encode_message(Message({"value": 7.0}, NO_NUMBERS)))
     link = SocketLink(ours)

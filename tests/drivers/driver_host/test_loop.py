@@ -40,7 +40,7 @@ from tests.drivers.machines import CONFIG
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """A control that waits for an answer as long as a loaded computer may take: no test of lateness."""
-    monkeypatch.setattr(host_connection, "_REPLY_TIMEOUT_S", 60.0)
+    monkeypatch.setattr(host_connection, "CONTROL_HOST_TIMEOUT_S", 60.0)
     return monkeypatch
 
 
@@ -260,7 +260,7 @@ def test_driver_host_suspended_during_control_sleep_is_found_at_next_poll(
     ports.wakeup.wait_for_wakeup(0.0)
     process.process.send_signal(signal.SIGSTOP)
     assert not ports.wakeup.wait_for_wakeup(0.1)
-    patient.setattr(host_connection, "_REPLY_TIMEOUT_S", 0.5)
+    patient.setattr(host_connection, "CONTROL_HOST_TIMEOUT_S", 0.5)
     sample = ports.axes.sample()
     assert get_fault_code(sample.fault, "driver") == "feeder-silent"
     assert not sample.enabled

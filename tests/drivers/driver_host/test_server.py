@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+import socket
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -11,13 +12,7 @@ import pytest
 
 from core.ports import DriverError, MachinePorts
 from drivers.driver_host.host_connection import HostConnection, InProcessLink
-from drivers.driver_host.host_messages import (
-    MAX_MESSAGE_BYTES,
-    NO_NUMBERS,
-    Message,
-    MessageDecoder,
-    encode_message,
-)
+from drivers.driver_host.host_messages import NO_NUMBERS, Message, convert_messages, encode_message
 from drivers.driver_host.host_ports import HostStationControls, create_host_ports
 from drivers.driver_host.host_server import (
     CYCLE_PERIOD_S,
@@ -26,6 +21,7 @@ from drivers.driver_host.host_server import (
     DriverHost,
     execute_command,
 )
+from drivers.process_messages import MAX_MESSAGE_BYTES, MessageSocket
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.wakeups import ManualClock, ProcessWakeup
 from tests.coded import raises_code
@@ -256,15 +252,26 @@ def test_driver_host_of_another_version_is_rejected(bench: Bench) -> None:
         create_host_ports(HostConnection(Older(bench.host), bench.clock))
 
 
+def receive_once(data: bytes) -> list[Message]:
+    """The messages of a stream that contains this data."""
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        theirs.sendall(data)
+        return list(convert_messages(MessageSocket(ours).receive()))
+
+
 def test_messages_are_decoded_from_pieces_and_from_one_block() -> None:
     one = Message({"do": "look", "t": 0.1}, np.array([1.5, -2.0]))
     two = Message({"do": "hello"}, NO_NUMBERS)
     data = encode_message(one) + encode_message(two)
-    inbox = MessageDecoder()
-    found = [message for byte in data for message in inbox.decode(bytes([byte]))]
-    assert [message.header for message in found] == [one.header, two.header]
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        inbox, found = MessageSocket(ours), list[Message]()
+        for piece in (*(bytes([byte]) for byte in data), data):
+            theirs.sendall(piece)
+            found += convert_messages(inbox.receive())
+    assert [message.header for message in found] == [one.header, two.header] * 2
     assert found[0].numbers.tolist() == [1.5, -2.0]
-    assert [message.header for message in MessageDecoder().decode(data)] == [one.header, two.header]
 
 
 @pytest.mark.parametrize(
@@ -280,7 +287,7 @@ def test_messages_are_decoded_from_pieces_and_from_one_block() -> None:
 )
 def test_invalid_data_on_the_socket_is_an_error(data: bytes) -> None:
     with raises_code(DriverError, "feeder-silent") as told:
-        list(MessageDecoder().decode(data))
+        receive_once(data)
     assert told.value.reason == "no-message"
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from core.faults import get_fault_code
 from core.ports import DriverError
+from drivers import process_messages
 from drivers.driver_host import host_connection
 from drivers.driver_host.host_connection import SocketLink
 from drivers.driver_host.host_messages import NO_NUMBERS, Message
@@ -95,7 +96,7 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[float]:
         now[0] += took.pop(0) if len(took) > 1 else took[0]
         return [], [], []
 
-    monkeypatch.setattr(host_connection, "select", SimpleNamespace(select=nothing))
+    monkeypatch.setattr(process_messages, "select", SimpleNamespace(select=nothing))
     monkeypatch.setattr(host_connection, "time", SimpleNamespace(monotonic=lambda: now[0]))
     return took
 
