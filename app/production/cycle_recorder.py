@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.executor.snapshot import LogEvent, MachineState
-from core.store.production.part_cycles import CycleRecords, CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionRow, StopRow
 from core.store.store_rows import get_utc_now_text
 
 COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
@@ -39,9 +39,9 @@ class _Stop:
 class CycleRecorder:
     """Recorder of cycles and stops.
 
-    ``hear`` receives every event in order, and posts the rows to the store without waiting. The time of day
-    of a row is the time of the call. Durations are calculated from the event times. The time from an alarm
-    or E-stop that ends a cycle to the next start is recorded as a stop with this reason.
+    ``hear`` receives every event in order, and returns the rows to be stored. The time of day of a row is
+    the time of the call. Durations are calculated from the event times. The reason that ends a cycle counts
+    as a stop until the next cycle starts.
     """
 
     def __init__(self, read_clock: Callable[[], str] = get_utc_now_text) -> None:
@@ -51,37 +51,33 @@ class CycleRecorder:
         self._stop: _Stop | None = None
         self._reason = ""  # reason that was reported before the machine stopped
         self._numbered = 0
+        self._rows: list[ProductionRow] = []  # rows of the current call
 
-    def hear(self, event: LogEvent, cycles: CycleRecords) -> None:
-        """Update the current cycle and stop with one event of the executor."""
+    def hear(self, event: LogEvent) -> tuple[ProductionRow, ...]:
+        """Update the current cycle and stop with one event, and return the rows that have changed."""
+        self._update(event)
+        rows, self._rows = tuple(self._rows), []
+        return rows
+
+    def _update(self, event: LogEvent) -> None:
         if event.kind == "load":
             self._program = Path(event.text).name
         elif event.kind in {"start", "repeat"}:
-            self._end_stop(event, cycles)
-            self._begin(event, cycles)
+            self._end_stop(event)
+            self._begin(event)
         elif event.kind == "restart" and self._cycle is not None:
             self._cycle.is_restarted = True
         elif event.kind == "state":
-            self._state(event, cycles)
+            self._state(event)
         elif event.kind in {"stop", "alarm", "estop"} and event.alarm is not None:
             self._name_reason(event.alarm.text)
         elif event.kind in {"part", "uncounted"}:
-            self._end(event, cycles, COMPLETE if event.kind == "part" else UNCOUNTED)
+            self._end(event, COMPLETE if event.kind == "part" else UNCOUNTED)
         elif event.kind == "end":
-            self._end(event, cycles, GIVEN_UP)  # no cycle is left to end after a part
+            self._end(event, GIVEN_UP)  # no cycle is left to end after a part
             if self._stop is None or self._stop.row.cycle:
-                self._end_stop(event, cycles)
+                self._end_stop(event)
                 self._begin_stop(event, BETWEEN_CYCLES, named=True)
-
-    def resume_part(self, program: str, time_s: float, cycles: CycleRecords) -> None:
-        """Record the remainder of a part that was started before this process was started.
-
-        The part is recorded as restarted.
-        """
-        self._program = Path(program).name
-        self._begin(LogEvent(time_s, "start", program), cycles)
-        assert self._cycle is not None
-        self._cycle.is_restarted = True
 
     # --- cycles -------------------------------------------------------------------------------------------
 
@@ -90,12 +86,12 @@ class CycleRecorder:
         now = self._now()
         return f"{now}#{self._numbered}", now
 
-    def _begin(self, event: LogEvent, cycles: CycleRecords) -> None:
+    def _begin(self, event: LogEvent) -> None:
         key, now = self._key()
         self._cycle = _Cycle(CycleRow(key, self._program, 0, now), event.time_s)
-        cycles.record_cycle(self._cycle.row)
+        self._rows.append(self._cycle.row)
 
-    def _end(self, event: LogEvent, cycles: CycleRecords, outcome: str) -> None:
+    def _end(self, event: LogEvent, outcome: str) -> None:
         cycle, self._cycle = self._cycle, None
         if cycle is None:
             return
@@ -111,33 +107,36 @@ class CycleRecorder:
             outcome=outcome,
             load=event.mean_load_percent,
         )
-        cycles.record_cycle(row)
+        self._rows.append(row)
 
     # --- stops --------------------------------------------------------------------------------------------
 
-    def _state(self, event: LogEvent, cycles: CycleRecords) -> None:
+    def _state(self, event: LogEvent) -> None:
         cycle = self._cycle
         if event.text in _FAULT_STATES:
-            self._interrupt_cycle(event, cycles)
+            self._interrupt_cycle(event)
         elif cycle is None:
             return
         elif event.text in _STOPPED_STATES and self._stop is None:
             self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
         elif event.text in _RUNNING_STATES:
-            self._go(cycle, event, cycles)
+            self._go(cycle, event)
 
-    def _go(self, cycle: _Cycle, event: LogEvent, cycles: CycleRecords) -> None:
+    def _go(self, cycle: _Cycle, event: LogEvent) -> None:
         if event.text != MachineState.STOPPING.value:
             self._reason = ""
         if self._stop is not None:
             cycle.stopped_s += event.time_s - self._stop.start_time
-            self._end_stop(event, cycles)
+            self._end_stop(event)
 
-    def _interrupt_cycle(self, event: LogEvent, cycles: CycleRecords) -> None:
-        """End the cycle after an alarm or E-stop, and begin a stop that lasts until the next start."""
-        self._end(event, cycles, event.text)
+    def _interrupt_cycle(self, event: LogEvent) -> None:
+        """End the cycle after an alarm or E-stop.
+
+        Production is stopped until the next start.
+        """
+        self._end(event, event.text)
         if self._stop is not None and self._stop.row.reason == BETWEEN_CYCLES:
-            self._end_stop(event, cycles)
+            self._end_stop(event)
         if self._stop is None:
             self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
 
@@ -149,12 +148,12 @@ class CycleRecorder:
         )
         self._reason = ""
 
-    def _end_stop(self, event: LogEvent, cycles: CycleRecords) -> None:
+    def _end_stop(self, event: LogEvent) -> None:
         stop, self._stop, self._reason = self._stop, None, ""
         if stop is None:
             return
         row = stop.row._replace(seconds=max(0.0, event.time_s - stop.start_time))
-        cycles.record_stop(row)
+        self._rows.append(row)
 
     def _name_reason(self, reason: str) -> None:
         """Set the reason for the current stop, or for the next stop if the machine is running."""

@@ -79,6 +79,7 @@ class Screen:
         assert self.end.poll(PATIENCE)
         hello = self.end.recv()
         assert isinstance(hello, HelloMessage), hello
+        self.identity = hello.control_identity
         self.memory = SharedMemory(receive_descriptor(self.end))
         assert self.end.poll(PATIENCE)  # the first snapshot: it is connected
         return hello
@@ -108,12 +109,16 @@ class Screen:
 
     def events(self, kind: str) -> list[EventMessage]:
         """What has happened of this kind up to now and has not been read yet."""
+        return [message for message in self.all_events() if message.event.kind == kind]
+
+    def all_events(self) -> list[EventMessage]:
+        """What has happened up to now and has not been read yet."""
         found, now, behind = list[EventMessage](), self.now, 0
         while behind < 2:  # the first of them may have been sent behind an older look at the events
             message = self.take(object)
             if isinstance(message, SnapshotMessage):
                 behind += message.snapshot.t > now
-            elif isinstance(message, EventMessage) and message.event.kind == kind:
+            elif isinstance(message, EventMessage):
                 found.append(message)
         return found
 

@@ -21,6 +21,7 @@ from app.compose.control.control_server import REST_CHECK_COUNT, SILENT_CHECK_CO
 from app.compose.control.unattended_notes import (
     EVENTS_FILE_NAME,
     NOTE_FILE_NAME,
+    UnconfirmedEvent,
     UnconfirmedEvents,
     pop_events,
     read_note,
@@ -29,12 +30,17 @@ from app.compose.control.unattended_notes import (
     save_note,
 )
 from app.compose.runs.journal import Journal
+from app.compose.runs.receipt import Receipt
 from core.executor.commands import BlockNextPart, SetSwitch
 from core.executor.snapshot import ACTIVE_STATES, InterruptedJob, LogEvent, MachineState
+from core.store.production import part_cycles
+from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_rows import EventOrigin, EventRow
-from tests.control.bench import SHORT, Bench, control, one_button, until
+from tests.control.bench import SHORT, Bench, Screen, control, one_button, until
 from tests.interrupted import broken_off
+
+AT = "2026-05-04T09:30:00.000Z"
 
 
 @pytest.fixture
@@ -367,7 +373,8 @@ def test_events_not_saved_by_any_screen_are_saved_when_control_closes(tmp_path: 
         bench.until(MachineState.IDLE)
         parts = bench.shot.parts
     left = pop_events(tmp_path)
-    program, rows, _ = left
+    program, events = left
+    rows = tuple(each.event_row for each in events)
     assert (program, parts) == ("part.nc", 1)
     assert [row.kind for row in rows].count("part") == 1
     assert "load" not in {row.kind for row in rows}
@@ -379,6 +386,117 @@ def test_events_not_saved_by_any_screen_are_saved_when_control_closes(tmp_path: 
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 1
         assert store.events.read_events()[::-1] == rows
+
+
+# --- the row of a cycle ---------------------------------------------------------------------------------
+
+
+def stored_cycles(folder: Path) -> list[tuple[str, int, str, bool]]:
+    """Program, part, outcome, and whether it has ended, of each stored cycle."""
+    with Store.open(folder, read_only=True) as store, store.read() as connection:
+        rows = part_cycles.read_cycles(connection, None, 100)
+    return [(row.program, row.part, row.outcome, row.ended is not None) for row in rows]
+
+
+def store_events(folder: Path, screen: Screen, messages: list[EventMessage]) -> None:
+    """A screen that stores these events, and is killed before it confirms them."""
+    journal = Journal(folder, control_running=True)
+    journal.hear(LogEvent(0.0, "load", "part.nc"))
+    identity = screen.identity
+    for each in messages:
+        origin = EventOrigin(identity, each.event_number)
+        if not journal.has_stored(origin):
+            journal.hear(each.event, Receipt(origin, lambda: None, each.production_rows))
+    journal.close()
+
+
+def test_cycle_that_ends_without_a_screen_is_stored_once_by_the_next(tmp_path: Path) -> None:
+    """The first screen stores the start, the second the end; the third receives both and stores neither."""
+    with control(tmp_path, one_button(alone=True)) as bench:
+        first = bench.screen()
+        first.meet()
+        bench.run(first, SHORT)
+        store_events(tmp_path, first, first.events("start"))
+        assert stored_cycles(tmp_path) == [("part.nc", 0, "", False)]
+        first.lose()
+        bench.until(MachineState.IDLE)
+        for _ in range(2):
+            screen = bench.screen()
+            screen.meet()
+            store_events(tmp_path, screen, screen.all_events())
+            assert stored_cycles(tmp_path) == [("part.nc", 1, "COMPLETE", True)]
+            screen.lose()
+
+
+def test_cycle_that_no_screen_has_stored_is_stored_at_the_next_start(tmp_path: Path) -> None:
+    with control(tmp_path, one_button(alone=True)) as bench:
+        screen = bench.screen()
+        screen.meet()
+        bench.run(screen, SHORT)
+        for each in screen.events("load"):
+            screen.hear(each)
+        screen.lose()
+        bench.until(MachineState.IDLE)
+    for _ in range(2):
+        Journal(tmp_path).close()
+        assert stored_cycles(tmp_path) == [("part.nc", 1, "COMPLETE", True)]
+
+
+def test_rows_of_stored_events_do_not_replace_newer_rows(tmp_path: Path) -> None:
+    """The start of a cycle arrives again after its end was stored."""
+    started = CycleRow("key", "part.nc", 0, AT)
+    ended = started._replace(part=3, ended=AT, seconds=9.5, outcome="COMPLETE")
+    row = EventRow(AT, "start", "part.nc")
+    events = tuple(
+        UnconfirmedEvent(row, EventOrigin("control", number), (rows,))
+        for number, rows in ((1, started), (2, ended))
+    )
+    save_events(tmp_path, UnconfirmedEvents("part.nc", events))
+    Journal(tmp_path).close()
+    save_events(tmp_path, UnconfirmedEvents("part.nc", events[:1]))
+    Journal(tmp_path).close()
+    with Store.open(tmp_path, read_only=True) as store, store.read() as connection:
+        assert part_cycles.read_cycles(connection, None, 100) == (ended,)
+
+
+def test_cycle_and_stop_rows_are_the_same_after_they_were_saved(tmp_path: Path) -> None:
+    rows = (
+        CycleRow("key", "part.nc", 3, AT, AT, 9.5, "COMPLETE", 31.5),
+        CycleRow("key 2", "part.nc", 0, AT),
+        StopRow("key 3", "key 2", "part.nc", AT, 4.0, "FEED HOLD", 7),
+    )
+    event = UnconfirmedEvent(EventRow(AT, "part", "part 3"), EventOrigin("control", 5), rows)
+    left = UnconfirmedEvents("part.nc", (event,))
+    save_events(tmp_path, left)
+    assert pop_events(tmp_path) == left
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        3,
+        [3],
+        [[]],
+        [["key", "part.nc", "3", AT, AT, 9.5, "COMPLETE", None]],
+        [["key", "part.nc", 3, None, AT, 9.5, "COMPLETE", None]],
+        [["key", "key 2", "part.nc", AT, "4.0", "FEED HOLD", 7]],
+        [{"key": "key"}],
+    ],
+)
+def test_damaged_cycle_rows_are_rejected_with_their_events(tmp_path: Path, rows: object) -> None:
+    event = [AT, "part", "part 3", 0, "", "", "control", 5, rows]
+    (tmp_path / EVENTS_FILE_NAME).write_text(json.dumps(["part.nc", [event]]))
+    assert pop_events(tmp_path) == UnconfirmedEvents()
+
+
+def test_events_saved_before_rows_existed_are_read(tmp_path: Path) -> None:
+    event = [AT, "part", "part 3", 0, "", "", "control", 5]
+    (tmp_path / EVENTS_FILE_NAME).write_text(json.dumps(["part.nc", [event]]))
+    (left,) = pop_events(tmp_path).events
+    assert (left.event_row.text, left.origin.number, left.production_rows) == ("part 3", 5, ())
+
+
+# --- the note at the next start -------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("left", [None, broken_off(program="part.nc")])
@@ -400,7 +518,7 @@ def test_interruption_note_overrides_the_older_store(tmp_path: Path, left: Inter
 def test_note_is_retained_if_the_store_cannot_be_opened(tmp_path: Path) -> None:
     save_note(tmp_path, broken_off())
     row = EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")
-    save_events(tmp_path, UnconfirmedEvents("part.nc", (row,), (EventOrigin("control", 5),)))
+    save_events(tmp_path, UnconfirmedEvents("part.nc", (UnconfirmedEvent(row, EventOrigin("control", 5)),)))
     with Store.open(tmp_path):  # by another TurnDesk
         journal = Journal(tmp_path)
         assert journal.left is None
@@ -417,14 +535,14 @@ def test_unconfirmed_events_already_in_the_store_are_not_stored_again(tmp_path: 
     origins = tuple(EventOrigin("control", number) for number in (5, 6, 7))
     with Store.open(tmp_path) as store:
         store.runs.record_event(row, "part.nc", origins[1])  # and was killed before it confirmed it
-    save_events(tmp_path, UnconfirmedEvents("part.nc", (row, row, row), origins))
+    save_events(tmp_path, UnconfirmedEvents("part.nc", tuple(UnconfirmedEvent(row, at) for at in origins)))
     journal = Journal(tmp_path)
     journal.close()
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 2
         assert store.runs.read_last_origin() == origins[2]
     other = tuple(EventOrigin("another", number) for number in (1, 2, 3))
-    save_events(tmp_path, UnconfirmedEvents("part.nc", (row, row, row), other))
+    save_events(tmp_path, UnconfirmedEvents("part.nc", tuple(UnconfirmedEvent(row, at) for at in other)))
     Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 5

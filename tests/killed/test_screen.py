@@ -15,6 +15,7 @@ from app.compose.runs.journal import Journal
 from core.alarms import CATALOG
 from core.records.record import ScopeRecord
 from core.records.ring_file import CURRENT_RING_NAME, PREVIOUS_RING_NAME, read_ring_file
+from core.store.production.part_cycles import read_cycles
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
 from tests.late_computer import tell
@@ -152,6 +153,30 @@ def test_killed_screen_puts_program_in_feed_hold_and_reconnects(
         assert kinds.count("stop") == 1  # the feed hold by the control
         assert kinds.count("part") == store.runs.read_part_count("part.nc") >= made + 1
         assert [run.outcome for run in store.runs.read_records()] != ["CUT OFF"]
+
+
+def test_cycle_of_each_part_is_stored_once_when_screen_is_killed(
+    files: tuple[str, str], tmp_path: Path
+) -> None:
+    """The control finishes the part in which the screen is killed; the next screen stores its cycle."""
+    home, machine = tmp_path / "home", Path(files[0])
+    machine.write_text(machine.read_text().replace("[machine]\n", '[machine]\nscreen_lost = "continue"\n', 1))
+    with process(home, OPERATOR, *files) as desk:
+        cutting(desk, 1)
+        control, made = desk.control(), int(str(desk.lines[-1]["parts"]))
+        desk.kill()
+        with process(home, OPERATOR, *files, "--again") as again:
+            cutting(again, made + 1)
+            assert again.control() == control
+            again.popen.terminate()
+            until(lambda: not again.family(), again.family)
+    with Store.open(home, read_only=True) as store:
+        counted = store.runs.read_part_count("part.nc")
+        with store.read() as connection:
+            rows = read_cycles(connection, None, 100)
+    assert counted >= made + 1
+    assert [row.part for row in rows if row.outcome == "COMPLETE"] == list(range(1, counted + 1))
+    assert all(row.ended is not None for row in rows[:-1])
 
 
 def test_killed_control_raises_alarm_and_screen_continues(files: tuple[str, str], tmp_path: Path) -> None:

@@ -37,9 +37,13 @@ class Recorded:
         self.recorder = CycleRecorder()
         self._heard = 0
 
+    def hear(self, event: LogEvent) -> None:
+        for row in self.recorder.hear(event):
+            self.store.cycles.record_row(row)
+
     def settle(self) -> None:
         for event in self.rig.events[self._heard :]:
-            self.recorder.hear(event, self.store.cycles)
+            self.hear(event)
         self._heard = len(self.rig.events)
         self.store.settings.save_setting("settled", True).result(60)
 
@@ -200,17 +204,15 @@ def test_events_without_cycle_record_nothing(recorded: Recorded) -> None:
         ("mdi", "G90"),
         ("restart", "from line 3"),
     ):
-        recorded.recorder.hear(LogEvent(0.0, kind, text), recorded.store.cycles)
+        recorded.hear(LogEvent(0.0, kind, text))
     assert recorded.cycles == ()
     assert recorded.stops == ()
 
 
 def test_spindle_load_of_part_is_recorded_with_its_cycle(recorded: Recorded) -> None:
     for kind, text in (("load", "peg.nc"), ("start", "peg.nc")):
-        recorded.recorder.hear(LogEvent(0.0, kind, text), recorded.store.cycles)
-    recorded.recorder.hear(
-        LogEvent(9.0, "part", "part 1", part_number=1, mean_load_percent=31.5), recorded.store.cycles
-    )
-    recorded.recorder.hear(LogEvent(10.0, "start", "peg.nc"), recorded.store.cycles)
-    recorded.recorder.hear(LogEvent(19.0, "part", "part 2", part_number=2), recorded.store.cycles)
+        recorded.hear(LogEvent(0.0, kind, text))
+    recorded.hear(LogEvent(9.0, "part", "part 1", part_number=1, mean_load_percent=31.5))
+    recorded.hear(LogEvent(10.0, "start", "peg.nc"))
+    recorded.hear(LogEvent(19.0, "part", "part 2", part_number=2))
     assert [row.load for row in recorded.cycles] == [31.5, None]

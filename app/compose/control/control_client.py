@@ -263,10 +263,11 @@ class ControlClient:
                 if stirred:
                     with CaughtAttempt():  # the window may be closing
                         events.on_rest_change()
-            case EventMessage(number, event):
+            case EventMessage(number, event, rows):
                 self.control_records.handle_event(event)
                 origin = EventOrigin(self.hello_message.control_identity, number)
-                events.on_event(event, Receipt(origin, partial(self._outbox.put, EventStoredMessage(number))))
+                confirm = partial(self._outbox.put, EventStoredMessage(number))
+                events.on_event(event, Receipt(origin, confirm, rows))
             case InterruptedJobNote(job):
                 events.on_interrupted_job(job)
             case ThreadEndedMessage(name):

@@ -18,8 +18,9 @@ from core.executor.commands import Command
 from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.records.record_ring import RingLayout
+from core.store.production.part_cycles import ProductionRow
 
-PROTOCOL_VERSION = 3  # of these messages
+PROTOCOL_VERSION = 4  # of these messages
 SCREEN_CONNECTED = "busy"  # reason for rejecting a second screen, never shown to the user
 KEY_EXPIRY_S = 0.5  # s after which a key press that starts motion expires
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
@@ -109,10 +110,11 @@ class SnapshotMessage(NamedTuple):
 
 
 class EventMessage(NamedTuple):
-    """Event for the event log, with its number."""
+    """Event for the event log, with its number and the rows of cycles and stops that it has changed."""
 
     event_number: int
     event: LogEvent
+    production_rows: tuple[ProductionRow, ...] = ()
 
 
 class InterruptedJobNote(NamedTuple):

@@ -42,7 +42,13 @@ from app.compose.control.descriptor_passing import (
 )
 from app.compose.control.process_rights_check import READING_PRIORITY, ProcessRight
 from app.compose.control.screen_outbox import NOT_SAVED, ScreenOutbox
-from app.compose.control.unattended_notes import UnconfirmedEvents, remove_note, save_events, save_note
+from app.compose.control.unattended_notes import (
+    UnconfirmedEvent,
+    UnconfirmedEvents,
+    remove_note,
+    save_events,
+    save_note,
+)
 from app.compose.optional_features import extras
 from app.desk.stop_keys.stop_records import StopKind, StopPress
 from core.closing_steps import ClosingStep, close_in_order
@@ -176,9 +182,15 @@ class ControlServer:
         left = self.outbox.unconfirmed_events if self._screen is None else []
         if left:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
-            rows = tuple(_row(each.event, began) for each in left)
-            origins = tuple(EventOrigin(self._identity, each.event_number) for each in left)
-            save_events(self._folder, UnconfirmedEvents(self.executor.snapshot.program, rows, origins))
+            events = tuple(
+                UnconfirmedEvent(
+                    _row(each.event, began),
+                    EventOrigin(self._identity, each.event_number),
+                    each.production_rows,
+                )
+                for each in left
+            )
+            save_events(self._folder, UnconfirmedEvents(self.executor.snapshot.program, events))
 
     # --- Executor thread ------------------------------------------------------------------------------
 

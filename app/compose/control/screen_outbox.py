@@ -16,6 +16,7 @@ from app.compose.control.control_messages import (
     SnapshotMessage,
     ThreadEndedMessage,
 )
+from app.production.cycle_recorder import CycleRecorder
 from core.executor.raised_alarm import ReportedAttempt
 from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 
@@ -30,11 +31,13 @@ class ScreenOutbox:
     """Queue of messages for the screen.
 
     Any thread adds messages, and the screen's sender thread sends them. An event waits until the screen
-    confirms that the event is stored. Otherwise the next screen receives the event again.
+    confirms that the event is stored. Otherwise the next screen receives the event again. The rows of
+    cycles and stops wait with the event that has changed them, also while no screen is connected.
     """
 
     def __init__(self, read_snapshot: Callable[[], Snapshot]) -> None:
         self._snapshot = read_snapshot
+        self._cycle_recorder = CycleRecorder()
         self._events: deque[EventMessage] = deque(maxlen=MAX_WAITING_EVENTS)
         self._ended: deque[ThreadEndedMessage] = deque()
         self._noted: InterruptedJobNote | None = None
@@ -57,7 +60,7 @@ class ScreenOutbox:
         """Add an event to the queue."""
         with self._lock:
             self._number += 1
-            self._events.append(EventMessage(self._number, event))
+            self._events.append(EventMessage(self._number, event, self._cycle_recorder.hear(event)))
         self._ready.set()
 
     def confirm_events(self, number: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +12,7 @@ from typing import NamedTuple
 from core.executor.snapshot import InterruptedJob, convert_interrupted_job_to_json, parse_interrupted_job
 from core.file_replacement import write_atomically
 from core.message import pack_message, unpack_message
+from core.store.production.part_cycles import CycleRow, ProductionRow, StopRow
 from core.store.store_rows import EventOrigin, EventRow
 
 _log = logging.getLogger(__name__)
@@ -50,20 +52,27 @@ def remove_note(folder: Path) -> None:
         (folder / NOTE_FILE_NAME).unlink(missing_ok=True)
 
 
+class UnconfirmedEvent(NamedTuple):
+    """Event that no screen has confirmed, with its origin and the rows of cycles and stops it changed."""
+
+    event_row: EventRow
+    origin: EventOrigin
+    production_rows: tuple[ProductionRow, ...] = ()
+
+
 class UnconfirmedEvents(NamedTuple):
-    """Events that no screen has confirmed as stored, each with its program and origin."""
+    """Events that no screen has confirmed, with their program."""
 
     program: str = ""
-    event_rows: tuple[EventRow, ...] = ()
-    origins: tuple[EventOrigin, ...] = ()
+    events: tuple[UnconfirmedEvent, ...] = ()
 
 
 def save_events(folder: Path, unconfirmed_events: UnconfirmedEvents) -> None:
-    """Save the events that no screen has confirmed as stored. Log a disk error."""
-    program, rows, origins = unconfirmed_events
-    events = [[*row[:5], pack_message(row.text), *origin] for row, origin in zip(rows, origins, strict=True)]
+    """Save the events that no screen has confirmed. A disk error is logged."""
+    program, events = unconfirmed_events
+    saved = [[*row[:5], pack_message(row.text), *origin, rows] for row, origin, rows in events]
     try:
-        write_atomically(folder / EVENTS_FILE_NAME, json.dumps([program, events]).encode())
+        write_atomically(folder / EVENTS_FILE_NAME, json.dumps([program, saved]).encode())
     except OSError as error:
         _log.warning("%d events cannot be kept in %s: %s", len(events), folder / EVENTS_FILE_NAME, error)
 
@@ -73,11 +82,7 @@ def pop_events(folder: Path) -> UnconfirmedEvents:
     path = folder / EVENTS_FILE_NAME
     try:
         program, events = json.loads(path.read_bytes())
-        left = UnconfirmedEvents(
-            str(program),
-            tuple(_row(*each[:6]) for each in events),
-            tuple(EventOrigin(str(control), int(number)) for *_, control, number in events),
-        )
+        left = UnconfirmedEvents(str(program), tuple(_event(*each) for each in events))
     except FileNotFoundError:
         return UnconfirmedEvents()
     except (OSError, ValueError, TypeError) as error:
@@ -88,5 +93,44 @@ def pop_events(folder: Path) -> UnconfirmedEvents:
     return left
 
 
-def _row(at: str, kind: str, text: str, line: int, record: str, packed: str) -> EventRow:
-    return EventRow(str(at), str(kind), unpack_message(packed, str(text)), int(line), str(record))
+def _event(
+    at: str,
+    kind: str,
+    text: str,
+    line: int,
+    record: str,
+    packed: str,
+    control: str,
+    number: int,
+    rows: Sequence[Sequence[object]] = (),
+) -> UnconfirmedEvent:
+    row = EventRow(str(at), str(kind), unpack_message(packed, str(text)), int(line), str(record))
+    return UnconfirmedEvent(row, EventOrigin(str(control), int(number)), tuple(map(_production_row, rows)))
+
+
+def _production_row(values: Sequence[object]) -> ProductionRow:
+    """Return the row of a cycle or a stop. Raises TypeError or ValueError if the values do not form a row."""
+    match values:
+        case [
+            str() as key,
+            str() as program,
+            int() as part,
+            str() as started,
+            str() | None as ended,
+            int() | float() as seconds,
+            str() as outcome,
+            int() | float() | None as load,
+        ]:
+            return CycleRow(key, program, part, started, ended, seconds, outcome, load)
+        case [
+            str() as key,
+            str() as cycle,
+            str() as program,
+            str() as at,
+            int() | float() as seconds,
+            str() as reason,
+            int() as line,
+        ]:
+            return StopRow(key, cycle, program, at, seconds, reason, line)
+        case _:
+            raise ValueError("a row is neither a cycle nor a stop")

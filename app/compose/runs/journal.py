@@ -21,7 +21,6 @@ from app.production.cycle_recorder import CycleRecorder
 from app.production.parts_book import PartsBook
 from app.programs.run_history import mark_interrupted_runs
 from core.executor.snapshot import (
-    CYCLE_STATES,
     InterruptedJob,
     LogEvent,
     Snapshot,
@@ -74,7 +73,7 @@ class Journal(Persistence):
         self._store: Store | None = None
         self._program = ""
         self._write_error = ""
-        self._recorder = CycleRecorder()
+        self._recorder = CycleRecorder()  # of a control in this process; a control process has its own
         self._noted: InterruptedJob | None = None  # job that a power failure would interrupt
         self._has_noted = False  # whether this control has noted a job since
         self._last_origin: EventOrigin | None = None  # of the last event that an earlier screen has stored
@@ -127,10 +126,11 @@ class Journal(Persistence):
 
     def _take_interrupted(self, store: Store) -> InterruptedJob | None:
         """Store the events of a control that ran without a screen, and return its interrupted job."""
-        program, rows, origins = pop_events(self._folder)
-        for row, origin in zip(rows, origins, strict=True):
+        program, events = pop_events(self._folder)
+        for row, origin, production_rows in events:
             if not self.has_stored(origin):
-                store.runs.record_event(row, Path(program).name if row.kind == "part" else "", origin)
+                part_of = Path(program).name if row.kind == "part" else ""
+                store.runs.record_event(row, part_of, origin, production_rows)
         known, left = read_note(self._folder)
         if not known:
             return parse_interrupted_job(store.settings.read_setting(INTERRUPTED_JOB_KEY))
@@ -236,26 +236,23 @@ class Journal(Persistence):
         return last is not None and origin.control == last.control and origin.number <= last.number
 
     def resume_recording(self, snapshot: Snapshot) -> None:
-        """Resume recording of events from a control that ran while the screen process was not running.
+        """Count parts for the program of a control that ran without this process.
 
-        Call this method before the events of that control arrive.
+        Call this method before its events arrive.
         """
         with self._lock:
             self._program = snapshot.program
-            if snapshot.state in CYCLE_STATES and self._store is not None:
-                self._recorder.resume_part(snapshot.program, snapshot.t, self._store.cycles)
 
     def _write(self, store: Store, event: LogEvent, receipt: Receipt | None) -> None:
         if receipt is not None and self.has_stored(receipt.origin):  # the store was opened late
             receipt.confirm_storage()
             return
-        self._recorder.hear(event, store.cycles)
         row = EventRow(get_utc_now_text(), event.kind, event.text, event.line_number, event.record_name)
         part_of = Path(self._program).name if event.kind == "part" and self._program else ""
         if receipt is None:
-            store.runs.record_event(row, part_of)
+            store.runs.record_event(row, part_of, production_rows=self._recorder.hear(event))
             return
-        stored = store.runs.record_event(row, part_of, receipt.origin)
+        stored = store.runs.record_event(row, part_of, receipt.origin, receipt.production_rows)
         stored.add_done_callback(lambda done: receipt.confirm_storage() if done.exception() is None else None)
 
     def keep(self, source: ProgramSource) -> None:

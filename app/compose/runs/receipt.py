@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from core.store.production.part_cycles import ProductionRow
 from core.store.store_rows import EventOrigin
 
 
 class Receipt(NamedTuple):
-    """Origin of an event in a control process, and the function that confirms its storage.
+    """Origin of an event, the function that confirms its storage, and its rows of cycles and stops.
 
     ``confirm_storage`` is called from any thread when the event is on the disk, or when it need not be
     stored.
@@ -17,3 +18,4 @@ class Receipt(NamedTuple):
 
     origin: EventOrigin
     confirm_storage: Callable[[], None]
+    production_rows: tuple[ProductionRow, ...] = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sqlite3
 from typing import TYPE_CHECKING, NamedTuple
 
-from core.store.store_access import StoreAccess
+from core.store.store_access import StoreAccess, WaitingEntries
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -69,6 +69,7 @@ class CorrectionRow(NamedTuple):
     was_z: float
 
 
+ProductionRow = CycleRow | StopRow
 _CYCLE = ", ".join(CycleRow._fields)
 
 
@@ -90,6 +91,14 @@ def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
         " ON CONFLICT (key) DO UPDATE SET seconds = excluded.seconds, reason = excluded.reason",
         row,
     )
+
+
+def queue_row(entries: WaitingEntries, row: ProductionRow) -> None:
+    """Add a cycle or a stop to the entries that wait for the disk, replacing an earlier state of the row."""
+    if isinstance(row, CycleRow):
+        entries.replace_operation(("cycle", row.key), lambda connection: save_cycle(connection, row))
+    else:
+        entries.replace_operation(("stop", row.key), lambda connection: save_stop(connection, row))
 
 
 def programs(connection: sqlite3.Connection) -> set[str]:
@@ -189,10 +198,6 @@ class CycleRecords:
     def __init__(self, store: StoreAccess) -> None:
         self._store = store
 
-    def record_cycle(self, row: CycleRow) -> Future[None]:
-        """Record the start of a cycle, or the end of a recorded cycle."""
-        return self._store.store_latest_durably(("cycle", row.key), lambda c: save_cycle(c, row))
-
-    def record_stop(self, row: StopRow) -> Future[None]:
-        """Record a stop that has ended."""
-        return self._store.store_latest_durably(("stop", row.key), lambda c: save_stop(c, row))
+    def record_row(self, row: ProductionRow) -> Future[None]:
+        """Record the start of a cycle, the end of a recorded cycle, or a stop that has ended."""
+        return self._store.keep(lambda entries: queue_row(entries, row))

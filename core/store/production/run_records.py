@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from core.message import Message
 from core.store import event_log, program_records, settings
+from core.store.production.part_cycles import ProductionRow, queue_row
 from core.store.store_access import StoreAccess, WaitingEntries
 from core.store.store_rows import EventOrigin, EventRow, RunRow, get_utc_now_text
 
@@ -80,12 +82,17 @@ class RunRecords:
         return self._store.keep(lambda unwritten: unwritten.add_parts(key, count))
 
     def record_event(
-        self, event: EventRow, counted_program: str = "", origin: EventOrigin | None = None
+        self,
+        event: EventRow,
+        counted_program: str = "",
+        origin: EventOrigin | None = None,
+        production_rows: Sequence[ProductionRow] = (),
     ) -> Future[None]:
         """Log an event with its origin, and count a part of the program ``counted_program``.
 
-        No part is counted if ``counted_program`` is empty. The event and the count are written in one
-        transaction. The future is done when the data are on disk.
+        No part is counted if ``counted_program`` is empty. The event, the count and the
+        ``production_rows`` of the event are written in one transaction. The future is done when the data
+        are on disk.
         """
         key = self._loaded.find_key(counted_program) if counted_program else ""
 
@@ -93,6 +100,8 @@ class RunRecords:
             unwritten.add_event(event)
             if key:
                 unwritten.add_parts(key, 1)
+            for row in production_rows:
+                queue_row(unwritten, row)
             if origin is not None:
                 value = list(origin)
                 unwritten.replace_operation(
