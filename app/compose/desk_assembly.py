@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from app.compose.backends.backend_entry import NO_PRIORITY_TEXT, ConnectedMachine, has_inverter, is_simulated
 from app.compose.backends.connection import connect_machine
@@ -22,6 +23,7 @@ from app.compose.runs.receipt import Receipt
 from app.compose.stored_offsets import Offsets, create_offset_book, try_read_shapes
 from app.desk.command_errors import convert_to_command_error
 from app.desk.desk import Desk
+from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import ProgramLoader
@@ -58,21 +60,29 @@ def create_desk_and_executor(
     machine = read_machine(machine_file)
     if journal is not None:
         store_machine(machine_file, journal)
-    return create_desk_parts(machine, read_offsets, clock, journal, records_folder)[:2]
+    parts = create_control_parts(machine, clock, journal, records_folder)
+    closing = ClosingSequence(ControlClosing(close_drivers=parts.close_drivers))
+    return create_desk(machine, parts.control, parts.events, read_offsets, closing), parts.executor
 
 
-def create_desk_parts(
-    machine: Machine,
-    read_offsets: Callable[[], Offsets],
-    clock: Clock,
-    journal: Journal | None,
-    records_folder: Path | None,
-) -> tuple[Desk, Executor, ScopeRecorder]:
-    """Create the operator screen's model, its executor and its recorder, all in this process.
+class ControlParts(NamedTuple):
+    """The control of a machine in the process of the screen, before the screen's model is created."""
+
+    control: DeskControl
+    events: EventDistributor
+    executor: Executor
+    recorder: ScopeRecorder
+    close_drivers: Callable[[], None]
+
+
+def create_control_parts(
+    machine: Machine, clock: Clock, journal: Journal | None, records_folder: Path | None
+) -> ControlParts:
+    """Create the executor and the recorder of a machine in this process.
 
     ``records_folder`` is the folder of the scope records, or None if no records are written to files.
     Without a ``journal``, interruptions are not saved. Raises CommandError if the machine cannot be
-    connected, or if ``read_offsets`` reads an offsets file that has errors.
+    connected.
     """
     connected = _connected(machine, clock)
     recorder = ScopeRecorder(list_recorded_signals(machine, connected.ports), records_folder)
@@ -94,9 +104,7 @@ def create_desk_parts(
         connected.ports.warnings,
         recorder,
     )
-    desk = create_desk(machine, control, events, read_offsets)
-    desk.closing_sequence.close_drivers = connected.close
-    return desk, executor, recorder
+    return ControlParts(control, events, executor, recorder, connected.close)
 
 
 def create_desk(
@@ -104,10 +112,14 @@ def create_desk(
     control: DeskControl,
     event_distributor: EventDistributor,
     read_offsets: Callable[[], Offsets],
+    closing_sequence: ClosingSequence,
 ) -> Desk:
-    """Return the screen model with all its pages, and report the warnings from startup."""
+    """Return the screen model with all its pages, and report the warnings from startup.
+
+    Raises CommandError if ``read_offsets`` reads an offsets file that has errors.
+    """
     journal = event_distributor.journal
-    desk = _create_desk_model(machine, control, event_distributor, read_offsets)
+    desk = _create_desk_model(machine, control, event_distributor, read_offsets, closing_sequence)
     event_distributor.desk = desk
     if journal is not None:
         desk.alarm_log.add_stored(_list_stops(journal))
@@ -176,6 +188,12 @@ class EventDistributor:
         if self.journal is not None:
             self.journal.hear(event, receipt)
 
+    def report_warning(self, text: str) -> None:
+        """Show a warning on the prompt line, and report it with the current time."""
+        if self.desk is not None:
+            self.desk.say(text)
+        self.report_event("warning", text)
+
     def report_event(self, kind: str, text: str) -> None:
         """Distribute an event that has the current time."""
         self.hear(LogEvent(self._clock.now(), kind, text))
@@ -186,6 +204,7 @@ def _create_desk_model(
     control: DeskControl,
     events: EventDistributor,
     offsets: Callable[[], Offsets],
+    closing_sequence: ClosingSequence,
 ) -> Desk:
     """Create the screen model, register all its pages, and return the model."""
     journal = events.journal
@@ -211,6 +230,7 @@ def _create_desk_model(
         offset_book=create_offset_book(offsets, journal),
         file_changes=changed,
         start_watch=FirstMoveWatch(guarded_control.post) if machine.kind == "lathe" else None,
+        closing_sequence=closing_sequence,
     )
     setup = PageSetup(
         desk=desk,

@@ -11,10 +11,12 @@ from app.compose.runs.journal import Journal
 from app.desk.daily_backup import DailyBackup
 from app.desk.data_folder import BACKUPS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
+from app.desk.programs.program_folder import ProgramFileMonitor
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.shopfloor.machine_reading import UNKNOWN_READING, MachineReader
 from app.shopfloor.status_file import STATUS_FILE_NAME, StatusFileUpdater, StatusFileWriter, make_status
+from core.closing_steps import ClosingStep
 from core.executor.safety.watchdog import WATCHDOG_THREAD_NAME
 from core.executor.snapshot import LogEvent, Snapshot
 from core.machine.machine_model import Machine
@@ -37,37 +39,54 @@ SUPERVISED_THREAD_TEXTS = {
 }
 
 
-def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
-    """Report that a supervised thread has ended unexpectedly. The machine continues to run.
+def report_ended_thread(report_warning: Callable[[str], None], name: str) -> None:
+    """Report that a supervised thread has ended. The machine continues to run.
 
     The function is called in the watchdog's thread.
     """
     text = tr(
         Message("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK", what=tr(SUPERVISED_THREAD_TEXTS[name]))
     )
-    desk.say(text)
-    journal.hear(LogEvent(desk.read_snapshot().t, "warning", text))
+    report_warning(text)
 
 
-def start_services(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
-    """Start the status file, the daily backup and the services of optional features.
+class DeskServices:
+    """Services of the operator screen: the program file monitor, status file, daily backup and features.
 
-    Returns the functions that close the services. Errors are reported on the prompt line and in the event
-    log. No status file is written if another TurnDesk process uses the data folder.
+    Errors are reported on the prompt line and in the event log. No status file is written if another
+    TurnDesk process uses the data folder.
     """
 
-    def tell(why: str) -> None:
-        desk.say(tr(Message("NO SHOP-FLOOR DATA: {why}", why=why)))
-        journal.hear(LogEvent(desk.read_snapshot().t, "warning", why))
+    def __init__(self, journal: Journal) -> None:
+        self._journal = journal
+        self._steps = list[ClosingStep]()
 
-    assert desk.machine.machine is not None
-    open_ones = list[Callable[[], None]]()
-    if not journal.write_error or journal.waiting:
-        open_ones.append(_start_status_file(desk.machine.machine, desk.read_snapshot, find_data_folder()))
-        open_ones.append(_start_daily_backup(desk, desk.machine.machine, journal))
-    started = [extra.start_services(desk, journal, tell) for extra in extras().values()]
-    open_ones += [close for close in started if close is not None]
-    return open_ones
+    def start(self, desk: Desk) -> None:
+        """Start the services of this screen."""
+        journal = self._journal
+
+        def tell(why: str) -> None:
+            desk.say(tr(Message("NO SHOP-FLOOR DATA: {why}", why=why)))
+            journal.hear(LogEvent(desk.read_snapshot().t, "warning", why))
+
+        assert desk.machine.machine is not None
+        if not journal.write_error or journal.waiting:
+            self._add(_start_status_file(desk.machine.machine, desk.read_snapshot, find_data_folder()))
+            self._add(_start_daily_backup(desk, desk.machine.machine, journal))
+        for extra in extras().values():
+            self._add(extra.start_services(desk, journal, tell))
+        file = ProgramFileMonitor(lambda: desk.program_loader.loaded_program)
+        desk.storage_state.set_file_readers(lambda: file.difference_text, file.request_check)
+        self._steps.append(ClosingStep("program-file", file.close))
+        file.start()
+
+    def list_closing_steps(self) -> tuple[ClosingStep, ...]:
+        """Return the steps that close the services that have started."""
+        return tuple(self._steps)
+
+    def _add(self, close: Callable[[], None] | None) -> None:
+        if close is not None:
+            self._steps.append(ClosingStep(f"shop-floor-{len(self._steps) + 1}", close))
 
 
 def _start_status_file(

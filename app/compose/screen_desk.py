@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,8 @@ from app.compose.control.control_attachment import find_or_start_control
 from app.compose.control.control_client import ControlClient, ControlEventHandlers
 from app.compose.control.control_start import StartedControl
 from app.compose.control.live_control import LiveControl
-from app.compose.desk_assembly import EventDistributor, create_desk, create_desk_parts
-from app.compose.desk_services import SUPERVISED_THREAD_TEXTS, report_ended_thread, start_services
+from app.compose.desk_assembly import EventDistributor, create_control_parts, create_desk
+from app.compose.desk_services import SUPERVISED_THREAD_TEXTS, DeskServices, report_ended_thread
 from app.compose.machine.machine_setup import store_machine
 from app.compose.runs.error_log import ErrorLog
 from app.compose.runs.journal import Journal
@@ -21,7 +22,7 @@ from app.compose.stored_offsets import Offsets, read_stored_offsets
 from app.desk.command_errors import convert_to_command_error
 from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
-from app.desk.programs.program_folder import ProgramFileMonitor
+from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from app.desk.state.desk_control import DeskControl
 from core.closing_steps import ClosingStep
 from core.executor.commands import ReportInterruptedJob
@@ -56,54 +57,57 @@ def build_desk(
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     machine, control = begun_control or find_or_start_control(machine_file)
     journal, log = Journal.open_default(control_running=isinstance(control, ControlClient)), ErrorLog()
+    services = DeskServices(journal)
+    closing = ClosingSequence(
+        list_service_steps=services.list_closing_steps,
+        storage_steps=(
+            ClosingStep("store", partial(_close_store, journal), STORE_TIMEOUT_S),
+            ClosingStep("log", log.close),
+        ),
+    )
     try:
         store_machine(machine_file, journal)
         if control is None:
-            desk = _create_threaded_desk(machine, read_offsets, journal)
+            desk = _create_threaded_desk(machine, read_offsets, journal, closing)
         else:
-            desk = _create_process_desk(machine, read_offsets, journal, control)
+            desk = _create_process_desk(machine, read_offsets, journal, closing, control)
     except BaseException:
         if isinstance(control, StartedControl):
             control.kill_process()
         journal.close()
         log.close()
         raise
-    floor = start_services(desk, journal)
-    file = ProgramFileMonitor(lambda: desk.program_loader.loaded_program)
-    desk.closing_sequence.worker_steps += [
-        ClosingStep("program-file", file.close),
-        *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
-    ]
-    desk.closing_sequence.final_steps += [
-        ClosingStep("store", partial(_close_store, journal), STORE_TIMEOUT_S),
-        ClosingStep("log", log.close),
-    ]
-    desk.storage_state.set_file_readers(lambda: file.difference_text, file.request_check)
+    services.start(desk)
     desk.storage_state.set_store_readers(lambda: journal.write_error or log.error_text, lambda: journal.held)
     gc.freeze()  # modules and other permanent objects need not be scanned again
     gc.set_threshold(*_GC_THRESHOLDS)
-    file.start()
     return desk
 
 
-def _create_threaded_desk(machine: Machine, offsets: Callable[[], Offsets], journal: Journal) -> Desk:
+def _create_threaded_desk(
+    machine: Machine, offsets: Callable[[], Offsets], journal: Journal, closing: ClosingSequence
+) -> Desk:
     """Return the screen model, with its control running in a thread of this process."""
     clock = RealClock()
-    desk, executor, recorder = create_desk_parts(
-        machine, offsets, clock, journal, find_data_folder() / RECORDS_FOLDER_NAME
+    control, events, executor, recorder, close_drivers = create_control_parts(
+        machine, clock, journal, find_data_folder() / RECORDS_FOLDER_NAME
     )
     thread = ExecutorThread(executor, clock)
     watchdog = Watchdog(
-        thread, executor.halt_function, SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, desk, journal)
+        thread,
+        executor.halt_function,
+        SUPERVISED_THREAD_TEXTS,
+        partial(report_ended_thread, events.report_warning),
     )
-    desk.closing_sequence.stop_steps += [
-        ClosingStep("watchdog", watchdog.stop_checks),  # threads that end from now on end as intended
-        ClosingStep("executor", thread.close, EXECUTOR_TIMEOUT_S),
-    ]
-    desk.closing_sequence.worker_steps += [
-        ClosingStep("watchdog", watchdog.close),
-        ClosingStep("recorder", recorder.close),
-    ]
+    control_closing = ControlClosing(
+        (
+            ClosingStep("watchdog", watchdog.stop_checks),  # threads that end from now on end as intended
+            ClosingStep("executor", thread.close, EXECUTOR_TIMEOUT_S),
+        ),
+        close_drivers,
+        (ClosingStep("watchdog", watchdog.close), ClosingStep("recorder", recorder.close)),
+    )
+    desk = create_desk(machine, control, events, offsets, replace(closing, control=control_closing))
     executor.on_change_at_rest = desk.window_state.wake_window
     thread.start()
     recorder.start()
@@ -115,6 +119,7 @@ def _create_process_desk(
     machine: Machine,
     offsets: Callable[[], Offsets],
     journal: Journal,
+    closing: ClosingSequence,
     control: ControlClient | StartedControl,
 ) -> Desk:
     """Return the screen model, with its control running in a separate process."""
@@ -142,21 +147,23 @@ def _create_process_desk(
         live.restart,
         lambda: live.client.hello_message.control_identity,
     )
-    desk = create_desk(machine, used, events, offsets)
+    threads = ThreadWatch(SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, events.report_warning))
+    control_closing = ControlClosing(
+        (
+            ClosingStep("threads", threads.stop_reporting),  # threads that end from now on end as intended
+            ClosingStep("control", live.close, CONTROL_TIMEOUT_S),
+        )
+    )
+    desk = create_desk(machine, used, events, offsets, replace(closing, control=control_closing))
     for right in client.hello_message.rights:
         words = Message("control process: {name}: {granted}", name=right.name, granted=right.granted)
         events.report_event("rights", right.missing or words)
-    threads = ThreadWatch(SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, desk, journal))
-    desk.closing_sequence.stop_steps += [
-        ClosingStep("threads", threads.stop_reporting),  # threads that end from now on end as intended
-        ClosingStep("control", live.close, CONTROL_TIMEOUT_S),
-    ]
     desk.page_registry.add_frame_watcher(live.report_alive)
     live.start_threads(
         ControlEventHandlers(
             events.hear,
             journal.note,
-            partial(report_ended_thread, desk, journal),
+            partial(report_ended_thread, events.report_warning),
             desk.window_state.wake_window,
         ),
         desk.show_warning,

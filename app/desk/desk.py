@@ -80,6 +80,7 @@ class Desk:
         file_changes: MachineFileChanges | None = None,
         start_watch: FirstMoveWatch | None = None,
         clock: DeskClock | None = None,
+        closing_sequence: ClosingSequence | None = None,
     ) -> None:
         persistence = persistence or Persistence()
         self.program_loader: Final = program_loader
@@ -97,7 +98,7 @@ class Desk:
         self.page_registry: Final = PageRegistry()
         if start_watch is not None:
             self.page_registry.attach_model(start_watch)
-        self.closing_sequence: Final = ClosingSequence()
+        self._closing_sequence: Final = closing_sequence or ClosingSequence()
         self.settings_store: Final = SettingsStore(persistence)
         self.program_runs: Final = ProgramRuns(persistence)
         self.alarm_log: Final = AlarmLog(self.clock.format_local_time)
@@ -254,7 +255,7 @@ class Desk:
             ClosingStep("loading", self.program_loader.close),
             ClosingStep("levels", self.user_access.close),
         ]
-        self.closing_sequence.close([*own, *self.page_registry.make_closing_steps()])
+        self._closing_sequence.close([*own, *self.page_registry.make_closing_steps()])
 
     def hear(self, event: LogEvent) -> None:
         """Process an event of the executor. The executor's thread may call this method."""

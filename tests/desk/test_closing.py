@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.control.live_control import LiveControl
 from app.compose.screen_desk import build_desk
 from app.desk.desk import Desk
+from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from core.closing_steps import ClosingStep
 from core.executor.commands import EnableDrives
 from core.executor.snapshot import MachineState
@@ -18,7 +20,7 @@ from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 
 MACHINE = ("executor", "drivers")
-STEPS = (*MACHINE, "loading", "levels", "Part", "broker", "backup", "store", "log")
+STEPS = (*MACHINE, "loading", "levels", "Part", "recorder", "broker", "backup", "store", "log")
 LONG = 60.0  # s that a test waits for what has to come
 
 
@@ -61,16 +63,21 @@ class Part:
 
 def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
     """A desk whose every step of closing is noted."""
-    desk = desk_on(machine)
     step = partial(partial, closings.run)
-    desk.closing_sequence.wait_for_step = closings.wait
-    desk.closing_sequence.stop_steps = [ClosingStep("executor", step("executor"))]
-    desk.closing_sequence.close_drivers = step("drivers")
+    sequence = ClosingSequence(
+        ControlClosing(
+            (ClosingStep("executor", step("executor")),),
+            step("drivers"),
+            (ClosingStep("recorder", step("recorder")),),
+        ),
+        lambda: [ClosingStep(name, step(name)) for name in ("broker", "backup")],
+        tuple(ClosingStep(name, step(name)) for name in ("store", "log")),
+        closings.wait,
+    )
+    desk = desk_on(machine, closing=sequence)
     desk.program_loader = Part(step("loading"))  # type: ignore[misc, assignment]
     desk.user_access = Part(step("levels"))  # type: ignore[misc, assignment]
     desk.page_registry.attach_model(Part(step("Part")))
-    desk.closing_sequence.worker_steps = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
-    desk.closing_sequence.final_steps = [ClosingStep(name, step(name)) for name in ("store", "log")]
     return desk
 
 
@@ -96,8 +103,15 @@ def test_hanging_program_load_does_not_prevent_switching_drives_off(
 ) -> None:
     """The drives are off while the worker still waits for its dead network folder."""
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    desk = build_desk()
     reads, release, off = threading.Event(), threading.Event(), threading.Event()
+    let_go = LiveControl.close
+
+    def shut(control: LiveControl) -> None:
+        let_go(control)
+        off.set()
+
+    monkeypatch.setattr(LiveControl, "close", shut)
+    desk = build_desk()
 
     def hang(_request: object) -> None:
         reads.set()
@@ -106,13 +120,6 @@ def test_hanging_program_load_does_not_prevent_switching_drives_off(
     desk.post(EnableDrives())
     desk.program_loader.worker.request_work(hang, lambda _: None, lambda _: None)
     assert reads.wait(LONG)
-    let_go = desk.closing_sequence.close_drivers
-
-    def shut() -> None:
-        let_go()
-        off.set()
-
-    desk.closing_sequence.close_drivers = shut
     closing = threading.Thread(target=desk.close, daemon=True)
     closing.start()
     safe = off.wait(10.0)

@@ -23,6 +23,7 @@ from app.compose.program_proving import create_drawer, create_proof
 from app.compose.runs.journal import Journal
 from app.desk.background_work import ProgressCallback
 from app.desk.desk import Desk
+from app.desk.pages.attached_parts import ClosingSequence
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, ProvedJob
@@ -66,6 +67,7 @@ def desk_on(
     keep: Persistence | None = None,
     live: LiveSamples | None = None,
     book: OffsetBook | None = None,
+    closing: ClosingSequence | None = None,
 ) -> Desk:
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
@@ -102,6 +104,7 @@ def desk_on(
         persistence=persistence,
         offset_book=book,
         clock=DeskClock(format_local_time=lambda: "09:41:07"),
+        closing_sequence=closing,
     )
     desk.page_registry.attach_model(OffsetEffect(create_drawer(lathe)))
     desk.page_registry.attach_model(EditorModel(work, archive, own or Path("/dev/null"), SAMPLES))

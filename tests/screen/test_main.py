@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.exceptions import capture_exceptions
 
 from app.desk.desk import Desk
+from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from app.screen.screen_startup import run_screen
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import WindowFrame
@@ -31,8 +32,9 @@ def test_failed_model_build_ends_screen_with_reason(theme: str) -> None:
 
 
 def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
-    desk, closed = desk_on(machine), []
-    desk.closing_sequence.close_drivers = lambda: closed.append(True)
+    closed = list[bool]()
+    control = ControlClosing(close_drivers=lambda: closed.append(True))
+    desk = desk_on(machine, closing=ClosingSequence(control))
 
     def leave() -> None:
         if desk.program_loader.loaded_program.picture is None:
@@ -48,8 +50,9 @@ def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
 
 
 def test_computer_shutdown_closes_screen_in_feed_hold(machine: FakeMachine) -> None:
-    desk, closed = desk_on(machine), []
-    desk.closing_sequence.close_drivers = lambda: closed.append(machine.now.state)
+    closed = list[MachineState]()
+    control = ControlClosing(close_drivers=lambda: closed.append(machine.now.state))
+    desk = desk_on(machine, closing=ClosingSequence(control))
 
     def strike() -> None:
         if desk.program_loader.loaded_program.picture is None:

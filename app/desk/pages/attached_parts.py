@@ -46,29 +46,37 @@ class FrameWatcher(Protocol):
         ...
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
+class ControlClosing:
+    """Steps that close the control of the machine.
+
+    ``stop_steps`` stop the machine before everything else. ``close_drivers`` then closes the drivers.
+    ``worker_steps`` run at the same time as those of the services.
+    """
+
+    stop_steps: tuple[ClosingStep, ...] = ()
+    close_drivers: Callable[[], None] = lambda: None
+    worker_steps: tuple[ClosingStep, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class ClosingSequence:
     """Steps that close TurnDesk.
 
     Every step has a time limit, and the steps do not depend on each other. See ``core/closing_steps.py``.
+    ``list_service_steps`` returns the steps of the services that have started. ``storage_steps`` close the
+    targets to which the services write, in this order.
     """
 
-    stop_steps: list[ClosingStep] = field(default_factory=list)  # Close the machine before everything else.
-    close_drivers: Callable[[], None] = field(default=lambda: None)  # Closes the drivers.
-    # Closed at the same time as the attached models.
-    worker_steps: list[ClosingStep] = field(default_factory=list)
-    # Close the targets that the workers write to, in this order.
-    final_steps: list[ClosingStep] = field(default_factory=list)
+    control: ControlClosing = field(default_factory=ControlClosing)
+    list_service_steps: Callable[[], Iterable[ClosingStep]] = tuple
+    storage_steps: tuple[ClosingStep, ...] = ()
     wait_for_step: WaitFunction = wait_for_end  # Waits for one closing step.
 
     def close(self, model_steps: Iterable[ClosingStep]) -> None:
-        """Stop the machine and close its drivers, and then close all workers together.
-
-        After that, the steps in ``final_steps`` are executed.
-        """
-        close_in_order(
-            [*self.stop_steps, ClosingStep("drivers", self.close_drivers, DRIVERS_CLOSE_TIMEOUT_S)],
-            self.wait_for_step,
-        )
-        close_together([*model_steps, *self.worker_steps], self.wait_for_step)
-        close_in_order(self.final_steps, self.wait_for_step)
+        """Stop the machine and close its drivers, then close all workers together, and then the storage."""
+        drivers = ClosingStep("drivers", self.control.close_drivers, DRIVERS_CLOSE_TIMEOUT_S)
+        close_in_order((*self.control.stop_steps, drivers), self.wait_for_step)
+        workers = (*model_steps, *self.control.worker_steps, *self.list_service_steps())
+        close_together(workers, self.wait_for_step)
+        close_in_order(self.storage_steps, self.wait_for_step)
