@@ -7,7 +7,6 @@ unfinished change at the end of the log is not damage, because its write was nev
 
 from __future__ import annotations
 
-import errno
 import sqlite3
 import struct
 from contextlib import closing

@@ -7,44 +7,40 @@ from collections.abc import Iterator, Sequence
 import pytest
 
 from core.faults import get_fault_code
-from drivers.hal.bridge.packets import (
-    BridgeConfig,
-    PacketHead,
-    number,
-    pack_packet,
-    unpack_packet,
-)
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead, number, pack_packet
 from drivers.hal.hal_link import HalLink
+from drivers.process_messages import decode_message
 from drivers.wakeups import ManualClock
 from tests.drivers.hal.test_whom_it_blames import Bridge
 
 
-def of_length(length: int, data: bytes) -> bytes:
-    return length.to_bytes(4, "little") + data
+def of_lengths(data: bytes, head: int | None = None, numbers: int = 0) -> bytes:
+    head = len(data) - numbers if head is None else head
+    return head.to_bytes(4, "little") + numbers.to_bytes(4, "little") + data
 
 
 INVALID = {
     "nothing": b"",
-    "no whole length": b"\x05\0\0",
-    "an array": of_length(5, b"[1,2]"),
-    "null": of_length(4, b"null"),
-    "a string": of_length(4, b'"do"'),
-    "no JSON": of_length(4, b"nope"),
-    "no UTF-8": of_length(2, b"\xff\xfe"),
-    "a head cut off": of_length(9, b'{"n":1'),
-    "a deep head": of_length(100_000, b"[" * 100_000),
-    "half a number": of_length(2, b"{}1234567"),
+    "no whole lengths": b"\x05\0\0\0\0",
+    "an array": of_lengths(b"[1,2]"),
+    "null": of_lengths(b"null"),
+    "a string": of_lengths(b'"do"'),
+    "no JSON": of_lengths(b"nope"),
+    "no UTF-8": of_lengths(b"\xff\xfe"),
+    "a head cut off": of_lengths(b'{"n":1', head=9),
+    "a deep head": of_lengths(b"[" * 100_000),
+    "half a number": of_lengths(b"{}1234567", numbers=7),
 }
 
 
 @pytest.mark.parametrize("data", INVALID.values(), ids=INVALID)
 def test_invalid_packet_is_a_value_error(data: bytes) -> None:
     with pytest.raises(ValueError, match=r"\w"):
-        unpack_packet(data)
+        decode_message(data)
 
 
 def test_packet_is_unpacked_as_it_was_packed() -> None:
-    head, numbers = unpack_packet(pack_packet({"do": "splice", "n": 3}, (1.5, -2.0)))
+    head, numbers = decode_message(pack_packet({"do": "splice", "n": 3}, (1.5, -2.0)))
     assert (head, list(numbers)) == ({"do": "splice", "n": 3}, [1.5, -2.0])
 
 
@@ -55,7 +51,7 @@ def test_invalid_packet_of_the_bridge_is_a_fault_and_stops_the_bridge(data: byte
         is_odd = False
 
         def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
-            yield unpack_packet(data if self.is_odd else pack_packet({"n": 0}))
+            yield decode_message(data if self.is_odd else pack_packet({"n": 0}))
 
         def stop_bridge(self) -> None:
             self.stops += 1
