@@ -328,7 +328,7 @@ class PathBuilder:
                 ),
                 "path-ended",
             )
-        _demand_unbroken(table, self._end)
+        demand_unbroken(table, self._end)
         pieces, counts = _make_block_pieces(table, self._limits)
         if self._start is None:
             self._start = table.start[0].copy()
@@ -440,7 +440,11 @@ def _make_block_pieces(table: BlockTable, limits: MotionLimits) -> tuple[PathPie
     return pieces if long.all() else pieces[long], counts
 
 
-def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
+def demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
+    """Raise MotionError if a block does not start where the previous block ends.
+
+    ``end`` (axes,) is the end of the block before the first row, or None if there is no such block.
+    """
     before = table.end[:-1] if end is None else np.vstack([end, table.end[:-1]])
     gap = np.abs(table.start[len(table.n) - len(before) :] - before)
     if (gap > BLOCK_GAP_TOLERANCE).any():

@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from core.message import Message
-from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError
+from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, IntArray, MotionError
 from core.motion.motion_path import MotionPath
 from core.motion.motion_profile import MotionProfile, Phases
 
 # --- look-ahead -----------------------------------------------------------------------------------------
 
 
-_FEW_PIECES = 24  # number of limits up to which a plain loop is faster than arrays
+FEW_PIECES = 24  # number of limits up to which a plain loop is faster than arrays
 _SUMS_ROW = 256  # =
 
 
@@ -32,7 +33,7 @@ def limit_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     the running sum of ``gain``.
     """
     count = len(limit)
-    if count <= _FEW_PIECES:
+    if count <= FEW_PIECES:
         return _one_by_one(limit.tolist(), gain.tolist())
     rows = -(-count // _SUMS_ROW)
     top = float(limit[np.isfinite(limit)].max(initial=0.0))
@@ -112,33 +113,81 @@ def build_profile(
     speeds at the joints. A piece accelerates to its cap or as far as its length permits, cruises, and
     decelerates. A piece that is entered above its cap decelerates first.
     """
-    peak = np.minimum(
-        np.maximum(speed_caps, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + accelerations * length
-    )
-    v, vp = np.sqrt(speeds), np.sqrt(peak)
-    v0, v1 = v[:-1], v[1:]
-    up, cruise, down = _distances(length, accelerations, v0, vp, v1)
     s = path.joint_distances[first_piece : first_piece + len(length)].copy()
     s[0] = start_distance
-    times = np.zeros((len(length), 3))
-    for k, (dist, total) in enumerate(((up, v0 + vp), (cruise, vp + vp), (down, vp + v1))):
-        np.divide(2.0 * dist, total, out=times[:, k], where=total > 0.0)
-    kept = np.flatnonzero(times > 0.0)
-    dt = times.take(kept)
-    t = np.concatenate([[0.0], np.cumsum(dt)])
+    ramps = find_ramps(
+        s,
+        length=length,
+        accelerations=accelerations,
+        speed_caps=speed_caps,
+        start_squares=speeds[:-1],
+        end_squares=speeds[1:],
+    )
+    times = np.concatenate([[0.0], np.cumsum(ramps.durations_s)])
+    pieces = np.arange(first_piece, first_piece + len(length))
     return MotionProfile(
         path=path,
         start_distance=start_distance,
         end_distance=min(float(s[-1] + length[-1]), float(path.joint_distances[first_piece + len(length)])),
-        duration_s=float(t[-1]),
-        phases=Phases(
-            start_times_s=t[:-1],
+        duration_s=float(times[-1]),
+        phases=ramps.make_phases(times[:-1], np.repeat(pieces, 3)),
+    )
+
+
+class Ramps(NamedTuple):
+    """The acceleration, the cruise and the deceleration of n pieces, one row (n, 3) for each piece.
+
+    A phase that a piece does not have has the duration 0.
+    """
+
+    durations_s: FloatArray
+    start_distances: FloatArray
+    start_speeds: FloatArray
+    speed_changes: FloatArray
+
+    def make_phases(self, start_times_s: FloatArray, piece_indices: IntArray) -> Phases:
+        """Return the phases that take time; the arguments have one entry for each of the 3·n phases."""
+        kept = np.flatnonzero(self.durations_s)
+        dt = self.durations_s.take(kept)
+        return Phases(
+            start_times_s=start_times_s.take(kept),
             durations_s=dt,
-            start_distances=_in_turn(s, s + up, s + up + cruise).take(kept),
-            start_speeds=_in_turn(v0, vp, vp).take(kept),
-            accelerations=_in_turn(vp - v0, vp - vp, v1 - vp).take(kept) / dt,
-            piece_indices=np.repeat(np.arange(first_piece, first_piece + len(length)), 3).take(kept),
-        ),
+            start_distances=self.start_distances.take(kept),
+            start_speeds=self.start_speeds.take(kept),
+            accelerations=self.speed_changes.take(kept) / dt,
+            piece_indices=piece_indices.take(kept),
+        )
+
+
+def find_ramps(
+    start_distances: FloatArray,
+    *,
+    length: FloatArray,
+    accelerations: FloatArray,
+    speed_caps: FloatArray,
+    start_squares: FloatArray,
+    end_squares: FloatArray,
+) -> Ramps:
+    """Return the ramps of n pieces that start at ``start_distances`` (n,).
+
+    ``speed_caps``, ``start_squares`` and ``end_squares`` (n,) are the squared speeds that are permitted
+    within each piece, at its start and at its end.
+    """
+    peak = np.minimum(
+        np.maximum(speed_caps, end_squares), 0.5 * (start_squares + end_squares) + accelerations * length
+    )
+    v0, vp, v1 = np.sqrt(start_squares), np.sqrt(peak), np.sqrt(end_squares)
+    up, cruise, down = _distances(length, accelerations, v0, vp, v1)
+    times = np.zeros((len(length), 3))
+    for k, (dist, total) in enumerate(((up, v0 + vp), (cruise, vp + vp), (down, vp + v1))):
+        np.divide(2.0 * dist, total, out=times[:, k], where=total > 0.0)
+    np.maximum(times, 0.0, out=times)
+    s = start_distances
+    return Ramps(
+        durations_s=times,
+        start_distances=_in_turn(s, s + up, s + up + cruise),
+        start_speeds=_in_turn(v0, vp, vp),
+        speed_changes=_in_turn(vp - v0, vp - vp, v1 - vp),
     )
 
 

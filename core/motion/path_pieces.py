@@ -248,7 +248,7 @@ def extend_smoothed_pieces(
         else smoothed_pieces.start[len(smoothed_pieces) - redo_count]
     )
     # Only chords have moved ends. A rotation of C must not change its length because of noise in X and Z.
-    if not len(smooth) or not _is_short_chord(smooth[:1], limits)[0] or (smooth.start[0] == begin).all():
+    if not len(smooth) or not find_short_chords(smooth[:1], limits)[0] or (smooth.start[0] == begin).all():
         return smooth
     joints = _joint_positions(smooth)
     joints[0] = begin
@@ -257,10 +257,10 @@ def extend_smoothed_pieces(
 
 def ends_with_chord(pieces: PathPieces, limits: MotionLimits) -> bool:
     """Return whether the last joint may still be moved when pieces are added."""
-    return len(pieces) > 0 and bool(_is_short_chord(pieces[-1:], limits)[0])
+    return len(pieces) > 0 and bool(find_short_chords(pieces[-1:], limits)[0])
 
 
-def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
+def find_short_chords(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
     """Return a mask (n,) of the lines of linear axes that are so short that rounding affects them."""
     # Rounding turns longer lines so little that no speed is too high for the joint.
     longest = (
@@ -278,7 +278,7 @@ def _is_free_joint(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
     """
     if limits.grain <= 0.0 or len(pieces) < 3:
         return np.zeros(max(len(pieces) - 1, 0), dtype=bool)
-    chord = _is_short_chord(pieces, limits)
+    chord = find_short_chords(pieces, limits)
     turn = np.abs(np.diff(pieces.direction[:, :2], axis=0)).max(axis=1)
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
     rounding = turn * shorter <= _TURNS * limits.grain

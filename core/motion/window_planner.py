@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from core.motion.block_table import MotionBlock, MoveSeries, split_into_batches
 from core.motion.motion_path import PathBuilder
 from core.motion.motion_plan import find_last_settled_joint, plan_motion
 from core.motion.motion_profile import MotionProfile
+from core.motion.section_plans import SectionPlan, plan_sections
 
 
 class PlannedChunk(NamedTuple):
@@ -75,6 +76,17 @@ class WindowPlanner:
             if self._waiting >= self._window:
                 self._waiting = 0
                 yield from self._settled()
+
+    def plan_sections_ahead(self, sections: Sequence[Sequence[MotionBlock]]) -> list[SectionPlan | None]:
+        """Return the plans of sections that follow the present one; see ``plan_sections``."""
+        return plan_sections(sections, self._limits, self._rpm_max)
+
+    def accept_section(self, plan: SectionPlan) -> PlannedChunk:
+        """Return the motion of a whole section that was planned ahead, after the motion yielded so far."""
+        begin, joints, numbers = self._t, plan.joint_times_s, plan.profile.path.block_numbers
+        self._t = begin + plan.profile.duration_s
+        self._last = int(numbers[-1])
+        return PlannedChunk(begin, plan.profile, numbers, begin + joints[:-1], begin + joints[1:])
 
     def finish_section(self) -> Iterator[PlannedChunk]:
         """Plan a stop at the end of the last block, as for an exact stop, and yield the motion.

@@ -34,6 +34,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError, MotionLimits
+from core.motion.section_plans import SectionPlan
 from core.motion.window_planner import PlannedChunk, WindowPlanner
 from core.proving.proof_report import sort_findings
 from core.proving.spindle_forecast import (
@@ -167,6 +168,7 @@ class RestSpan(NamedTuple):
         return self.iter_block_times()
 
 
+_MAX_BLOCKS_AHEAD = 256  # blocks of a cycle that are planned together
 _IDEAL_ACCELERATION = 1e12  # mm/s²; the ramps of an ideal machine are shorter than the displayed resolution
 
 
@@ -206,7 +208,9 @@ class Timeline:
             limits = replace(limits, amax=(_IDEAL_ACCELERATION,) * len(limits.amax))
         self._planner = WindowPlanner(limits, rpm_max=machine.spindle.max_rpm)
         self._source = self.interpreter.generate_series()
-        self._back: Block | StraightMoveSeries | None = None  # the next item after a motion, already read
+        self._read_items: deque[Block | StraightMoveSeries] = deque()  # the next items, already read
+        self._plans: deque[tuple[int, SectionPlan | None]] = deque()  # of the next sections, by block count
+        self._cycle_line = 0  # line of the first block of the last path section
         self._moving = PendingBlocks()
         self._ends = SectionEndDetector()
         self._speed_wanted = False  # a speed was commanded, and no feed has waited for it yet
@@ -258,10 +262,7 @@ class Timeline:
                 yield self._action(each)
 
     def _next(self) -> Block | StraightMoveSeries | None:
-        if self._back is not None:
-            back, self._back = self._back, None
-            return back
-        return next(self._source, None)
+        return self._read_items.popleft() if self._read_items else next(self._source, None)
 
     def _path_section(self, each: Block | StraightMoveSeries) -> Iterator[MotionSpan | RestSpan]:
         """Yield the spans of one path section, which starts and ends at rest."""
@@ -275,13 +276,59 @@ class Timeline:
             yield self._make_index_wait(first)
         start = self.time_s - self._planner.planned_time_s
         try:
-            for chunk in self._planner.plan_blocks(self._section_blocks(each)):
-                yield self._moved(start, chunk)
-            for chunk in self._planner.finish_section():
+            for chunk in self._plan_section(each):
                 yield self._moved(start, chunk)
             yield self._rest(self._wait_seconds(SETTLING_TIME_S))
         except MotionError as error:
             self._refuse(str(error))
+
+    def _plan_section(self, each: Block | StraightMoveSeries) -> Iterator[PlannedChunk]:
+        """Yield the motion of the path section that starts with ``each``.
+
+        The sections that a cycle creates from one line are planned together, from the second section on.
+        """
+        line = each.line if isinstance(each, Block) else 0
+        if not self._plans and isinstance(each, Block) and line == self._cycle_line:
+            self._plan_cycle(each)
+        self._cycle_line = line
+        count, plan = self._plans.popleft() if self._plans else (0, None)
+        if plan is None:
+            yield from self._planner.plan_blocks(self._section_blocks(each))
+            yield from self._planner.finish_section()
+            return
+        self._moving.append(each)
+        for _ in range(count - 1):
+            block = self._read_items.popleft()
+            self._ends.needs_standstill_before(_template_block(block))
+            self._moving.append(block)
+        yield self._planner.accept_section(plan)
+
+    def _plan_cycle(self, first: Block) -> None:
+        """Plan the complete path sections that start with ``first`` and come from its line."""
+        ends, sections = copy(self._ends), [[first]]
+        for each in self._read_blocks_ahead(first.line):
+            if ends.needs_standstill_before(each):
+                ends.record_standstill(each)
+                sections.append([each])
+            else:
+                sections[-1].append(each)
+        del sections[-1]  # more blocks may follow in it
+        if sections:
+            plans = self._planner.plan_sections_ahead(sections)
+            self._plans.extend(zip(map(len, sections), plans, strict=True))
+
+    def _read_blocks_ahead(self, line: int) -> Iterator[Block]:
+        """Yield the next moves that come from the line, without removing them from the items."""
+        for at in range(_MAX_BLOCKS_AHEAD):
+            if at == len(self._read_items):
+                item = next(self._source, None)
+                if item is None:
+                    return
+                self._read_items.append(item)
+            each = self._read_items[at]
+            if isinstance(each, StraightMoveSeries) or not each.moves or each.line != line:
+                return
+            yield each
 
     def _section_blocks(
         self, each: Block | StraightMoveSeries | None
@@ -292,8 +339,8 @@ class Timeline:
             yield each
             each = self._next()
             if each is not None and self._ends.needs_standstill_before(_template_block(each)):
-                break
-        self._back = each
+                self._read_items.appendleft(each)
+                return
 
     def _make_index_wait(self, block: Block) -> RestSpan:
         """Return the rest span until the axes may start at the spindle index, at most one revolution.
@@ -382,7 +429,9 @@ class Timeline:
         line = self._moving.first_block.line if self._moving.first_block else 0
         hint = "change the move named in the message"
         self._refused.append(Diagnostic(line, 0, Severity.ERROR, "impossible-motion", why, hint))
-        self._source, self._back = iter(()), None
+        self._source = iter(())
+        self._read_items.clear()
+        self._plans.clear()
 
 
 def _template_block(each: Block | StraightMoveSeries) -> Block:
