@@ -40,11 +40,14 @@ class CutSide(StrEnum):
 class _OutlineSides:
     """The two sides of one convex outline.
 
-    ``near_edge`` faces the axis. ``far_edge`` is the side away from the axis, mirrored.
+    ``near_edge`` faces the axis. ``far_edge`` is the side away from the axis, mirrored. ``z_range`` and
+    ``min_radius`` are the bounds of ``near_edge``, in mm.
     """
 
     near_edge: AxisFacingEdge
     far_edge: AxisFacingEdge
+    z_range: tuple[float, float]
+    min_radius: float
 
 
 class _OutlineSet(NamedTuple):
@@ -60,9 +63,9 @@ class _OutlineSet(NamedTuple):
     @classmethod
     def from_outlines(cls, outlines: Iterable[FloatArray]) -> _OutlineSet:
         sides = [_sides(outline) for outline in outlines]
-        z = min((float(each.near_edge.z[0]) for each in sides), default=math.inf)
-        r = min((float(each.near_edge.r.min()) for each in sides), default=math.inf)
-        return cls(sides, (z, r), max((float(each.near_edge.z[-1]) for each in sides), default=-math.inf))
+        z = min((each.z_range[0] for each in sides), default=math.inf)
+        r = min((each.min_radius for each in sides), default=math.inf)
+        return cls(sides, (z, r), max((each.z_range[1] for each in sides), default=-math.inf))
 
 
 class Cutter:
@@ -124,6 +127,18 @@ class Cutter:
     def find_cut(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Return the cut that the edges would make, without removing material."""
         return self._swept(part, start, end, cut=False)
+
+    def touches_material(self, part: TurnedPart, start: Point, end: Point) -> bool:
+        """Return whether the edges would cut material on a straight move.
+
+        A move along r is first checked only in the column at the nose, which usually decides.
+        """
+        if self.side is CutSide.OUTSIDE and start[0] == end[0]:
+            one, other = self._ends_on_working_side(start, end)
+            place = start[0], min(one[1], other[1])
+            if any(part.is_cut_at_nose(outline.near_edge, place) for outline in self._cutting.sides):
+                return True
+        return bool(self.find_cut(part, start, end))
 
     def cut_with_body(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Remove the material that the holder and the shank hit, and return the cut.
@@ -208,17 +223,18 @@ class Cutter:
     def _swept(self, part: TurnedPart, start: Point, end: Point, *, cut: bool) -> Cut:
         met = NO_CUT
         start, end = self._ends_on_working_side(start, end)
-        if not cut and self._is_outside_columns(part, self._cutting, start, end):
-            return NO_CUT
         for outline in self._cutting.sides:
             met = met.combine(self._take(part, outline, start, end, cut=cut))
         return met
 
     def _take(self, part: TurnedPart, outline: _OutlineSides, start: Point, end: Point, *, cut: bool) -> Cut:
         if self.side is CutSide.OUTSIDE:
-            return part.cut_outside(
-                *sweep_edge(outline.near_edge, start, end, part.columns, part.max_stock_radius_mm), remove=cut
-            )
+            back, front = outline.z_range
+            radius = part.find_max_radius(min(start[0], end[0]) + back, max(start[0], end[0]) + front)
+            if min(start[1], end[1]) + outline.min_radius >= radius:
+                return NO_CUT
+            swept = sweep_edge(outline.near_edge, start, end, part.columns, radius)
+            return part.cut_outside(*swept, remove=cut)
         first, far = sweep_edge(outline.far_edge, _mirrored(start), _mirrored(end), part.columns)
         if self.side is CutSide.BORE and not self.is_drill:
             return part.cut_inside(first, -far, remove=cut)
@@ -233,9 +249,8 @@ def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, 
 
 
 def _sides(outline: FloatArray) -> _OutlineSides:
-    return _OutlineSides(
-        find_axis_facing_edge(outline), find_axis_facing_edge(outline * np.array([1.0, -1.0]))
-    )
+    near, far = find_axis_facing_edge(outline), find_axis_facing_edge(outline * np.array([1.0, -1.0]))
+    return _OutlineSides(near, far, (float(near.z[0]), float(near.z[-1])), float(near.r.min()))
 
 
 def _mirrored(point: Point) -> Point:

@@ -8,6 +8,7 @@ the point where it is tangent to the move, the move itself, and the rest of the 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -33,9 +34,8 @@ class Columns(NamedTuple):
 
     @property
     def column_centers(self) -> FloatArray:
-        """Return the Z of the middle of each column (number,)."""
-        middles: FloatArray = self.first_z_mm + self.step_mm * np.arange(self.column_count, dtype=np.float64)
-        return middles
+        """Return the Z of the middle of each column (number,), as a read-only array."""
+        return _find_column_centers(self)
 
     def find_column(self, z: float) -> int:
         """Return the index of the first column whose middle is at ``z`` or greater.
@@ -43,6 +43,15 @@ class Columns(NamedTuple):
         The index is limited to the range of the columns.
         """
         return min(max(math.ceil((z - self.first_z_mm) / self.step_mm), 0), self.column_count)
+
+
+@lru_cache(maxsize=4)
+def _find_column_centers(columns: Columns) -> FloatArray:
+    centers: FloatArray = columns.first_z_mm + columns.step_mm * np.arange(
+        columns.column_count, dtype=np.float64
+    )
+    centers.flags.writeable = False
+    return centers
 
 
 class AxisFacingEdge(NamedTuple):
@@ -95,8 +104,7 @@ def sweep_edge(
         r = np.concatenate((edge.r[: at + 1] + r1, edge.r[at:] + r0))
     low, high = _ends_below(z, r, max_radius_mm)
     first, last = columns.find_column(low), columns.find_column(high)
-    there = columns.first_z_mm + columns.step_mm * np.arange(first, max(first, last))
-    return first, np.interp(there, z, r)
+    return first, np.interp(columns.column_centers[first:last], z, r)
 
 
 def _ends_below(z: FloatArray, r: FloatArray, below: float) -> Point:

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.part.stock import Stock
-from core.part.swept_edge import Columns, FloatArray, Point
+from core.part.swept_edge import AxisFacingEdge, Columns, FloatArray, Point
 
 DEFAULT_COLUMN_WIDTH_MM = 0.008
 """Default column width in mm, for up to ``_MAX_COLUMNS`` columns.
@@ -98,6 +98,8 @@ class Cut(NamedTuple):
 
     def combine_sequence(self, other: Cut) -> Cut:
         """Return the total of this cut and a later cut of the same move, with the greater of both depths."""
+        if not self or not other:
+            return self or other
         return self.combine(other)._replace(depth_mm=max(self.depth_mm, other.depth_mm))
 
 
@@ -189,6 +191,23 @@ class TurnedPart:
         """
         return any(self._crossed(start, end, min_depth) for start, end in pairwise(points))
 
+    def is_cut_at_nose(self, edge: AxisFacingEdge, place: Point) -> bool:
+        """Return whether an edge at ``place`` would cut the first column in front of its lowest point.
+
+        The edge may cut other columns although it does not cut this column.
+        """
+        lowest = int(edge.r.argmin())
+        if lowest + 1 == len(edge.z):
+            return False
+        (z0, z1), (r0, r1) = edge.z[lowest : lowest + 2].tolist(), edge.r[lowest : lowest + 2].tolist()
+        column = self.columns.find_column(place[0] + z0)
+        ahead = self.columns.first_z_mm + self.columns.step_mm * column - (place[0] + z0)
+        if column == self.columns.column_count or not 0.0 <= ahead < z1 - z0:
+            return False
+        radius = place[1] + r0 + (r1 - r0) * ahead / (z1 - z0)
+        low, high = self.inner_radii[:, column].tolist(), self.outer_radii[:, column].tolist()
+        return any(b - max(a, radius) > 2.0 * _TOUCH for a, b in zip(low, high, strict=True))
+
     def _crossed(self, start: Point, end: Point, depth: float) -> bool:
         (z0, r0), (z1, r1) = (start, end) if start[0] <= end[0] else (end, start)
         first, last = self.columns.find_column(z0), self.columns.find_column(z1)
@@ -200,7 +219,7 @@ class TurnedPart:
             return bool(
                 np.any((high - low > 2 * depth) & (farthest > low + depth) & (nearest < high - depth))
             )
-        z = self.columns.first_z_mm + self.columns.step_mm * np.arange(first, last)
+        z = self.columns.column_centers[first:last]
         r = np.abs(r0 + (r1 - r0) * (z - z0) / (z1 - z0))
         low, high = self.inner_radii[:, first:last], self.outer_radii[:, first:last]
         return bool(np.any((r > low + depth) & (r < high - depth)))
@@ -215,7 +234,8 @@ class TurnedPart:
         there = slice(first_column, first_column + len(radii))
         met = NO_CUT
         for low, high in zip(self.inner_radii[:, there], self.outer_radii[:, there], strict=True):
-            left = np.minimum(np.maximum(radii, low), high)
+            left = np.maximum(radii, low)
+            np.minimum(left, high, out=left)
             met = met.combine(self._measure_cut(first_column, low, high, left, high))
             if remove:
                 high[:] = left
@@ -287,17 +307,22 @@ class TurnedPart:
     def _measure_cut(
         self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray
     ) -> Cut:
-        """Return the cut between ``start`` and ``end``, which are both within the interval of a layer."""
+        """Return the cut between ``start`` and ``end``, which are both within the interval of a layer.
+
+        Pass ``high`` as ``end`` if everything outside ``start`` is cut.
+        """
         thick = end - start
         touched = (thick > _TOUCH).nonzero()[0]
         if not len(touched):
             return NO_CUT
         step, begin = self.columns.step_mm, self.columns.first_z_mm + self.columns.step_mm * (first - 0.5)
-        whole = (start[touched] <= low[touched] + _TOUCH) & (end[touched] >= high[touched] - _TOUCH)
+        whole = start[touched] <= low[touched] + _TOUCH
+        if end is not high:
+            whole &= end[touched] >= high[touched] - _TOUCH
         return Cut(
-            area=step * float(thick.sum()),
+            area=step * float(np.add.reduce(thick)),
             volume_mm3=math.pi * step * float(end @ end - start @ start),
-            depth_mm=float(thick.max()),
+            depth_mm=float(np.maximum.reduce(thick)),
             width_mm=step * len(touched),
             back_z_mm=begin + step * int(touched[0]),
             front_z_mm=begin + step * (int(touched[-1]) + 1),

@@ -266,7 +266,7 @@ def is_near_material(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
         (-NEAR_MATERIAL_MM, 0.0),
         (NEAR_MATERIAL_MM, 0.0),
     )
-    return any(cutter.find_cut(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
+    return any(cutter.touches_material(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
 
 
 def _air_fraction(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
