@@ -304,21 +304,24 @@ class Timeline:
         yield self._planner.accept_section(plan)
 
     def _plan_cycle(self, first: Block) -> None:
-        """Plan the complete path sections that start with ``first`` and come from its line."""
+        """Plan the complete path sections that start with ``first`` and come from its line.
+
+        Dwells may separate them, such as the dwells of a drilling cycle that pecks.
+        """
         ends, sections = copy(self._ends), [[first]]
         for each in self._read_blocks_ahead(first.line):
             if ends.needs_standstill_before(each):
                 ends.record_standstill(each)
-                sections.append([each])
-            else:
+                sections.append([])
+            if each.moves:
                 sections[-1].append(each)
         del sections[-1]  # more blocks may follow in it
-        if sections:
+        if sections := [section for section in sections if section]:
             plans = self._planner.plan_sections_ahead(sections)
             self._plans.extend(zip(map(len, sections), plans, strict=True))
 
     def _read_blocks_ahead(self, line: int) -> Iterator[Block]:
-        """Yield the next moves that come from the line, without removing them from the items."""
+        """Yield the next moves and dwells that come from the line, without removing them from the items."""
         for at in range(_MAX_BLOCKS_AHEAD):
             if at == len(self._read_items):
                 item = next(self._source, None)
@@ -326,7 +329,9 @@ class Timeline:
                     return
                 self._read_items.append(item)
             each = self._read_items[at]
-            if isinstance(each, StraightMoveSeries) or not each.moves or each.line != line:
+            if isinstance(each, StraightMoveSeries) or each.line != line:
+                return
+            if not (each.moves or isinstance(each.action, Dwell)):
                 return
             yield each
 

@@ -118,6 +118,25 @@ def test_starts_of_a_metric_thread_on_another_control(monkeypatch: pytest.Monkey
     assert compare(monkeypatch, text, Dialect.SINUMERIK) > 10
 
 
+HOLE = "G90 G17 G71\nT1 D1\nG97 S500 M3\nG95 F0.1\nG0 X0 Z10\n"
+
+
+@pytest.mark.parametrize(
+    ("cycle", "together"),
+    [
+        ("CYCLE83(5,0,2,-40,,-5,,2,1,0.5,1,1)", 30),
+        ("CYCLE83(5,0,2,-40,,-5,,2,0,0,1,0)", 0),  # without a dwell, all pecks are one section
+        ("CYCLE82(5,0,2,-5,,1)", 0),  # two sections with a dwell between them
+    ],
+)
+def test_pecks_between_dwells_are_planned_together(
+    monkeypatch: pytest.MonkeyPatch, cycle: str, together: int
+) -> None:
+    """Pecks of 5, 3 and then 2 mm are 18 pecks for 40 mm; each has a section in and a section out."""
+    count = compare(monkeypatch, f"{HOLE}{cycle}\nM30\n", Dialect.SINUMERIK)
+    assert (count >= together) if together else (count == 0)
+
+
 @pytest.mark.parametrize(
     "text",
     [
