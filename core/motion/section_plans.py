@@ -68,8 +68,10 @@ def plan_sections(
 def _find_special_blocks(table: BlockTable, pieces: PathPieces, limits: MotionLimits) -> BoolArray:
     """Return a mask (m,) of the blocks that are not exactly one piece with independent limits."""
     speeds = find_expected_speeds(pieces, find_speed_caps(pieces, limits))
-    short = (pieces.length <= speeds * limits.interval) | find_short_chords(pieces, limits)
+    short = pieces.length <= speeds * limits.interval
     special: BoolArray = short | depends_on_radius(table) | find_divided_blocks(table)
+    chords = find_short_chords(pieces, limits)
+    special[1:] |= chords[1:] & chords[:-1]  # the joint between two short chords may be smoothed
     return special
 
 

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.motion.axis_limits import MotionLimits
 from core.motion.motion_profile import MotionProfile
 from core.motion.section_plans import plan_sections
 from core.motion.window_planner import PlannedChunk, WindowPlanner
@@ -25,9 +26,9 @@ PASS = [
 TURNING = [replace(PASS[0], rpm=600.0), PASS[1]]
 
 
-def plan_alone(blocks: Sequence[Block]) -> PlannedChunk:
+def plan_alone(blocks: Sequence[Block], limits: MotionLimits) -> PlannedChunk:
     """Plan one section with a planner that has planned nothing before."""
-    planner = WindowPlanner(LIMITS)
+    planner = WindowPlanner(limits)
     return [*planner.plan_blocks(blocks), *planner.finish_section()][-1]
 
 
@@ -42,8 +43,9 @@ def list_values(profile: MotionProfile) -> list[list[float]]:
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.lists(programs(most=6), min_size=1, max_size=8))
-def test_sections_get_the_same_plans_as_alone(sections: list[list[Block]]) -> None:
+@given(st.lists(programs(most=6), min_size=1, max_size=8), st.sampled_from([0.0, 0.001, 0.02]))
+def test_sections_get_the_same_plans_as_alone(sections: list[list[Block]], grain: float) -> None:
+    limits = replace(LIMITS, grain=grain)
     placed: list[list[Block]] = []
     for section in sections:  # each section starts where the previous section ends
         x, z, n = (placed[-1][-1].x, placed[-1][-1].z, placed[-1][-1].n) if placed else (0.0, 0.0, 0)
@@ -57,9 +59,9 @@ def test_sections_get_the_same_plans_as_alone(sections: list[list[Block]]) -> No
                 for at, each in enumerate(section, start=1)
             ]
         )  # fmt: skip
-    for blocks, plan in zip(placed, plan_sections(placed, LIMITS, math.inf), strict=True):
+    for blocks, plan in zip(placed, plan_sections(placed, limits, math.inf), strict=True):
         if plan is not None:
-            alone = plan_alone(blocks)
+            alone = plan_alone(blocks, limits)
             assert list_values(plan.profile) == list_values(alone.profile)
             assert plan.joint_times_s[:-1].tolist() == alone.block_starts_s.tolist()
             assert plan.joint_times_s[1:].tolist() == alone.block_ends_s.tolist()
@@ -83,6 +85,14 @@ def test_moves_shorter_than_a_setpoint_interval_are_planned_alone() -> None:
     long = polyline([(15.1, -20.0), (17.0, -20.0)], 127.0)
     plans = plan_sections([short, long], LIMITS, math.inf)
     assert [plan is None for plan in plans] == [True, False]
+
+
+@pytest.mark.parametrize(("second", "is_alone"), [((10.17, 0.17), True), ((20.0, 10.0), False)])
+def test_neighboring_short_chords_are_planned_alone(second: tuple[float, float], is_alone: bool) -> None:
+    """With a grain of 0.001 mm, a chord is short below 4·0.001·127/(3048·0.001) = 0.167 mm."""
+    limits = replace(LIMITS, grain=0.001)
+    blocks = polyline([(9.95, 0.0), (10.1, 0.05), second], 10.0)
+    assert [plan is None for plan in plan_sections([blocks], limits, math.inf)] == [is_alone]
 
 
 def test_moves_without_length_are_planned_alone() -> None:
