@@ -95,6 +95,7 @@ class Writer:
         self.feed_words = ""
         self.needs_both = True
         self.returns_to_start = True  # G98
+        self.cut_feed = 0.0  # mm/s, of the last cut
         self.cycle_feed = 0.0
         rate = options.rapid or (300.0 if options.inches else 7620.0)
         self.add(f"G90G94F{number(rate, 3)}{'G70' if options.inches else 'G71'}G72")
@@ -301,10 +302,12 @@ class Writer:
             x, z = values.get("X", self.x), values.get("Z", self.z)
             if name == "G0":
                 self.rapid(x, z)
-            elif name == "G1":
-                self.cut(name, x, z, values.get("F", 0.0))
+                return
+            self.cut_feed = values.get("F", self.cut_feed)
+            if name == "G1":
+                self.cut(name, x, z, self.cut_feed)
             else:
-                self.arc(name, values, x, z, values.get("F", 0.0))
+                self.arc(name, values, x, z, self.cut_feed)
         elif name in _CYCLES:
             self.drill(name, values)
         elif name == "G76":

@@ -61,6 +61,14 @@ def test_inches_feed_per_revolution_and_no_comments() -> None:
     ]
 
 
+def test_feed_is_modal() -> None:
+    """A path typed in a Custom operation has the feed only where it changes."""
+    lines = body(
+        ("G1", {"Z": 0.0, "F": 2.0}), ("G1", {"X": 6.0}), ("G0", {"Z": 1.0, "F": 9.0}), ("G1", {"Z": 0.0})
+    )
+    assert lines == ["G94F120Z0", "X12", "G00Z1", "G94F120Z0", "G00Z2"]
+
+
 @pytest.mark.parametrize(
     ("name", "center", "code"),
     [("G3", {"I": 0.0, "K": -3.0}, "G02"), ("G2", {"I": 3.0, "K": 0.0}, "G03")],
