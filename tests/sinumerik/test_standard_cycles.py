@@ -104,6 +104,49 @@ def test_stock_removal_leaves_allowance_on_contour(z: float, radius: float) -> N
     assert min(b.feed for b in blocks if b.kind is not BlockKind.RAPID) == pytest.approx(0.12)
 
 
+def contour_with(line: str, *moves: str) -> str:
+    """A program whose CYCLE95 finishes a contour between two labels, which begins with ``line``."""
+    call = 'CYCLE95("LAA:LBB",1,,,0.2,0.1,0.1,0.1,5)\nGOTOF LEE\nLAA:\n'
+    return "\n".join((CUT + call + line, *moves, "LBB:", "LEE:", "M30"))
+
+
+@pytest.mark.parametrize(
+    ("head", "line", "moves", "corners"),
+    [
+        ("R0=33\n", "R[5]=7", ("G1 X=R5 Z2", "X=R0", "X20 Z0"), {7, 33, 20}),
+        ("R1=2\n", "R[R1+1]=8", ("G1 X=R3 Z2", "X20 Z0"), {8, 20}),
+        ("DEF REAL TAB[3]\n", "TAB[0]=SET(7,30)", ("G1 X=TAB[0] Z2", "X=TAB[1] Z0"), {7, 30}),
+        ("DEF REAL TAB[3]\n", "TAB[2]=8", ("G1 X=TAB[2] Z2", "X20 Z0"), {8, 20}),
+    ],
+)
+def test_assignment_in_a_contour_sets_the_indexed_variable(
+    head: str, line: str, moves: tuple[str, ...], corners: set[float]
+) -> None:
+    ends = {round(2 * b.x, 4) for b in good(head + contour_with(line, *moves))}
+    assert corners <= ends
+
+
+def test_assignment_in_a_contour_does_not_change_the_program() -> None:
+    head = "DEF REAL TAB[2]\nTAB[1]=9\nR5=4\n"
+    text = head + contour_with("R[5]=7 TAB[1]=8", "G1 X=R5 Z2", "X20 Z0").replace("M30", "G0 X=R5 Z=TAB[1]")
+    last = good(text)[-1]
+    assert (2 * last.x, last.z) == pytest.approx((4.0, 9.0))
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("ABC=7", "12550"),
+        ("TAB[0]=7", "12550"),
+        ("R[300]=7", "17020"),
+        ("R[-1]=7", "17020"),
+        ("R[299]=SET(1,2)", "array-values"),
+    ],
+)
+def test_invalid_assignment_in_a_contour_is_rejected(line: str, code: str) -> None:
+    assert refused(contour_with(line, "G1 X7 Z2", "X20 Z0")).code == code
+
+
 def with_nose(radius: float, quadrant: int) -> Setup:
     return replace(setup(), tools={1: ToolOffset(quadrant=quadrant, nose_radius=radius)})
 

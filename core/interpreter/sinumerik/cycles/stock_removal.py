@@ -35,6 +35,7 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
 )
 from core.interpreter.sinumerik.flow.control_structures import Routine, find_label_index
 from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
+from core.interpreter.sinumerik.flow.variables import VariableScope
 from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
@@ -109,7 +110,10 @@ class _Reader:
         own = copy.copy(state)
         own.log, own.moved_by_tool = log, set(state.moved_by_tool)
         own.variables = copy.copy(state.variables)
-        own.variables.variable_scope = state.variables.variable_scope.copy()
+        scope = state.variables.variable_scope
+        own.variables.variable_scope = VariableScope(
+            dict(scope.numbers), dict(scope.strings), dict(scope.array_dimensions)
+        )
         own.variables.r_parameters = dict(state.variables.r_parameters)
         own.threads, own.rounding, own.motion = (), 0.0, MotionKind.LINE
         # The feeds of a contour have no effect, so a missing feed is not an error.

@@ -34,7 +34,11 @@ def execute_feed_words(state: State, statement: Statement) -> None:
         value = state.number(statement, word)
         state.corner_feed = convert_feed(state, statement, word) if value else None
     if word := statement.words.get("RNDM"):
-        state.rounding = state.length(statement, word)
+        rounding = state.length(statement, word)
+        text = "{word}: the rounding radius cannot be negative."
+        hint = "Correct the value, or use RNDM=0 to end the rounding."
+        statement.check_condition(rounding >= 0.0, word, "not-positive", text, hint, word=word.text)
+        state.rounding = rounding
     word = statement.words.get("F")
     motion = statement.get_g_code(MOTION_GROUP)
     leads = (state.motion if motion is None else motion) in _LEAD_MOTIONS
