@@ -209,8 +209,13 @@ class ActiveTransformation:
         if key := statement.frame_word:
             turned = {name: word for name, word in statement.words.items() if name in AXIS_NAMES}
             if key.name.removeprefix("A") == "TRANS":  # TRANS does not have diameters
-                taken = self.convert_statement(replace(statement, words=turned), x_is_radius=True)
-                if "C" in taken.words and not self._state.modal.metric:
+                modal = self._state.modal
+                self._state.modal = modal._replace(diameter=False)
+                try:
+                    taken = self.convert_statement(replace(statement, words=turned))
+                finally:  # The check of the program continues after an error.
+                    self._state.modal = modal
+                if "C" in taken.words and not modal.metric:
                     depth = taken.words["C"]
                     taken.words["C"] = depth._replace(value=(depth.value or 0.0) * 25.4)
             else:
