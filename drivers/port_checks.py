@@ -75,8 +75,8 @@ def require_estop_released(is_pressed: bool) -> None:
         )
 
 
-def require_stopped_for_orientation(is_turning: bool) -> None:
-    """Raise DriverError if the spindle is turning, because a drive orients it only from standstill."""
+def require_stopped_spindle(is_turning: bool) -> None:
+    """Raise DriverError if the spindle is turning, because its drive orients it only from standstill."""
     if is_turning:
         raise DriverError("the spindle cannot be oriented while it is turning; stop it first", "spindle-off")
 

@@ -19,11 +19,7 @@ from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
-from drivers.port_checks import (
-    require_free_drive,
-    require_spindle_ready,
-    require_stopped_for_orientation,
-)
+from drivers.port_checks import require_free_drive, require_spindle_ready, require_stopped_spindle
 from drivers.setpoint_queue import plan_axis_move
 
 _MODES = {0: 0, 1: 1, -1: 2}
@@ -51,7 +47,7 @@ class HalOrientation:
         the spindle turns, unless it is already being oriented.
         """
         self._spindle.require_ready()
-        require_stopped_for_orientation(self._order is None and _is_turning(self._spindle))
+        require_stopped_spindle(self._order is None and _is_turning(self._spindle))
         self._since = None
         self._order = self._link.send_command("orient", on=True, angle=angle, mode=_MODES[direction])
 

@@ -24,7 +24,7 @@ from drivers.port_checks import (
     require_axis,
     require_estop_released,
     require_spindle_ready,
-    require_stopped_for_orientation,
+    require_stopped_spindle,
 )
 from drivers.simulators.plant import SimulatedPlant
 from drivers.simulators.plant_config import SimConfig
@@ -206,13 +206,14 @@ class SimOrientation(_PlantPort):
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Orient the spindle to an angle in degrees.
 
-        Raises DriverError in E-stop, with an inverter fault, and while the spindle turns.
+        Raises DriverError in E-stop, with an inverter fault, and while the spindle turns, except while an
+        orientation is already active.
         """
         plant = self._plant
         with plant.lock:
             now = plant.advance()
             _require_spindle(plant)
-            require_stopped_for_orientation(plant.spindle.is_turning)
+            require_stopped_spindle(plant.spindle.is_turning)
             plant.spindle.orient_spindle(now, angle, direction)
 
     def release_spindle(self) -> None:

@@ -13,6 +13,7 @@ from core.ports import BoolArray, FloatArray
 from drivers.simulators.plant_config import SimSpindle
 
 _BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # Percent.
+_MAX_ORIENT_START_RPM = 10.0  # Rpm up to which the drive accepts an orientation.
 _ANGLE_TOLERANCE_REV = 1e-9  # turns
 _GRIP_FREQUENCY_HZ = 5.0  # Frequency in Hz at which a slipping belt grips.
 
@@ -119,9 +120,12 @@ class SpindleMotor:
 
     @property
     def is_turning(self) -> bool:
-        """Return whether the spindle is commanded to turn, or still turns faster than it orients."""
-        commanded_rpm = self._orders[-1][1] if self._orders else self._target
-        return bool(commanded_rpm) or abs(self._even) > self.config.orient_rpm
+        """Return whether the spindle turns or will turn because of a speed command.
+
+        The motion of an orientation does not count.
+        """
+        commanded = self._target or any(rpm for _, rpm, _ in self._orders)
+        return bool(commanded) or abs(self._even) > _MAX_ORIENT_START_RPM
 
     @property
     def is_speed_constant(self) -> bool:
