@@ -112,6 +112,10 @@ class DriverError(CodedError):
         return Fault(str(self), self.code)
 
 
+# Reason of a DriverError for a command that the drive accepts only when the spindle has stopped.
+SPINDLE_TURNS = "spindle-turns"
+
+
 class TrippedError(DriverError):
     """An error raised by a tripped driver host, which rejects commands.
 

@@ -201,7 +201,8 @@ class SpindleCAxis(Protocol):
 
         If ``should_orient`` is True, the spindle turns by the shortest path until its position count, apart
         from whole revolutions, equals its angle from the index. A request for C-axis mode raises
-        DriverError while the spindle turns, has no power or has a fault of the C axis.
+        DriverError while the spindle turns, with the reason SPINDLE_TURNS, and if the spindle has no power
+        or C has a fault.
         """
         ...
 
@@ -220,8 +221,8 @@ class OrientingSpindle(Protocol):
         """Turn the spindle to ``angle`` in degrees from its index, from 0 to less than 360.
 
         The angle increases in the direction of M03. ``direction`` is 1 for the direction of M03, -1 for the
-        direction of M04, or 0 for the shortest path. Raises DriverError while the spindle turns, has no
-        power or has a fault.
+        direction of M04, or 0 for the shortest path. Raises DriverError while the spindle turns, with the
+        reason SPINDLE_TURNS, has no power or has a fault.
         """
         ...
 

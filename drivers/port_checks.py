@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from core.faults import get_fault_code
+from core.faults import SPINDLE_TURNS, get_fault_code
 from core.ports import DriverError, FloatArray, TouchLatch
 
 T = TypeVar("T")
@@ -78,7 +78,11 @@ def require_estop_released(is_pressed: bool) -> None:
 def require_stopped_spindle(is_turning: bool) -> None:
     """Raise DriverError if the spindle is turning, because its drive orients it only from standstill."""
     if is_turning:
-        raise DriverError("the spindle cannot be oriented while it is turning; stop it first", "spindle-off")
+        raise DriverError(
+            "the spindle cannot be oriented while it is turning; stop it first",
+            "spindle-off",
+            reason=SPINDLE_TURNS,
+        )
 
 
 def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
@@ -96,7 +100,7 @@ def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
         raise DriverError(
             "C uses the spindle drive, and the spindle is turning; stop the spindle first",
             "c-coupling",
-            reason="spindle-turns",
+            reason=SPINDLE_TURNS,
         )
 
 

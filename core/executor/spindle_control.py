@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.raised_alarm import AlarmError
-from core.executor.spindle_orientation import OrientationControl
+from core.executor.spindle_orientation import OrientationControl, try_at_standstill
 from core.faults import get_fault_code
 from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared.elementary_blocks import Block
@@ -227,12 +227,13 @@ class SpindleControl:
     def engage_c_axis(self, *, should_orient: bool) -> bool:
         """Switch the spindle to C-axis mode (M19, M89); return whether it is engaged.
 
-        Raises DriverError if the drive rejects the change.
+        If the drive still considers the spindle as turning, the next call tries again. Raises DriverError if
+        the drive rejects the change for another reason.
         """
         if self._lock is None:
             return True
         if not self._lock.is_c_ready():
-            self._lock.set_c_mode(True, should_orient)
+            try_at_standstill(partial(self._lock.set_c_mode, True, should_orient))
         return self._lock.is_c_ready()
 
     def orient_spindle(self, angle: float, direction: int) -> bool:

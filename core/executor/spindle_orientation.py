@@ -2,9 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 from core.executor.raised_alarm import AlarmError
+from core.faults import SPINDLE_TURNS
 from core.message import Message
-from core.ports import OrientingSpindle
+from core.ports import DriverError, OrientingSpindle
+
+
+def try_at_standstill(command: Callable[[], None]) -> bool:
+    """Run a command that requires a stopped spindle, and return whether the drive has accepted it.
+
+    The drive may reject it at a speed below ``stop_below`` of the machine file. Raises DriverError for any
+    other reason.
+    """
+    try:
+        command()
+    except DriverError as error:
+        if error.reason != SPINDLE_TURNS:
+            raise
+        return False
+    return True
 
 
 class OrientationControl:
@@ -41,13 +60,15 @@ class OrientationControl:
     def request_angle(self, angle: float, direction: int) -> bool:
         """Request an angle once; return whether the drive holds the spindle at this angle.
 
-        Raises AlarmError if the machine cannot orient the spindle, or DriverError if the drive fails.
+        If the drive still considers the spindle as turning, the next call requests the angle again. Raises
+        AlarmError if the machine cannot orient the spindle, or DriverError if the drive fails.
         """
         if self._port is None:
             raise AlarmError("spindle-orient", "this machine cannot orient the spindle to an angle")
         if self._asked != (angle, direction):
             self._reached = False
-            self._port.orient_spindle(angle, direction)
+            if not try_at_standstill(partial(self._port.orient_spindle, angle, direction)):
+                return False
             self._asked = angle, direction
         self._reached = self._reached or self._port.is_oriented()
         return self._reached

@@ -21,12 +21,14 @@ from core.executor.snapshot import MachineState
 from core.executor.spindle_control import SpindleControl, SpindleRequest
 from core.executor.start_conditions import find_missing_function, find_state_refusal
 from core.executor.station_signals import StationSignals
+from core.faults import SPINDLE_TURNS
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.machine_requirements import ARC_MOTION, THREADING, MachineRequirement
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
 from core.motion.axis_limits import MotionLimits
+from core.ports import DriverError
 from tests.coded import raises_code
 from tests.executor.made import Maker
 from tests.executor.played_controller import PlayedController, context_of
@@ -146,8 +148,11 @@ class PlayedLock:
     def __init__(self) -> None:
         self.asked: list[tuple[bool, bool]] = []
         self.ready = False
+        self.refusal: DriverError | None = None
 
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
+        if self.refusal is not None:
+            raise self.refusal
         self.asked.append((is_enabled, should_orient))
 
     def is_c_ready(self) -> bool:
@@ -171,6 +176,22 @@ def test_spindle_switches_to_c_once_and_stop_releases_it() -> None:
     assert lock.asked == [(True, True)]  # what is C already stays it
     spindle.stop()
     assert lock.asked[1:] == [(False, False)]
+
+
+def test_drive_that_still_turns_is_asked_for_c_again() -> None:
+    spindle, lock = locked()
+    lock.refusal = DriverError("the spindle is turning", "c-coupling", reason=SPINDLE_TURNS)
+    assert not spindle.engage_c_axis(should_orient=True)
+    lock.refusal = None
+    spindle.engage_c_axis(should_orient=True)
+    assert lock.asked == [(True, True)]
+
+
+def test_drive_that_rejects_c_for_another_reason_is_an_error() -> None:
+    spindle, lock = locked()
+    lock.refusal = DriverError("the drives are off", "c-coupling", reason="drives-off")
+    with raises_code(DriverError, "c-coupling", "the drives are off"):
+        spindle.engage_c_axis(should_orient=True)
 
 
 def test_hold_cancels_a_pending_change_to_c() -> None:

@@ -30,7 +30,8 @@ from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import MachineState
 from core.executor.spindle_control import SpindleRequest
 from core.executor.spindle_orientation import OrientationControl
-from core.ports import AxisSample, StopMode
+from core.faults import SPINDLE_TURNS
+from core.ports import AxisSample, DriverError, StopMode
 from tests.coded import raises_code
 from tests.executor.played_controller import context_of
 from tests.executor.rig import Rig
@@ -247,8 +248,11 @@ class _Held:
 
     there: bool = False
     told: list[object] = field(default_factory=list)
+    refusal: DriverError | None = None
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
+        if self.refusal is not None:
+            raise self.refusal
         self.told.append((angle, direction))
 
     def release_spindle(self) -> None:
@@ -275,6 +279,20 @@ def test_oriented_angle_is_reported_from_arrival_until_release() -> None:
     held.release_spindle()
     assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
     assert port.told == [(90.0, 1), (90.0, -1), "release"]
+
+
+def test_angle_is_requested_again_until_the_drive_considers_the_spindle_stopped() -> None:
+    port = _Held(there=True)
+    port.refusal = DriverError("the spindle is turning", "spindle-off", reason=SPINDLE_TURNS)
+    held = OrientationControl(port, 100.0)
+    assert not held.request_angle(90.0, 0)
+    assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
+    port.refusal = DriverError("the E-stop chain is open", "spindle-off")
+    with raises_code(DriverError, "spindle-off", "E-stop"):
+        held.request_angle(90.0, 0)
+    port.refusal = None
+    assert held.request_angle(90.0, 0)
+    assert port.told == [(90.0, 0)]
 
 
 def test_lost_orientation_raises_one_alarm() -> None:

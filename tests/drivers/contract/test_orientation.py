@@ -13,12 +13,14 @@ from app.compose.program_proving import create_proof
 from core.executor.commands import LoadJob
 from core.executor.job import make_job
 from core.executor.snapshot import MachineState
+from core.faults import SPINDLE_TURNS
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from core.ports import DriverError
 from core.proving.prove_program import prove
 from core.table_schema import MachineFileError
 from tests.coded import raises_code
+from tests.drivers.contract import hal
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.hal import Hal
 from tests.drivers.contract.rig import STILL, Rig
@@ -169,14 +171,37 @@ def test_orientation_follows_its_direction_and_ends_with_a_speed_command(control
     assert not port.is_oriented()
 
 
+def test_drive_with_a_lower_standstill_limit_than_the_machine_file_is_waited_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """HAL orients below 2 rpm; from 20 rpm, the limit of this file, to 2 rpm the spindle takes 60 ms."""
+    text_of = hal.hal_text
+    slow = ("stop_below = 5", "stop_below = 20"), ("decel_rpm_s = 2500", "decel_rpm_s = 300")
+
+    def slow_text(*, homing: bool = False, lamps: str = "", orients: bool = False) -> str:
+        made = text_of(homing=homing, lamps=lamps, orients=orients)
+        for old, new in slow:
+            assert old in made
+            made = made.replace(old, new)
+        return made
+
+    monkeypatch.setattr(hal, "hal_text", slow_text)
+    control = Control(Hal(orients=True))
+    start(control)
+    control.until(MachineState.IDLE)
+    assert control.shot.alarms == ()
+    control.rig.close()
+
+
 def test_orientation_is_rejected_while_the_spindle_turns(control: Control) -> None:
     """From the speed command on, and until the spindle has stopped."""
     rig, port = control.rig, control.rig.ports.orientation
     control.ready()
     assert port is not None
     rig.ports.spindle.set_speed(600.0)
-    with raises_code(DriverError, "spindle-off", "turning"):
+    with raises_code(DriverError, "spindle-off", "turning") as told:
         port.orient_spindle(90.0)
+    assert told.value.reason == SPINDLE_TURNS
     rig.until(lambda: rig.ports.spindle.speed() > 500.0)
     rig.ports.spindle.set_speed(0.0)
     with raises_code(DriverError, "spindle-off", "turning"):
