@@ -25570,6 +25570,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>Jump to a label before FOR, or write a loop with WHILE.</source>
+      <translation>Salte a una etiqueta anterior a FOR, o escriba un bucle con WHILE.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Pass a variable or an R parameter.</source>
       <translation>Pase una variable o un parámetro R.</translation>
     </message>
@@ -25597,6 +25602,11 @@
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
       <source>Write a repeat count from P1 to P{most_passes}.</source>
       <translation>Escriba un número de repeticiones de P1 a P{most_passes}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />
+      <source>a jump entered this loop without executing FOR in line {line}.</source>
+      <translation>un salto entró en este bucle sin ejecutar FOR en la línea {line}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/subprogram_flow.py" />

@@ -218,6 +218,7 @@ class _Call(FlowFrame[Routine]):
     references: list[tuple[str, str]] = field(default_factory=list)
     saved_functions: SavedFunctions | None = None  # state that SAVE restores
     repeats: list[_Repeat] = field(default_factory=list)
+    started_loops: set[int] = field(default_factory=set)  # line indices of FOR
 
     @property
     def comparison_key(self) -> tuple[object, ...]:
@@ -292,6 +293,7 @@ class Flow(ControlFlow[_Call]):
         call = self.active_frame
         call.remaining_passes -= 1
         call.repeats.clear()
+        call.started_loops.clear()
         if call.remaining_passes > 0:
             self.next_index = call.routine.line_range.start
         elif not self.is_in_subprogram:
@@ -351,12 +353,17 @@ class Flow(ControlFlow[_Call]):
     ) -> None:
         """Execute a line with a control statement.
 
-        Raises ProgramError for an invalid statement, and for a jump that repeats forever.
+        Raises ProgramError for an invalid statement, for a jump that repeats forever, and for a FOR loop
+        that a jump has entered without executing FOR.
         """
         if control_statement.keyword in _REPEAT_KEYWORDS and control_statement.target:
             self._begin_repeat(line, control_statement, state)
             return
         routine = self.active_routine
+        if control_statement.keyword is ControlKeyword.FOR:
+            self.active_frame.started_loops.add(self.next_index - 1)
+        elif control_statement.keyword is ControlKeyword.END_FOR:
+            self._check_loop_start(line, control_statement)
         at = execute_control_line(line, control_statement, state, routine, self.next_index - 1)
         if control_statement.keyword is ControlKeyword.RETURN:
             self.end_subprogram()
@@ -374,6 +381,17 @@ class Flow(ControlFlow[_Call]):
                     "Cycle Start instead."
                 )
                 raise line.make_error(control_statement.column, ENDLESS_LOOP_CODE, text, hint)
+
+    def _check_loop_start(self, line: LexedBlock, end: ControlStatement) -> None:
+        """Raise ProgramError if FOR of the loop that ends in this line has not been executed.
+
+        Without FOR, the variable has no start value, so the number of repeats is unknown.
+        """
+        start = self.active_routine.map_structures()[self.next_index - 1][0]
+        if start not in self.active_frame.started_loops:
+            text = Message("a jump entered this loop without executing FOR in line {line}.", line=start + 1)
+            hint = "Jump to a label before FOR, or write a loop with WHILE."
+            raise line.make_error(end.column, WRONG_NESTING, text, hint)
 
     def _is_repeated_state(self) -> bool:
         """Return whether a backward jump occurs in the same state as an earlier jump.
