@@ -51,7 +51,7 @@ class AxisTravel(NamedTuple):
         return hypot(self.x - self.x0, self.z - self.z0)
 
     @property
-    def c_travel_deg(self) -> float:
+    def c_travel(self) -> float:
         """Return the signed travel of C in degrees, or in mm for a linear third axis."""
         return self.c - self.c0
 
@@ -66,13 +66,13 @@ class AxisTravel(NamedTuple):
         return x + self.offset_x, z + self.offset_z
 
     def compute_rapid_rate(self, max_axis_speeds: tuple[float, float, float]) -> float:
-        """Return the rapid rate along the path in mm/s, or in degrees/s if only C moves.
+        """Return the rapid rate along the path in mm/s, or in degrees/s if only a rotary C moves.
 
         ``max_axis_speeds`` are the maximum speeds of X, Z and C. The slowest axis moves at its maximum speed.
         """
-        travels = (self.x - self.x0, self.z - self.z0, self.c_travel_deg)
+        travels = (self.x - self.x0, self.z - self.z0, self.c_travel)
         time = max(abs(travel) / speed for travel, speed in zip(travels, max_axis_speeds, strict=True))
-        return (self.length_mm or abs(self.c_travel_deg)) / time if time else min(max_axis_speeds)
+        return (self.length_mm or abs(self.c_travel)) / time if time else min(max_axis_speeds)
 
 
 def compute_travel(state: State, statement: Statement) -> AxisTravel:
@@ -209,7 +209,7 @@ def _inclined(
 
 
 def _turn(state: State, statement: Statement, modal: ModalState) -> float:
-    """Return the signed travel of C, in degrees."""
+    """Return the signed travel of C in degrees, or in mm for a linear third axis."""
     word = statement.words.get("C")
     if word is None:
         return 0.0
@@ -217,19 +217,19 @@ def _turn(state: State, statement: Statement, modal: ModalState) -> float:
 
 
 def compute_c_travel(
-    state: State, statement: Statement, word: Word, position_form: PositionForm, start_angle: float
+    state: State, statement: Statement, word: Word, position_form: PositionForm, start_position: float
 ) -> float:
-    """Return the signed travel of C from ``start_angle`` to the target of a word.
+    """Return the signed travel of C from ``start_position`` to the target of a word.
 
-    The travel and ``start_angle`` are in degrees, or in mm for a linear third axis. Raises ProgramError if
+    The travel and ``start_position`` are in degrees, or in mm for a linear third axis. Raises ProgramError if
     the target is not possible.
     """
     value = state.third(statement, word)
     limits = state.setup.limits
     try:
         if limits.is_c_modulo:
-            return third_axis.compute_modulo_travel(position_form, value, start_angle)
-        travel = third_axis.compute_linear_travel(position_form, value, start_angle)
+            return third_axis.compute_modulo_travel(position_form, value, start_position)
+        travel = third_axis.compute_linear_travel(position_form, value, start_position)
         third_axis.check_axis_range(
             state.c + travel, limits.c_travel_range if limits.is_c_linear else third_axis.NON_MODULO_RANGE
         )
@@ -284,7 +284,7 @@ def make_straight_block(state: State, statement: Statement) -> Block:
     travel = compute_travel(state, statement)
     if state.motion is MotionKind.RAPID:
         return make_rapid_block(state, statement, travel)
-    kind = BlockKind.ROTATE if travel.c_travel_deg and not travel.length_mm else BlockKind.FEED
+    kind = BlockKind.ROTATE if travel.c_travel and not travel.length_mm else BlockKind.FEED
     offset = travel.offset_x
     degrees = kind is BlockKind.ROTATE and not state.modal.is_c_linear
     feed = check_block_feed(state, statement, travel.x0 - offset, travel.x - offset, is_in_degrees=degrees)

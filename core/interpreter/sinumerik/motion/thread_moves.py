@@ -43,9 +43,9 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
                 word, "word-unused", text, hint, word=word.text, motion=int(state.motion)
             )
     travel = compute_travel(state, statement)
-    if abs(travel.z - travel.z0) < MIN_PATH_MM or travel.c_travel_deg:
+    if abs(travel.z - travel.z0) < MIN_PATH_MM or travel.c_travel:
         text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
-        if travel.c_travel_deg:
+        if travel.c_travel:
             text = "C cannot turn while a thread is cut."
         raise _refused(statement, "thread-length", text, "Enter Z of the end point and K.")
     lead = _lead(state, statement, travel)
