@@ -6,7 +6,7 @@ import pytest
 
 from core.language.called_files import load_called_files
 from core.language.source import Dialect, ProgramSource
-from tests.sinumerik.lathe import good, refused, source
+from tests.sinumerik.lathe import good, refused, run, source
 
 
 def spf(name: str, text: str) -> ProgramSource:
@@ -17,6 +17,16 @@ def spf(name: str, text: str) -> ProgramSource:
 def stops(text: str | ProgramSource) -> list[float]:
     """Z of the ends of all moves."""
     return [block.z for block in good(text)]
+
+
+def test_warning_in_a_subprogram_file_is_at_the_call() -> None:
+    """Both parameters of one line are named, and a repeated call adds nothing to its line."""
+    warn = spf("WARN", "G0 X30\nG0 X=R7 Z=R8\nG0 Z=R7\nRET\n")
+    passed = run(source("G0 X20 Z5\nWARN\nWARN\nG0 Z=R9", warn))
+    assert [(each.line, each.code) for each in passed.found] == [(2, "r-unset")] * 2 + [(4, "r-unset")]
+    for name, found in zip(("R7", "R8"), passed.found, strict=False):
+        assert found.message.startswith("WARN.spf line 2: ")
+        assert f"{name} has no value" in found.message
 
 
 STEP = spf("STEP", "PROC STEP(REAL DEPTH, INT TIMES=2, REAL MORE)\nG0 Z=DEPTH*TIMES+MORE\nRET\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from core.language.diagnostics import Diagnostic, Severity
@@ -59,14 +59,17 @@ class DiagnosticLog:
     """Log of findings.
 
     The log stores each combination of line, code and column once, up to 100 errors and 100 other findings.
+    ``relocate`` returns a finding with its location in the main file. It is called for each added finding.
     """
+
+    relocate: Callable[[Diagnostic], Diagnostic] | None = None
 
     def __init__(self, initial_findings: Iterable[Diagnostic] = ()) -> None:
         self.findings: list[Diagnostic] = list(initial_findings)
         self._repeated: dict[str, int] = {}  # code → index in ``found``
         self._counted = 0
         self.error_findings = [each for each in self.findings if each.severity is Severity.ERROR]
-        self._known = {(each.line, each.code, each.column) for each in self.findings}
+        self._known = {(each.line, each.code, each.column, "") for each in self.findings}
         self._others = len(self.findings) - len(self.error_findings)
 
     @property
@@ -81,7 +84,10 @@ class DiagnosticLog:
 
     def add_finding(self, finding: Diagnostic) -> None:
         """Store a finding, unless the log already contains it or the limit of its kind is reached."""
-        key = (finding.line, finding.code, finding.column)
+        original, finding = finding, finding if self.relocate is None else self.relocate(finding)
+        # All findings of a subprogram in another file have the line of its call.
+        place = "" if finding is original else f"{original.line}:{original.column}"
+        key = (finding.line, finding.code, finding.column, place)
         if key in self._known:
             return
         if finding.severity is Severity.ERROR:
@@ -116,7 +122,7 @@ class DiagnosticLog:
 
         The finding remains at its first location.
         """
-        key = (finding.line, finding.code, finding.column)
+        key = (finding.line, finding.code, finding.column, "")
         if key in self._known:
             return
         self._known.add(key)

@@ -101,6 +101,7 @@ class Interpreter(LinePass[LexedBlock]):
         self._corners = SinumerikCornerStage(self._state, self._log)
         self._compensation = CompensationStage(self._state, self._log)
         self._flow = Flow(source, self._state)
+        self._log.relocate = self._relocate_finding
         self._setup = setup
         self._missing_axes = MissingAxes()
         if setup.begin is not None:
@@ -437,11 +438,15 @@ class Interpreter(LinePass[LexedBlock]):
         except ProgramError as problem:
             self._log_error(problem.diagnostic)
 
+    def _relocate_finding(self, finding: Diagnostic) -> Diagnostic:
+        """Return a finding with its location in the main file, also after a restart has replaced the flow."""
+        return self._flow.relocate_finding(finding)
+
     def _log_error(self, finding: Diagnostic) -> None:
         """Log the error, unless it is only a consequence of an earlier error."""
         follows = self._stopped and depends_on_state(finding)
         if not follows and not self._missing_axes.is_axis_reported(finding):
-            self._log.add_finding(self._flow.relocate_finding(finding))
+            self._log.add_finding(finding)
         self._stopped = True
         self._left = min(self._left, _LINES_AFTER_ERROR + 1)
         self._corners.discard_move()
