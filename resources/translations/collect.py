@@ -99,7 +99,6 @@ EXCLUDED_FILES = frozenset(
         *("office_setup.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         "profile_command.py",
         *("shapes_command.py", "shape_steps.py"),
-        "convert/conversion_messages.py",
         *("screen/pdf_pages.py", "lines/sinumerik_lines.py"),
         "lines/live_lines.py",
         *(

@@ -8459,6 +8459,136 @@
       <translation>{target} → {target2} rpm</translation>
     </message>
     <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>1 mm OR .1 in</source>
+      <translation>1 mm O .1 in</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>CHANGE UNIT WITHOUT G20 OR G21 ABOVE.</source>
+      <translation>CAMBIE ARRIBA: UNIDAD SIN G20 NI G21.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>CHANGE X1000 WITHOUT A POINT IS ABOVE.</source>
+      <translation>CAMBIE ARRIBA: X1000 SIN PUNTO ES.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>CHOOSE THE PROGRAM OF THE OTHER CONTROL FIRST</source>
+      <translation>ELIJA PRIMERO EL PROGRAMA DEL OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>CONTROL</source>
+      <translation>CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>CONVERT PROGRAM</source>
+      <translation>CONVERTIR PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>CONVERT PROGRAM  ·  {name}</source>
+      <translation>CONVERTIR PROGRAMA  ·  {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>Converting the program …</source>
+      <translation>Convirtiendo el programa …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>ENTER: CHANGE SETTING   F6: SAVE AS A NEW PROGRAM   ESC: BACK</source>
+      <translation>ENTER: CAMBIAR AJUSTE   F6: GUARDAR COMO PROGRAMA NUEVO   ESC: ATRÁS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>FRONT</source>
+      <translation>FRENTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>M CODES LEFT OUT</source>
+      <translation>CÓDIGOS M OMITIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>NOT CONVERTED. CORRECT {count} ERROR(S) OR CHANGE A SETTING</source>
+      <translation>NO CONVERTIDO. CORRIJA {count} ERROR(ES) O CAMBIE UN AJUSTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>NOT RECOGNIZED</source>
+      <translation>NO RECONOCIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>NOT SPECIFIED</source>
+      <translation>SIN INDICAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>PRESS ENTER ON M CODES LEFT OUT TO LEAVE IT OUT.</source>
+      <translation>PULSE ENTER EN CÓDIGOS M OMITIDOS PARA OMITIRLO.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>PROGRAM OF ANOTHER CONTROL. F10, CONVERT PROGRAM CONVERTS IT</source>
+      <translation>PROGRAMA DE OTRO CONTROL. F10, CONVERTIR PROGRAMA LO CONVIERTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>RADIUS</source>
+      <translation>RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>REAR</source>
+      <translation>TRASERA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>THE CONTROL IS NOT RECOGNIZED. SELECT IT IN THE FIRST ROW</source>
+      <translation>NO SE RECONOCE EL CONTROL. SELECCIÓNELO EN LA PRIMERA FILA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>THE PROGRAM IS NOT CONVERTED</source>
+      <translation>EL PROGRAMA NO ESTÁ CONVERTIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>TOOL POST</source>
+      <translation>TORRE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>UNIT WITHOUT G20 OR G21</source>
+      <translation>UNIDAD SIN G20 NI G21</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>X1000 WITHOUT A POINT IS</source>
+      <translation>X1000 SIN PUNTO ES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>loaded program of another control, with preview</source>
+      <translation>programa cargado de otro control, con vista previa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>{lines} LINES, {steps} STEPS PROVED EQUAL. F6 SAVES A NEW FILE</source>
+      <translation>{lines} LÍNEAS, {steps} PASOS IGUALES VERIFICADOS. F6 GUARDA UN ARCHIVO NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>{name} SAVED. SET ITS TOOL OFFSETS</source>
+      <translation>{name} GUARDADO. INTRODUZCA SUS CORRECTORES</translation>
+    </message>
+    <message>
       <location filename="app/extras/convert/extra.py" />
       <source>convert a turning program of another control to OmniTurn</source>
       <translation>convertir a OmniTurn un programa de torneado de otro control</translation>
@@ -8507,11 +8637,6 @@
       <location filename="app/extras/drawings/drawing_form.py" />
       <source>FROM</source>
       <translation>FROM</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>FRONT</source>
-      <translation>FRENTE</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
@@ -19027,6 +19152,721 @@
       <location filename="core/extras/analyses/thread_passes.py" />
       <source>this time range does not contain a thread pass, because no axis moves at a steady speed for two spindle revolutions</source>
       <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add G20 or G21 at the start, or use --unit.</source>
+      <translation>Añada G20 o G21 al principio, o use --unit.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add the line number, or correct the jump.</source>
+      <translation>Añada el número de bloque o corrija el salto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add the moves of the contour, or remove the cycle.</source>
+      <translation>Añada los movimientos del contorno o elimine el ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add the parenthesis.</source>
+      <translation>Añada el paréntesis.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add the subprogram to the file, after the main program.</source>
+      <translation>Añada el subprograma al archivo, después del programa principal.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add the word to the cycle.</source>
+      <translation>Añada la palabra al ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Assign the value at the start of the program.</source>
+      <translation>Asigne el valor al principio del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Change the tool number.</source>
+      <translation>Cambie el número de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that a G70 executes this line, or move it before the cycle.</source>
+      <translation>Compruebe que un G70 ejecuta esta línea, o póngala antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the code is not needed.</source>
+      <translation>Compruebe que el código no hace falta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the codes have the same function.</source>
+      <translation>Compruebe que los códigos tienen la misma función.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the path from the tool change position to this point is clear.</source>
+      <translation>Compruebe que el recorrido desde el cambio de herramienta hasta este punto está libre.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the path to home is clear.</source>
+      <translation>Compruebe que el recorrido al punto de referencia está libre.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the program is a turning program.</source>
+      <translation>Compruebe que es un programa de torneado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the thread has a relief groove.</source>
+      <translation>Compruebe que la rosca tiene una ranura de salida.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that these lines are not needed.</source>
+      <translation>Compruebe que estas líneas no hacen falta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that this is the function of the code on the other control.</source>
+      <translation>Compruebe que esta es la función del código en el otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the dwell.</source>
+      <translation>Compruebe la temporización.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the end of the contour, or write this move at its end.</source>
+      <translation>Compruebe el final del contorno, o escriba este movimiento al final.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the feed.</source>
+      <translation>Compruebe el avance.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the moves that follow.</source>
+      <translation>Compruebe los movimientos que siguen.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the number of the tool.</source>
+      <translation>Compruebe el número de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the pecks.</source>
+      <translation>Compruebe las picadas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the speed.</source>
+      <translation>Compruebe la velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check whether this line must be executed.</source>
+      <translation>Compruebe si esta línea debe ejecutarse.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Choose a file that contains a turning program.</source>
+      <translation>Elija un archivo que contenga un programa de torneado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct P and Q of the cycle.</source>
+      <translation>Corrija P y Q del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the depth of a pass.</source>
+      <translation>Corrija la profundidad de pasada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the end point or the center.</source>
+      <translation>Corrija el punto final o el centro.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the expression.</source>
+      <translation>Corrija la expresión.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the loop or the cycle, or convert the program in parts.</source>
+      <translation>Corrija el bucle o el ciclo, o convierta el programa por partes.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the loop, or shorten the program.</source>
+      <translation>Corrija el bucle o acorte el programa.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the text.</source>
+      <translation>Corrija el texto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct the time.</source>
+      <translation>Corrija el tiempo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Cut the undercut with separate moves.</source>
+      <translation>Mecanice el destalonado con movimientos individuales.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Define the M code under [m_codes] in the machine file, or leave it out with --skip-m {number}.</source>
+      <translation>Defina el código M en [m_codes] del archivo de máquina, u omítalo con --skip-m {number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>End the thread with a rapid in X.</source>
+      <translation>Termine la rosca con un rápido en X.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Enter the nose radius in secondary offset D{number}.</source>
+      <translation>Introduzca el radio de punta en el corrector secundario D{number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>G93 (inverse time feed) is not supported.</source>
+      <translation>G93 (avance en tiempo inverso) no se admite.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>G96 is active, but S is missing.</source>
+      <translation>G96 está activo, pero falta S.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Line {line} of the contour switches something; roughing does not execute it.</source>
+      <translation>La línea {line} del contorno conmuta algo; el desbaste no la ejecuta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>M99 repeats the main program; the converted program ends with M30.</source>
+      <translation>M99 repite el programa principal; el programa convertido termina con M30.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>No G code for a move is active here.</source>
+      <translation>Aquí no hay ningún código G de movimiento activo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>No action is needed.</source>
+      <translation>No hay que hacer nada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>No feed F is programmed for this move.</source>
+      <translation>No hay avance F programado para este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Nose compensation uses D{number}.</source>
+      <translation>La compensación de punta usa D{number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>OmniTurn needs X and Z in the first move after T, so the first moves are joined to one rapid.</source>
+      <translation>OmniTurn necesita X y Z en el primer movimiento después de T; los primeros movimientos se unen en un rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>OmniTurn rejects the converted line {made}: {message}</source>
+      <translation>OmniTurn rechaza la línea convertida {made}: {message}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Reduce the distance, or write the contour with longer segments.</source>
+      <translation>Reduzca la distancia, o escriba el contorno con tramos más largos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Remove L and E, and start the thread in front of the part or in a groove.</source>
+      <translation>Elimine L y E, y empiece la rosca delante de la pieza o en una ranura.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Remove one of them, or write two lines.</source>
+      <translation>Elimine una de ellas o escriba dos líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Remove the sign; M03 and M04 set the direction.</source>
+      <translation>Elimine el signo; M03 y M04 fijan el sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Replace the code with moves, or remove it if it is not needed.</source>
+      <translation>Sustituya el código por movimientos, o elimínelo si no hace falta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Report this program; the converted program is not written.</source>
+      <translation>Comunique este programa; el programa convertido no se escribe.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>R{radius} is too small for an arc between these points.</source>
+      <translation>R{radius} es demasiado pequeño para un arco entre estos puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Set the tool offsets for this part zero.</source>
+      <translation>Introduzca los correctores para este cero de pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Start and end nose compensation on straight moves outside the cycle.</source>
+      <translation>Active y cancele la compensación de punta en movimientos rectos fuera del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Start the cycle outside the contour.</source>
+      <translation>Empiece el ciclo fuera del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The arc has neither R nor a center.</source>
+      <translation>El arco no tiene R ni centro.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The contour of the cycle from N{first} to N{last} was not found.</source>
+      <translation>No se encuentra el contorno del ciclo de N{first} a N{last}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The contour of the cycle has no moves after its first one.</source>
+      <translation>El contorno del ciclo no tiene movimientos después del primero.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The contour of the cycle moves back in {axis}, so that a pass cannot reach it.</source>
+      <translation>El contorno del ciclo retrocede en {axis}, así que una pasada no puede alcanzarlo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The converted program has {made} steps instead of {wanted}.</source>
+      <translation>El programa convertido tiene {made} pasos en lugar de {wanted}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The converted program moves differently: {what} is {made} instead of {wanted}.</source>
+      <translation>El programa convertido se mueve de otra forma: {what} es {made} en lugar de {wanted}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The cycle starts inside its contour.</source>
+      <translation>El ciclo empieza dentro de su contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The distance before the next peck is a parameter of the other control; {value} mm is used.</source>
+      <translation>La distancia antes de la siguiente picada es un parámetro del otro control; se usan {value} mm.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The expression divides by zero or has no value.</source>
+      <translation>La expresión divide por cero o no tiene valor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The file contains no moves.</source>
+      <translation>El archivo no contiene movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The position in {axis} is unknown here, because no earlier line programs it.</source>
+      <translation>Aquí no se conoce la posición en {axis}, porque ninguna línea anterior la programa.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The program does not execute the lines {first} to {last}, so that they are not converted.</source>
+      <translation>El programa no ejecuta las líneas {first} a {last}, por lo que no se convierten.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The program executes more than {most} lines.</source>
+      <translation>El programa ejecuta más de {most} líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The program makes more than {most} moves.</source>
+      <translation>El programa hace más de {most} movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The program selects neither inches nor millimeters before this line.</source>
+      <translation>El programa no selecciona ni pulgadas ni milímetros antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The subprogram {word} is not in this file.</source>
+      <translation>El subprograma {word} no está en este archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The target {word} does not exist in this file.</source>
+      <translation>El destino {word} no existe en este archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The thread has no lead.</source>
+      <translation>La rosca no tiene paso.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The thread is not followed by a rapid straight out in X, so it cannot be cut in separate passes.</source>
+      <translation>A la rosca no le sigue un rápido recto en X, así que no puede cortarse en pasadas separadas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The thread's pull-out at an angle is replaced by a pull-out straight in X at the end of the thread.</source>
+      <translation>La salida en ángulo de la rosca se sustituye por una salida recta en X al final de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The variable {word} has no value, or its value comes from the other machine.</source>
+      <translation>La variable {word} no tiene valor, o su valor viene de la otra máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Turn on Cycle Repeat to make several parts.</source>
+      <translation>Active la repetición de ciclo para hacer varias piezas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Use --no-point 1 if X1000 is 1000 units, or --no-point 0.001 if X1000 is 1 mm (.1 in).</source>
+      <translation>Use --no-point 1 si X1000 son 1000 unidades, o --no-point 0.001 si X1000 es 1 mm (.1 in).</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write F on this line or earlier.</source>
+      <translation>Escriba F en esta línea o antes.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write F with a decimal point.</source>
+      <translation>Escriba F con punto decimal.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write F with the lead of the thread.</source>
+      <translation>Escriba F con el paso de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write G00 or G01 on this line.</source>
+      <translation>Escriba G00 o G01 en esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write G17 before the cycle.</source>
+      <translation>Escriba G17 antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write G18 before this line if the program is a turning program.</source>
+      <translation>Escriba G18 antes de esta línea si es un programa de torneado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write G90 before the cycle.</source>
+      <translation>Escriba G90 antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write M05 to stop the spindle.</source>
+      <translation>Escriba M05 para parar el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write R, or I and K.</source>
+      <translation>Escriba R, o I y K.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write S before the first cut.</source>
+      <translation>Escriba S antes del primer corte.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write S with G96.</source>
+      <translation>Escriba S con G96.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write an absolute X and Z before this line.</source>
+      <translation>Escriba X y Z absolutas antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write both words, or neither of them.</source>
+      <translation>Escriba las dos palabras o ninguna.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write feeds with G94 or G95.</source>
+      <translation>Escriba los avances con G94 o G95.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the contour with moves only.</source>
+      <translation>Escriba el contorno solo con movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the corner as separate moves.</source>
+      <translation>Escriba la esquina como movimientos individuales.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the number.</source>
+      <translation>Escriba el número.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the positions that apply after this line, and remove the preset and this code.</source>
+      <translation>Escriba las posiciones válidas después de esta línea, y elimine el preset y este código.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the shift as G10 before T in the converted program, or convert each part separately.</source>
+      <translation>Escriba el desplazamiento como G10 antes de T en el programa convertido, o convierta cada pieza por separado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write these lines for the C axis of this control by hand.</source>
+      <translation>Escriba a mano estas líneas para el eje C de este control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{text} cannot be evaluated.</source>
+      <translation>{text} no se puede calcular.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{text} cannot be read as a word.</source>
+      <translation>{text} no se puede leer como palabra.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} and {other} on the same line contradict each other.</source>
+      <translation>{word} y {other} se contradicen en la misma línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} cancels a position preset, so that the positions after it depend on the other control.</source>
+      <translation>{word} cancela un preset de posición; las posiciones siguientes dependen del otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} cancels the tool offset; the converted program cancels it at the next T or home.</source>
+      <translation>{word} cancela el corrector; el programa convertido lo cancela en el siguiente T o en la referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} changes nothing at this point, so the converted program does not contain it.</source>
+      <translation>{word} no cambia nada en este punto; el programa convertido no lo contiene.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} does what the machine file of this machine defines.</source>
+      <translation>{word} hace lo que define el archivo de esta máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} drills along Y while G18 is active.</source>
+      <translation>{word} taladra en Y mientras G18 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} has no counterpart and is left out.</source>
+      <translation>{word} no tiene equivalente y se omite.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} has no decimal point, and its value depends on a parameter of the other control.</source>
+      <translation>{word} no tiene punto decimal, y su valor depende de un parámetro del otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} has no effect on straight moves in X and Z and is left out.</source>
+      <translation>{word} no afecta a los movimientos rectos en X y Z, y se omite.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} has no meaning on this machine.</source>
+      <translation>{word} no tiene significado en esta máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is above the maximum feed of this machine; the maximum is used.</source>
+      <translation>{word} supera el avance máximo de esta máquina; se usa el máximo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is above the maximum spindle speed of this machine; the maximum is used.</source>
+      <translation>{word} supera la velocidad máxima del husillo; se usa la máxima.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is active in a cycle or on an arc where OmniTurn cannot start nose compensation.</source>
+      <translation>{word} está activo en un ciclo o en un arco donde OmniTurn no puede activar la compensación de punta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is in the contour of another cycle.</source>
+      <translation>{word} está en el contorno de otro ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is missing in the cycle.</source>
+      <translation>Falta {word} en el ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is not converted while G91 is active.</source>
+      <translation>{word} no se convierte mientras G91 está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is not possible while the plane of {plane} is active.</source>
+      <translation>{word} no es posible mientras el plano de {plane} está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is not supported by the conversion.</source>
+      <translation>La conversión no admite {word}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is replaced by {replacement}.</source>
+      <translation>{word} se sustituye por {replacement}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} is shorter than the shortest dwell of OmniTurn; 0.1 s is used.</source>
+      <translation>{word} es menor que la temporización mínima de OmniTurn; se usan 0.1 s.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} makes more than 1000 passes.</source>
+      <translation>{word} da más de 1000 pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} moves the C axis or a live tool; this conversion supports only turning.</source>
+      <translation>{word} mueve el eje C o una herramienta motorizada; esta conversión solo admite torneado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} moves to a position of the other machine; the converted program moves to machine home.</source>
+      <translation>{word} va a una posición de la otra máquina; el programa convertido va al punto de referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} selects a second work offset, whose values are stored in the other control.</source>
+      <translation>{word} selecciona un segundo origen de pieza, cuyos valores están en el otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: OmniTurn cannot cut a thread with a tapered entry.</source>
+      <translation>{word}: OmniTurn no puede cortar una rosca con entrada cónica.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: OmniTurn has the tools T1 to T32.</source>
+      <translation>{word}: OmniTurn tiene las herramientas T1 a T32.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: R must be 1 or more.</source>
+      <translation>{word}: R debe ser 1 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: a segment of the contour is too short for the distance of the cycle.</source>
+      <translation>{word}: un tramo del contorno es demasiado corto para la distancia del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: newer LinuxCNC versions add a move straight out at the end of this contour.</source>
+      <translation>{word}: las versiones nuevas de LinuxCNC añaden una salida recta al final de este contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: no speed is programmed for the spindle.</source>
+      <translation>{word}: no hay velocidad programada para el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: part zero of the converted program is in the tool offsets.</source>
+      <translation>{word}: el cero de pieza del programa convertido está en los correctores.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: spindle speed cannot be negative.</source>
+      <translation>{word}: la velocidad del husillo no puede ser negativa.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the corner does not fit between this move and the next one.</source>
+      <translation>{word}: la esquina no cabe entre este movimiento y el siguiente.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the end point of the cuts next to the first one does not match their step.</source>
+      <translation>{word}: el punto final de los cortes siguientes al primero no concuerda con su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the line is converted as if block delete were off, and / is left out.</source>
+      <translation>{word}: la línea se convierte como si el salto de bloque estuviera desactivado, y / se omite.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the spindle cannot turn at this speed.</source>
+      <translation>{word}: el husillo no puede girar a esta velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the tool of the converted program is T{number}, because OmniTurn has one number for both.</source>
+      <translation>{word}: la herramienta del programa convertido es T{number}, porque OmniTurn tiene un solo número para ambos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the unit of a dwell is a setting of the Mach control; seconds are assumed.</source>
+      <translation>{word}: la unidad de la temporización es un ajuste del control Mach; se suponen segundos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the value of a feed per revolution without a decimal point depends on a parameter.</source>
+      <translation>{word}: el valor de un avance por vuelta sin punto decimal depende de un parámetro.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: this value must be greater than zero.</source>
+      <translation>{word}: este valor debe ser mayor que cero.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_proof.py" />

@@ -15,6 +15,7 @@ from app.cli.change_author import add_as_option, get_permitted_user, log_user_ch
 from app.cli.program_options import parse_output_path
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
+from app.extras.convert.conversion_settings import ConversionSettings, make_options
 from core.access.access_table import ProtectedChange
 from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.json_keys import JsonOutput, declare_keys
@@ -109,19 +110,15 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _options(args: argparse.Namespace, control: SourceControl, machine: Machine) -> ConversionOptions:
-    return ConversionOptions(
-        control,
+    settings = ConversionSettings(
         no_point=float(args.no_point or 0),
-        metric=None if args.unit is None else args.unit == "mm",
-        diameter=None if args.x is None else args.x == "diameter",
-        front=args.tool_post == "front",
+        is_metric=None if args.unit is None else args.unit == "mm",
+        is_diameter=None if args.x is None else args.x == "diameter",
+        has_front_tool_post=args.tool_post == "front",
         skipped_m_codes=args.skip_m,
         has_comments=not args.no_comments,
-        rapid=machine.limits.max_feed * 60,
-        max_rpm=machine.spindle.max_rpm,
-        max_feed_mm_min=machine.limits.max_feed * 60,
-        m_codes=frozenset(machine.m_codes),
     )
+    return make_options(control, settings, machine)
 
 
 def _may_write(args: argparse.Namespace) -> str:

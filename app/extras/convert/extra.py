@@ -8,15 +8,41 @@ from typing import TYPE_CHECKING
 from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
+    from app.compose.runs.journal import Journal
+    from app.desk.background_work import LatestRequestWorker
+    from app.desk.desk import Desk
+    from app.desk.persistence import Persistence
+    from app.desk.programs.program_loading import LoadingSteps
+    from app.special.special_functions import SpecialFunction
     from core.json_keys import JsonOutput
+    from core.machine.machine_model import Machine
 
 
 class ConvertExtra(OptionalFeature):
-    """Optional feature with the command ``turndesk convert``."""
+    """Optional feature with the command ``turndesk convert`` and the special function CONVERT PROGRAM."""
 
     subcommands = {
         "convert": Subcommand("serial", "convert a turning program of another control to OmniTurn"),
     }
+
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        """Attach the notice that proposes the conversion of a loaded program of another control."""
+        from app.extras.convert.convert_function import RecognitionNotice
+
+        if _runs_omniturn(machine):
+            desk.page_registry.add_frame_watcher(RecognitionNotice(desk).observe_frame)
+
+    def list_special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
+    ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return CONVERT PROGRAM, which follows ACCESS LEVELS in the list of an OmniTurn lathe."""
+        from app.extras.convert.convert_function import ConvertFunction
+
+        if not _runs_omniturn(machine):
+            return ()
+        return ((ConvertFunction(desk, machine, worker), "ACCESS LEVELS"),)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         """Return the JSON outputs of ``turndesk convert``.
@@ -26,6 +52,10 @@ class ConvertExtra(OptionalFeature):
         from app.extras.convert.convert_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}
+
+
+def _runs_omniturn(machine: Machine) -> bool:
+    return machine.kind == "lathe" and machine.mdi_language == "omniturn"
 
 
 EXTRA = ConvertExtra()

@@ -8,10 +8,6 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.message import Message
 
 ERRORS: Mapping[str, tuple[str, str]] = {
-    "angle-word": (
-        "{word}: this angle needs the intersection with the next line.",
-        "Write the end point with X and Z.",
-    ),
     "arc-centre": ("The arc has neither R nor a center.", "Write R, or I and K."),
     "arc-radius": (
         "The arc's radius is {first} at its start and {last} at its end.",
@@ -54,7 +50,7 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     ),
     "cycle-positive": ("{word}: this value must be greater than zero.", "Correct the value."),
     "cycle-sideways": (
-        "{word}: the end point beside the first cut and the step toward it do not match.",
+        "{word}: the end point of the cuts next to the first one does not match their step.",
         "Write both words, or neither of them.",
     ),
     "cycle-start": ("The cycle starts inside its contour.", "Start the cycle outside the contour."),
@@ -85,10 +81,6 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     "m-code": (
         "{word} has no meaning on this machine.",
         "Define the M code under [m_codes] in the machine file, or leave it out with --skip-m {number}.",
-    ),
-    "mill": (
-        "{word} belongs to a milling program.",
-        "Choose a turning program, or remove the word if it has no effect.",
     ),
     "motion-missing": (
         "No G code for a move is active here.",
@@ -160,10 +152,6 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "OmniTurn needs X and Z in the first move after T, so the first moves are joined to one rapid.",
         "Check that the path from the tool change position to this point is clear.",
     ),
-    "arc-radius-end": (
-        "The end radius of the arc differs from its start radius by {value} mm; OmniTurn accepts .0005 in.",
-        "Check the arc.",
-    ),
     "block-delete": (
         "{word}: the line is converted as if block delete were off, and / is left out.",
         "Check whether this line must be executed.",
@@ -176,7 +164,6 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "{word}: newer LinuxCNC versions add a move straight out at the end of this contour.",
         "Check the end of the contour, or write this move at its end.",
     ),
-    "diameter-assumed": ("X is treated as a diameter.", "If X is a radius, use --x radius."),
     "dwell-short": (
         "{word} is shorter than the shortest dwell of OmniTurn; 0.1 s is used.",
         "Check the dwell.",
@@ -188,10 +175,6 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
     "feed-limited": (
         "{word} is above the maximum feed of this machine; the maximum is used.",
         "Check the feed.",
-    ),
-    "feed-mode-assumed": (
-        "The program does not select the feed mode; {mode} is assumed.",
-        "Check the feeds.",
     ),
     "home-position": (
         "{word} moves to a position of the other machine; the converted program moves to machine home.",

@@ -120,7 +120,7 @@ def _intersect(one: Segment, other: Segment) -> list[complex]:
 
 
 def _intersect_line(line: Segment, arc: Segment) -> list[complex]:
-    """Return the intersections of a line with the circle of an arc; a circle beside the line counts once."""
+    """Return the intersections of a line with the circle of an arc; a missed circle has one point."""
     assert arc.center is not None
     axis = (line.end - line.start) / abs(line.end - line.start)
     local = (arc.center - line.start) / axis

@@ -1,0 +1,290 @@
+"""Special function CONVERT PROGRAM, which converts the loaded program of another control.
+
+The function shows the findings and the converted program before it saves a new file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.background_work import LatestRequestWorker
+from app.desk.desk import Desk
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following
+from app.desk.programs.program_loading import LoadedProgram
+from app.desk.status.machine_status import Tone
+from app.desk.translation import tr
+from app.extras.convert.conversion_settings import ConversionSettings, make_options
+from app.programs.atomic_files import write_new_file
+from app.special.special_functions import SpecialFunction
+from core.access.access_table import ProtectedChange
+from core.executor.snapshot import Snapshot
+from core.extras.convert.source_options import SourceControl
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect, ProgramSource
+from core.machine.machine_model import Machine
+from core.message import Message
+
+if TYPE_CHECKING:
+    from core.extras.convert.conversion import Conversion
+
+RECOGNIZED_CODE = "other-control-program"
+_MAX_PREVIEW_ROWS = 500
+_SETTING_COUNT = 6
+_NOT_SPECIFIED = "NOT SPECIFIED"
+_UNITS: Mapping[bool | None, str] = {None: _NOT_SPECIFIED, False: "INCH", True: "MM"}
+_X_VALUES: Mapping[bool | None, str] = {None: _NOT_SPECIFIED, True: "DIAMETER", False: "RADIUS"}
+_POINTS: Mapping[float, str] = {0.0: _NOT_SPECIFIED, 1.0: "1000 UNITS", 0.001: "1 mm OR .1 in"}
+_SCREEN_HINTS: Mapping[str, str] = {
+    "unit": "CHANGE UNIT WITHOUT G20 OR G21 ABOVE.",
+    "no-point": "CHANGE X1000 WITHOUT A POINT IS ABOVE.",
+    "m-code": "PRESS ENTER ON M CODES LEFT OUT TO LEAVE IT OUT.",
+}
+"""Remedies on the screen by code of the finding, in place of options of the command."""
+_TONES = {Severity.ERROR: Tone.ALARM, Severity.WARNING: Tone.WAIT, Severity.NOTE: Tone.READY}
+
+
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """Program and settings of a conversion."""
+
+    source: ProgramSource
+    control: SourceControl | None
+    settings: ConversionSettings
+
+
+@dataclass(frozen=True, slots=True)
+class _Result:
+    """Control of the program, its conversion (None if no control was recognized), and the converted lines."""
+
+    control: SourceControl | None
+    conversion: Conversion | None = None
+
+
+class ConvertFunction(SpecialFunction):
+    """Special function that converts the loaded program to OmniTurn, shows the result and saves a new file.
+
+    A worker converts the program when the function opens and when a setting changes.
+    """
+
+    name = "CONVERT PROGRAM"
+    use = "loaded program of another control, with preview"
+
+    def __init__(self, desk: Desk, machine: Machine, worker: LatestRequestWorker) -> None:
+        super().__init__(desk)
+        self.machine, self.worker = machine, worker
+        self.control: SourceControl | None = None  # None: recognized from the program
+        self.settings = ConversionSettings()
+        self.error_text = ""
+        self._requested: _Request | None = None
+        self._result: _Result | None = None
+
+    # --- display
+
+    @property
+    def loaded_source(self) -> ProgramSource | None:
+        """Return the text of the loaded program, or None without a program for OmniTurn."""
+        source = self.desk.program_loader.loaded_program.source
+        return source if source is not None and source.dialect == Dialect.OMNITURN else None
+
+    @property
+    def row_count(self) -> int:
+        """Return the number of rows that can be selected."""
+        return len(self._rows()) if self.loaded_source is not None else 0
+
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
+        """Return the table of settings, findings and converted lines."""
+        self._convert_if_changed()
+        name = self.desk.program_loader.loaded_program.name
+        title = Message("CONVERT PROGRAM  ·  {name}", name=name) if name else "CONVERT PROGRAM"
+        if self.loaded_source is None:
+            why = "CHOOSE THE PROGRAM OF THE OTHER CONTROL FIRST"
+            return TableContent(title, ("", ""), (0.3, 0.7), (), notes=(why,))
+        rows = self._rows()
+        self.marked = max(0, min(self.marked, len(rows) - 1))
+        return TableContent(
+            title, ("", ""), (0.3, 0.7), tuple(rows), self.marked, notes=(self._summary(),),
+            raw_columns=frozenset({0, 1}),
+        )  # fmt: skip
+
+    def _summary(self) -> str:
+        if self.error_text:
+            return self.error_text
+        result = self._result
+        if result is None:
+            return "Converting the program …"
+        if result.conversion is None:
+            return "THE CONTROL IS NOT RECOGNIZED. SELECT IT IN THE FIRST ROW"
+        count = len(result.conversion.errors)
+        if count:
+            return Message("NOT CONVERTED. CORRECT {count} ERROR(S) OR CHANGE A SETTING", count=count)
+        proof = result.conversion.proof
+        return Message(
+            "{lines} LINES, {steps} STEPS PROVED EQUAL. F6 SAVES A NEW FILE",
+            lines=len(result.conversion.lines),
+            steps=proof.compared_step_count,
+        )
+
+    def _rows(self) -> list[TableRow]:
+        rows = [TableRow((tr(name), tr(value))) for name, value in self._setting_values()]
+        if self._result is None or self._result.conversion is None:
+            return rows
+        rows += [_make_finding_row(*each) for each in _group(self._result.conversion.findings)]
+        if not self._result.conversion.errors:
+            rows += [
+                TableRow((f"L{each.source_line_number}" if each.source_line_number else "", each.text))
+                for each in self._result.conversion.lines[:_MAX_PREVIEW_ROWS]
+            ]
+        return rows
+
+    def _setting_values(self) -> list[tuple[str, str]]:
+        control = self.control or (self._result.control if self._result is not None else None)
+        shown = "NOT RECOGNIZED" if control is None else str(control).upper()
+        codes = ", ".join(f"M{code:02d}" for code in sorted(self.settings.skipped_m_codes)) or "NONE"
+        return [
+            ("CONTROL", shown),
+            ("UNIT WITHOUT G20 OR G21", _UNITS[self.settings.is_metric]),
+            ("X1000 WITHOUT A POINT IS", _POINTS[self.settings.no_point]),
+            ("X IS", _X_VALUES[self.settings.is_diameter]),
+            ("TOOL POST", "FRONT" if self.settings.has_front_tool_post else "REAR"),
+            ("M CODES LEFT OUT", codes),
+        ]
+
+    # --- conversion
+
+    def _convert_if_changed(self) -> None:
+        source = self.loaded_source
+        if source is None:
+            self._requested = self._result = None
+            return
+        wanted = _Request(source, self.control, self.settings)
+        if wanted == self._requested:
+            return
+        self._requested, self._result, self.error_text = wanted, None, ""
+        self.worker.enqueue_work(
+            partial(_convert, wanted, self.machine), partial(self._take, wanted), self._fail
+        )
+
+    def _take(self, request: _Request, result: _Result) -> None:
+        if request == self._requested:
+            self._result = result
+
+    def _fail(self, why: str) -> None:
+        self.error_text = why
+
+    # --- keys
+
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
+        """Return the function key that saves the converted program."""
+        return {"F6": FunctionKey("SAVE", self.save_program, barred=not self._is_converted)}
+
+    @property
+    def _is_converted(self) -> bool:
+        conversion = self._result.conversion if self._result is not None else None
+        return conversion is not None and not conversion.errors
+
+    def execute_row(self) -> bool:
+        """Change the selected setting, and return whether a setting was selected."""
+        if self.loaded_source is None or self.marked >= _SETTING_COUNT:
+            return False
+        self.desk.clear_prompt_line()
+        settings = self.settings
+        if self.marked == 0:
+            self.control = following((None, *SourceControl), self.control)
+        elif self.marked == 1:
+            self.settings = replace(settings, is_metric=following(_UNITS, settings.is_metric))
+        elif self.marked == 2:
+            self.settings = replace(settings, no_point=following(_POINTS, settings.no_point))
+        elif self.marked == 3:
+            self.settings = replace(settings, is_diameter=following(_X_VALUES, settings.is_diameter))
+        elif self.marked == 4:
+            self.settings = replace(settings, has_front_tool_post=not settings.has_front_tool_post)
+        else:
+            self._skip_m_code()
+        return True
+
+    def _skip_m_code(self) -> None:
+        """Add the M code of the present error to the codes that are left out, or clear these codes."""
+        conversion = self._result.conversion if self._result is not None else None
+        error = next(iter(conversion.errors), None) if conversion is not None else None
+        codes: frozenset[int] = frozenset()
+        if error is not None and error.code == "m-code" and isinstance(error.message, Message):
+            number = str(error.message.values["word"]).upper().lstrip("M")
+            codes = self.settings.skipped_m_codes | {int(float(number))}
+        self.settings = replace(self.settings, skipped_m_codes=codes)
+
+    def save_program(self) -> None:
+        """Save the converted program as a new file and load it, so that it is proved before a start."""
+        conversion = self._result.conversion if self._result is not None else None
+        path = self.desk.program_loader.loaded_program.path
+        if conversion is None or conversion.errors or path is None:
+            self.desk.say("THE PROGRAM IS NOT CONVERTED")
+        elif self.desk.program_choice.can_choose() and not self.desk.is_refused(ProtectedChange.PROGRAMS):
+            folder = self.desk.program_choice.program_folders.folders[0]
+            target = folder / f"{path.stem}-omniturn.nc"
+            work = partial(_save, target, conversion.text)
+            self.worker.enqueue_work(work, self._saved, self.desk.show_refusal)
+
+    def _saved(self, path: Path) -> None:
+        self.desk.show_success(tr(Message("{name} SAVED. SET ITS TOOL OFFSETS", name=path.name)))
+        self.desk.program_choice.load_path(path)
+
+    def on_open(self) -> None:
+        """Start with the first setting."""
+        self.marked = 0
+
+    def prompt_text(self) -> str:
+        """Return the prompt that explains the current keys."""
+        return "ENTER: CHANGE SETTING   F6: SAVE AS A NEW PROGRAM   ESC: BACK"
+
+
+class RecognitionNotice:
+    """Watcher that proposes the conversion once after a program of another control is loaded."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+        self._announced: ProgramSource | None = None
+
+    def observe_frame(self, _snapshot: Snapshot) -> None:
+        """Show the proposal on the prompt line if the loaded program is of another control."""
+        loaded: LoadedProgram = self._desk.program_loader.loaded_program
+        if loaded.source is None or loaded.source is self._announced or loaded.is_busy:
+            return
+        self._announced = loaded.source
+        if any(each.code == RECOGNIZED_CODE for each in loaded.diagnostics):
+            self._desk.say("PROGRAM OF ANOTHER CONTROL. F10, CONVERT PROGRAM CONVERTS IT")
+
+
+def _convert(request: _Request, machine: Machine) -> _Result:
+    """Convert and prove the program on the worker."""
+    from app.compose.machine.machine_setup import get_control_limits
+    from core.extras.convert.conversion import convert_program
+    from core.extras.convert.recognition import recognize_control
+
+    lines = request.source.lines
+    control = request.control or recognize_control(lines)
+    if control is None:
+        return _Result(None)
+    options = make_options(control, request.settings, machine)
+    return _Result(control, convert_program(lines, options, get_control_limits(machine)))
+
+
+def _save(target: Path, text: str) -> Path:
+    """Write the new file on the worker. Raises FileOperationError if the name exists."""
+    write_new_file(target, text.encode("ascii", "replace"))
+    return target
+
+
+def _group(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, str]]:
+    from core.extras.convert.conversion import group_findings
+
+    return group_findings(findings)
+
+
+def _make_finding_row(finding: Diagnostic, further_lines: str) -> TableRow:
+    lines = f"{finding.line}, {further_lines}" if further_lines else str(finding.line or "")
+    hint = tr(_SCREEN_HINTS.get(finding.code, finding.hint))
+    return TableRow((lines, f"{tr(finding.message)} {hint}"), tone=_TONES[finding.severity])
