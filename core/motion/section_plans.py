@@ -57,7 +57,7 @@ def plan_sections(
     counts = np.array([len(section) for section in sections])
     firsts = np.cumsum(counts) - counts
     alone = np.logical_or.reduceat(_find_special_blocks(table, pieces, limits), firsts)
-    for count in np.unique(counts[~alone & (counts < FEW_PIECES)]).tolist():
+    for count in sorted(set(counts[~alone & (counts < FEW_PIECES)].tolist())):
         chosen = np.flatnonzero(~alone & (counts == count))
         rows = pieces[(firsts[chosen, None] + np.arange(count)).ravel()]
         for index, plan in zip(chosen.tolist(), _plan_rows(rows, count, limits), strict=True):
