@@ -8,6 +8,8 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.code_help import make_code_blocks
+from app.desk.pages.guide_text import GuideBlock
 from app.desk.pages.page_entry import find_editor_refusal, find_program_refusal, find_searchto_refusal
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
@@ -25,6 +27,7 @@ from app.screen.window_layout import Rect, divide_work_area
 from app.working_plane.plane_instant import describe_plane, make_run_instant
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import MachineState, Snapshot
+from core.interpreter.dialects import get_code_book
 
 _NO_LINES: tuple[str, ...] = ()
 
@@ -151,6 +154,14 @@ class AutomaticPage(Page):
     def _visible_view(self) -> PathView | WorkingPlaneView:
         """Return the view that the zoom and pan keys control."""
         return self.path_view if self.plane_view.scene is None else self.plane_view
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return the explanation of the codes in the current line of the program."""
+        source, line = self._loaded.source, self.program_listing.active_line
+        if source is None or not 0 < line <= len(source.lines):
+            return ()
+        book = get_code_book(source.dialect)
+        return make_code_blocks(book, book.list_codes(source.lines[line - 1]))
 
     def is_animating(self) -> bool:
         """Return whether the animation of the part is playing."""

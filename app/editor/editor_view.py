@@ -5,7 +5,7 @@ All functions are available from the keyboard, and every function key is also a 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,8 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.arithmetic import evaluate_line_number
+from app.desk.pages.code_help import make_code_blocks
+from app.desk.pages.guide_text import GuideBlock
 from app.desk.pages.table_content import FunctionKey
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
@@ -382,6 +384,12 @@ class EditorPage(EditorParts):
     def has_text_field(self) -> bool:
         """Return whether the form has the keyboard focus."""
         return self.mode is EditorMode.PANEL
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return the explanation of the codes in the line of the cursor."""
+        book = self.editor.live_proof.current_findings.code_book
+        line = self.text_field.textCursor().block().text()
+        return make_code_blocks(book, book.list_codes(line)) if book is not None else ()
 
     def _jump_to_line(self) -> None:
         """Move the cursor to the program line that produces the path at the crosshair."""

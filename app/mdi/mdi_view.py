@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QFontMetricsF, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.code_help import make_code_blocks
+from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.programs.start_watch import make_drawn_legs
 from app.desk.status.machine_status import MachineStatus
@@ -241,6 +243,11 @@ class MdiPage(ModelPage):
     def has_text_field(self) -> bool:
         """Return whether the input line accepts text, which is the case while no line is running."""
         return self.model.accepts_input
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return the explanation of the codes in the input line."""
+        book = self.model.line_completion.read_code_book()
+        return make_code_blocks(book, book.list_codes(self.model.mdi_input.text))
 
     def prompt_text(self) -> str:
         """Return the prompt of the model."""

@@ -99,6 +99,11 @@ class CellTable(OffsetTable):
         return self.columns[self.column_index]
 
     @property
+    def selected_field_name(self) -> str:
+        """Return the name of the selected field."""
+        return self.name
+
+    @property
     def selected_field(self) -> RowField:
         """Return the field definition of the selected column."""
         return self.field_of(self.name)

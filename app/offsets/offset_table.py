@@ -71,6 +71,11 @@ class OffsetTable(ABC):
         """Return the number of the selected row, to which undo applies, or None if no row is selected."""
         return None
 
+    @property
+    def selected_field_name(self) -> str:
+        """Return the name of the selected field, or an empty string if no field is selected."""
+        return ""
+
     # --- members that each table defines -------------------------------------------------------------
 
     @property
@@ -358,6 +363,11 @@ class ToolFieldTable(OffsetTable):
     @abstractmethod
     def name(self) -> str:
         """Return the name of the selected field."""
+
+    @property
+    def selected_field_name(self) -> str:
+        """Return the name of the selected field."""
+        return self.name
 
     @property
     @abstractmethod

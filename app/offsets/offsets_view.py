@@ -7,12 +7,15 @@ of a change on the path can replace the table.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.field_help import make_field_help
+from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
@@ -209,6 +212,10 @@ class OffsetPage(ModelPage):
         if self.effect_display.is_open:
             return self.effect_display.words
         return self.model.prompt_text(self.desk.read_snapshot())
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return the explanation of the selected field."""
+        return make_field_help(self.model.kind, self.model.selected_field_name, self.model.question_text)
 
     def apply_theme(self) -> None:
         """Redraw the paths in the current colors."""

@@ -128,6 +128,12 @@ class SecondaryOffsetEntry(OffsetTable):
         return f"D{self.offset_number}   {was}  →  {new}"
 
     @property
+    def selected_field_name(self) -> str:
+        """Return the name of the field that the current prompt asks for, or an empty string."""
+        is_field = self.entry_step is not SecondaryOffsetStep.NUMBER
+        return self.entry_step.name.lower() if is_field else ""
+
+    @property
     def footer_text(self) -> str:
         """Return the hint on how to exit and how to clear the table, in the words of the original control."""
         leave = tr("Press Esc to exit offset adjustment screen")

@@ -29,6 +29,7 @@ first opened. A page may override the following members:
   every character belongs to the field.
 - ``find_pending_question()``: a question of the page, which has priority on the prompt line.
 - ``prompt_text()``: the text of the prompt line if there is no message and no alarm.
+- ``find_marked_help()``: help about the marked word, field or function, which the key ``?`` shows first.
 - ``can_open()``: whether the page can be opened now. If not, it shows the reason with ``desk.say``.
 - ``on_open()``: called when the page has opened. It may take the focus from the window.
 - ``try_leave()``: called before the page or the window closes. False prevents closing. The page then
@@ -59,6 +60,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
 from app.desk.pages.editor_panel import PanelModel
+from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.screen.screen_theme import ScreenTheme
@@ -189,6 +191,10 @@ class Page(QWidget):
     def prompt_text(self) -> str:
         """Return the page's prompt, or an empty string to show the prompt for the machine state instead."""
         return ""
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return help about the marked word, field or function, or nothing if nothing is marked."""
+        return ()
 
     def can_open(self) -> bool:
         """Return whether the page can be opened now. If not, show the reason."""

@@ -47,6 +47,11 @@ class ProgramListing(RowPanel):
             self.first_row = max(0, min(self._bad, default=0) - 3)
             self.update()
 
+    @property
+    def active_line(self) -> int:
+        """Return the number of the marked line, or 0 while no line is executed or selected."""
+        return self._line
+
     def show_run(self, active_line: int, block_text: str, next_block_text: str) -> None:
         """Show the executed line, the generated block and the next block.
 

@@ -12,6 +12,8 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.code_help import make_code_blocks
+from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
@@ -38,6 +40,7 @@ from app.searchto.searchto_state_view import (
 from app.working_plane.plane_instant import describe_plane, make_line_instant
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
+from core.interpreter.dialects import get_code_book
 from core.message import Message, join_messages
 
 if TYPE_CHECKING:
@@ -238,6 +241,14 @@ class SearchtoPage(ModelPage):
     def has_text_field(self) -> bool:
         """Return whether text can be entered. This is always possible unless the tool retracts."""
         return self.model.can_choose_line
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return the explanation of the codes in the selected line."""
+        source, line = self.desk.program_loader.loaded_program.source, self.model.line_cursor.selected_line
+        if source is None or not 0 < line <= len(source.lines):
+            return ()
+        book = get_code_book(source.dialect)
+        return make_code_blocks(book, book.list_codes(source.lines[line - 1]))
 
     def prompt_text(self) -> str:
         """Return the prompt of the model."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.guide_text import BlockKind, GuideBlock, read_function_help
 from app.desk.pages.table_content import FunctionKey
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
+from app.desk.translation import get_language, tr
 from app.screen import page_table
 from app.screen.entry_panel import LetterPad, NumberPad
 from app.screen.page_base import KeyActions, PageHost
@@ -143,6 +145,15 @@ class SpecialPage(ListPage):
     def has_text_field(self) -> bool:
         """Return whether an open function has a text entry."""
         return self.model.inside and self.model.shown_function.accepts_key("1")
+
+    def find_marked_help(self) -> Sequence[GuideBlock]:
+        """Return the guide's section about the displayed function, or its description."""
+        shown = self.model.shown_function
+        section = read_function_help(shown.name, get_language())
+        return (
+            GuideBlock(BlockKind.HEADING, tr(shown.name)),
+            *(section or (GuideBlock(BlockKind.TEXT, tr(shown.use)),)),
+        )
 
     def _do(self, name: str) -> None:
         self.model.inside = True

@@ -103,6 +103,11 @@ class CodeBook:
         before = [each for each in found if each[0] < column]
         return before[-1][2] if before else found[0][2] if found else None
 
+    def list_codes(self, line: str) -> tuple[CodeBookEntry, ...]:
+        """Return the entries of all codes in a line, from left to right, without those in a comment."""
+        code = line.upper().split(self.comment_sign, 1)[0]
+        return tuple(dict.fromkeys(entry for _start, _end, entry in self._find_codes(code)))
+
     def _find_codes(self, code: str) -> Iterator[tuple[int, int, CodeBookEntry]]:
         """Yield the start, end and entry of each code in a line.
 

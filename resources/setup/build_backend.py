@@ -1,7 +1,7 @@
 """Build backend of the TurnDesk wheel, which has all source packages in one package ``turndesk``.
 
-Setuptools builds the wheel, and this backend then moves its packages. Editable installs and source
-distributions, which Setuptools builds alone, have the same package names as a clone.
+Setuptools builds the wheel, and this backend then moves its packages and adds the guide. Editable
+installs and source distributions, which Setuptools builds alone, have the same package names as a clone.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from setuptools.build_meta import (
     prepare_metadata_for_build_editable,
 )
 
-from resources.setup.wheel_merge import merge_packages
+from resources.setup.wheel_merge import merge_packages, read_guide_files
 
 __all__ = [
     "build_editable",
@@ -42,5 +42,5 @@ def build_wheel(
     settings = dict(config_settings) if config_settings else None
     name = str(build_meta.build_wheel(wheel_directory, settings, metadata_directory))
     path = Path(wheel_directory) / name
-    path.write_bytes(merge_packages(path.read_bytes()))
+    path.write_bytes(merge_packages(path.read_bytes(), read_guide_files(Path.cwd())))
     return name

@@ -17,6 +17,8 @@ from pathlib import Path
 
 PACKAGES = ("app", "core", "drivers", "resources")
 PACKAGE_NAME = "turndesk"
+GUIDE_FILES = ("guide/screen.md", "guide/special-functions.md", "guide.es.md")
+"""Files of the guide in ``docs`` that ``app.desk.pages.guide_text`` reads."""
 _LAUNCHER = Path(__file__).with_name("launcher.py")
 _ENTRY_POINTS = f"[console_scripts]\n{PACKAGE_NAME} = {PACKAGE_NAME}:console\n"
 _MAIN = (
@@ -27,8 +29,19 @@ _EARLIEST = 315532800  # s since 1970, the first time that an archive can state
 _MODE = 0o100644
 
 
-def merge_packages(wheel: bytes) -> bytes:
-    """Return a wheel whose packages are parts of ``turndesk``.
+def read_guide_files(project_folder: Path) -> dict[str, bytes]:
+    """Return the files of the user's guide that the screen shows as help, by their paths in the wheel.
+
+    Raises FileNotFoundError if a file of the guide is missing.
+    """
+    docs = project_folder / "docs"
+    pictures = (*docs.glob("pictures/*.png"), *docs.glob("pictures/es/*.png"))
+    paths = (*(docs / name for name in GUIDE_FILES), *pictures)
+    return {f"resources/guide/{path.relative_to(docs).as_posix()}": path.read_bytes() for path in paths}
+
+
+def merge_packages(wheel: bytes, added_files: Mapping[str, bytes] | None = None) -> bytes:
+    """Return a wheel whose packages are parts of ``turndesk``, with ``added_files`` by their old paths.
 
     The files are sorted and all have the same time.
     """
@@ -36,6 +49,7 @@ def merge_packages(wheel: bytes) -> bytes:
         files = {
             get_new_path(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")
         }
+    files |= {get_new_path(name): data for name, data in (added_files or {}).items()}
     record = next(name for name in files if name.endswith(".dist-info/RECORD"))
     info = record.removesuffix("RECORD")
     del files[record]

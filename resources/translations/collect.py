@@ -87,6 +87,7 @@ EXCLUDED_FILES = frozenset(
             "key_table.py",
             "headless_run.py",
         ),
+        "pages/guide_text.py",
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *(
             "proof_scheduler.py",

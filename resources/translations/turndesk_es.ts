@@ -5869,6 +5869,246 @@
       <translation>CÓDIGOS QUE COINCIDEN</translation>
     </message>
     <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Angle at the point of a drill.</source>
+      <translation>Ángulo de la punta de una broca.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Angle between the main cutting edge and the feed direction.</source>
+      <translation>Ángulo entre el filo principal y la dirección de avance.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Angle of the program zero of the C axis, in degrees.</source>
+      <translation>Ángulo del cero del programa en el eje C, en grados.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Angle of the workpiece zero of the A axis.</source>
+      <translation>Ángulo del cero de pieza en el eje A.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Angle of the workpiece zero of the B axis.</source>
+      <translation>Ángulo del cero de pieza en el eje B.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Angle of the workpiece zero of the C axis.</source>
+      <translation>Ángulo del cero de pieza en el eje C.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Basic rotation: the angle of the workpiece around the tool axis.</source>
+      <translation>Giro básico: el ángulo de la pieza alrededor del eje de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Corner radius of the tool, equal to R for a ball nose.</source>
+      <translation>Radio de esquina de la herramienta, igual a R en una fresa esférica.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Correction of the diameter. Half of it is added to X, because X is stored as a radius.</source>
+      <translation>Corrección del diámetro. La mitad se suma a X, porque X se guarda como radio.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Correction that is added to Z.</source>
+      <translation>Corrección que se suma a Z.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Cutting time of the tool since it was new, in minutes.</source>
+      <translation>Tiempo de corte de la herramienta desde que era nueva, en minutos.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Diameter of the tool. For a boring bar, the diameter of the bar.</source>
+      <translation>Diámetro de la herramienta. En una barra de mandrinar, el diámetro de la barra.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Direction from the nose center to the tip, 1 to 9. Nose radius compensation uses it.</source>
+      <translation>Dirección del centro del radio a la punta, de 1 a 9. La usa la compensación del radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Distance from the machine reference to the tool tip in X. Touch off X to measure it.</source>
+      <translation>Distancia en X de la referencia de máquina a la punta de la herramienta. Palpe X para medirla.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Distance from the machine reference to the tool tip in Z. Touch off Z to measure it.</source>
+      <translation>Distancia en Z de la referencia de máquina a la punta de la herramienta. Palpe Z para medirla.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>ISO code of the holder. The proof checks collisions with the holder.</source>
+      <translation>Código ISO del portaherramientas. La prueba comprueba las colisiones con él.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>ISO code of the insert. Size and angles follow from it.</source>
+      <translation>Código ISO de la plaquita. De él resultan el tamaño y los ángulos.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Length of the cutting edge.</source>
+      <translation>Longitud del filo.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Length of the tool from the spindle nose to the tip. F2 touches it off.</source>
+      <translation>Longitud de la herramienta de la nariz del husillo a la punta. F2 la palpa.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Length of the tool outside its holder.</source>
+      <translation>Longitud de la herramienta fuera de su portaherramientas.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Name of the tool. A program can call the tool by this name.</source>
+      <translation>Nombre de la herramienta. Un programa puede llamarla por este nombre.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Nose radius for this offset. It replaces the previous value.</source>
+      <translation>Radio de punta de este corrector. Sustituye al valor anterior.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Number of cutting edges.</source>
+      <translation>Número de filos.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Number of teeth.</source>
+      <translation>Número de dientes.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Outline of a form tool, as points from the control point.</source>
+      <translation>Contorno de una herramienta de forma, como puntos desde el punto de control.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Oversize that is added to the corner radius.</source>
+      <translation>Sobremedida que se suma al radio de esquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Oversize that is added to the length.</source>
+      <translation>Sobremedida que se suma a la longitud.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Oversize that is added to the radius.</source>
+      <translation>Sobremedida que se suma al radio.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Pitch of the thread that the tool cuts.</source>
+      <translation>Paso de la rosca que corta la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Point angle of a drill.</source>
+      <translation>Ángulo de punta de una broca.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Position of the program zero in X, as a radius in mm from the machine zero.</source>
+      <translation>Posición en X del cero del programa, como radio en mm desde el cero de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Position of the program zero in Z, in mm from the machine zero.</source>
+      <translation>Posición en Z del cero del programa, en mm desde el cero de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Position of the workpiece zero in X, in machine coordinates.</source>
+      <translation>Posición en X del cero de pieza, en coordenadas de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Position of the workpiece zero in Y, in machine coordinates.</source>
+      <translation>Posición en Y del cero de pieza, en coordenadas de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Position of the workpiece zero in Z, in machine coordinates.</source>
+      <translation>Posición en Z del cero de pieza, en coordenadas de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Radius of the rounded tool tip. Nose radius compensation (G41, G42) uses it.</source>
+      <translation>Radio de la punta redondeada. Lo usa la compensación del radio de punta (G41, G42).</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Radius of the tool. Radius compensation uses it.</source>
+      <translation>Radio de la herramienta. Lo usa la compensación de radio.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>The side to which the tool cuts.</source>
+      <translation>El lado hacia el que corta la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>The tool to which X and Z of the other tools are relative when F3 MASTER is on.</source>
+      <translation>La herramienta respecto a la que se muestran X y Z de las demás con F3 MAESTRA.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>The type of tool. It determines which other fields the tool has.</source>
+      <translation>El tipo de herramienta. Determina qué otros campos tiene la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Tool life limit in minutes of cutting time. 0 means no limit.</source>
+      <translation>Límite de vida en minutos de corte. 0 significa sin límite.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Wear correction in X as a diameter. It is added to X. You can change it while parts run.</source>
+      <translation>Corrección de desgaste en X como diámetro. Se suma a X. Puede cambiarla mientras se hacen piezas.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Wear correction in Z. It is added to Z. You can change it while parts run.</source>
+      <translation>Corrección de desgaste en Z. Se suma a Z. Puede cambiarla mientras se hacen piezas.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Whether no new part starts after TIME2 is reached. Enter turns it on or off.</source>
+      <translation>Si ninguna pieza nueva empieza cuando se alcanza TIME2. Enter lo activa o desactiva.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Whether the tool works at negative X.</source>
+      <translation>Si la herramienta trabaja en X negativo.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Width of the cutting edge of a grooving or cutoff tool.</source>
+      <translation>Ancho del filo de una herramienta de ranurar o tronzar.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Your own note about the preset. It has no effect on the machine.</source>
+      <translation>Su propia nota sobre el preset. No tiene efecto en la máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/field_help.py" />
+      <source>Your own note about the tool. It has no effect on the machine.</source>
+      <translation>Su propia nota sobre la herramienta. No tiene efecto en la máquina.</translation>
+    </message>
+    <message>
       <location filename="app/desk/pages/first_job.py" />
       <source>CHOOSE A PROGRAM</source>
       <translation>ELIJA UN PROGRAMA</translation>
@@ -13979,6 +14219,16 @@
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
     </message>
     <message>
+      <location filename="app/screen/page_help.py" />
+      <source>ALARMS AND STOPS</source>
+      <translation>ALARMAS Y PAROS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_help.py" />
+      <source>KEYS THAT ACT ON EVERY PAGE</source>
+      <translation>TECLAS DE TODAS LAS PÁGINAS</translation>
+    </message>
+    <message>
       <location filename="app/screen/page_table.py" />
       <source>ANALYSES</source>
       <translation>ANÁLISIS</translation>
@@ -14184,6 +14434,16 @@
       <translation>{name} ES UNA CARPETA. SUELTE UN PROGRAMA</translation>
     </message>
     <message>
+      <location filename="app/screen/window/help_panel.py" />
+      <source>CLOSE HELP</source>
+      <translation>CERRAR LA AYUDA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/help_panel.py" />
+      <source>HELP  ·  ?: NEXT  ·  ARROWS: SCROLL  ·  ANY OTHER KEY: CLOSE</source>
+      <translation>AYUDA  ·  ?: SIGUIENTE  ·  FLECHAS: DESPLAZAR  ·  OTRA TECLA: CERRAR</translation>
+    </message>
+    <message>
       <location filename="app/screen/window/main_window.py" />
       <source>KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK</source>
       <translation>MODO QUIOSCO: PARA CERRAR TURNDESK, APAGUE LA COMPUTADORA</translation>
@@ -14202,6 +14462,16 @@
       <location filename="app/screen/window/main_window.py" />
       <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
       <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/notices.py" />
+      <source>FROM LINE 1</source>
+      <translation>LÍNEA 1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/notices.py" />
+      <source>NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW</source>
+      <translation>AÚN SIN GUARDAR: {what}. NO SALGA DE TURNDESK AHORA</translation>
     </message>
     <message>
       <location filename="app/screen/window/readout_panels.py" />
@@ -14335,8 +14605,8 @@
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />
-      <source>FROM LINE 1</source>
-      <translation>LÍNEA 1</translation>
+      <source>HELP</source>
+      <translation>AYUDA</translation>
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />
@@ -14360,13 +14630,13 @@
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />
-      <source>NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW</source>
-      <translation>AÚN SIN GUARDAR: {what}. NO SALGA DE TURNDESK AHORA</translation>
+      <source>PARTS  ·  TIME</source>
+      <translation>PIEZAS  ·  TIEMPO</translation>
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />
-      <source>PARTS  ·  TIME</source>
-      <translation>PIEZAS  ·  TIEMPO</translation>
+      <source>THE GUIDE IS NOT INSTALLED</source>
+      <translation>LA GUÍA NO ESTÁ INSTALADA</translation>
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />

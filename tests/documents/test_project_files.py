@@ -15,7 +15,7 @@ DOCUMENTS = (
     *("CHANGELOG.md", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", "README.md", "SECURITY.md", "SUPPORT.md"),
     *("CITATION.cff", "LICENSE"),
 )
-SETTINGS = ("pyproject.toml", "setup.cfg")
+SETTINGS = ("pyproject.toml", "MANIFEST.in", "setup.cfg")
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 UNTRIED = {"windows.yml": "Windows", "macos.yml": "macOS"}

@@ -122,7 +122,7 @@ def test_unresponsive_machine_is_shown_on_every_page(hands: Hands, page: str) ->
 
 def test_notice_row_with_key_is_touch_sized(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     told = (NoticeRow("INTERRUPTED", "T1", (("F6", "SEARCHTO"),)), NoticeRow("NOT SAVED", "20 parts"))
-    monkeypatch.setattr(hands.frame, "_make_notices", lambda *_what, **_more: told)
+    monkeypatch.setattr("app.screen.window.window_frame.make_notices", lambda *_what, **_more: told)
     hands.window.refresh()
     rows = hands.frame.notice_rows
     rows.grab()

@@ -157,3 +157,16 @@ def test_command_of_an_editable_installation_exists() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     module, _, function = project["scripts"]["turndesk"].partition(":")
     assert callable(getattr(import_module(module), function))
+
+
+def test_the_guide_is_a_part_of_the_wheel() -> None:
+    guide = wheel_merge.read_guide_files(PROJECT_FOLDER)
+    assert {"resources/guide/guide/screen.md", "resources/guide/pictures/es/jog.png"} <= guide.keys()
+    made = zipfile.ZipFile(io.BytesIO(merge_packages(wheel(FILES), guide)))
+    text = (PROJECT_FOLDER / "docs" / "guide" / "screen.md").read_bytes()
+    assert made.read("turndesk/resources/guide/guide/screen.md") == text
+
+
+def test_a_wheel_without_the_guide_is_rejected(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        wheel_merge.read_guide_files(tmp_path)

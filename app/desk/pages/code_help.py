@@ -8,7 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from app.desk.pages.guide_text import BlockKind, GuideBlock
+from app.desk.translation import tr
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from core.language.code_book import CodeBook, CodeBookEntry
 
 
@@ -84,3 +89,14 @@ class CodeHelp:
     def selected_entry(self) -> CodeBookEntry | None:
         """Return the selected choice, or None if there are no choices."""
         return self.choices[self.marked] if self.choices else None
+
+
+def make_code_blocks(code_book: CodeBook, entries: Sequence[CodeBookEntry]) -> tuple[GuideBlock, ...]:
+    """Return the explanation of these codes, with their words and examples, as blocks of the help."""
+    blocks: list[GuideBlock] = []
+    for entry in entries:
+        blocks.append(GuideBlock(BlockKind.HEADING, entry.form))
+        blocks.append(GuideBlock(BlockKind.TEXT, tr(entry.what)))
+        blocks += (GuideBlock(BlockKind.KEY, tr(what), word) for word, what in code_book.list_words(entry))
+        blocks += (GuideBlock(BlockKind.TEXT, line) for line in entry.example.splitlines())
+    return tuple(blocks)

@@ -13,6 +13,11 @@ CTRL_MODIFIER = Qt.KeyboardModifier.ControlModifier
 SHIFT_MODIFIER = Qt.KeyboardModifier.ShiftModifier
 NO_MODIFIER = Qt.KeyboardModifier.NoModifier
 
+HELP_KEY = "?"  # The key that shows the help, by its character, because its place depends on the layout.
+MODIFIER_KEYS = frozenset(
+    {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
+    | {Key.Key_Super_R, Key.Key_CapsLock, Key.Key_NumLock, Key.Key_Mode_switch, Key.Key_Hyper_L}
+)
 PALM_BUTTON_KEYS = {Key.Key_F11: "left", Key.Key_F12: "right"}
 
 # Name of a key with these modifiers. Keypad and Shift are distinguished only where necessary.

@@ -33,6 +33,7 @@ from app.desk.late_presses import StartingAction
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel
 from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopKind, make_press_number
 from app.screen.window.input_times import InputTimes
+from app.screen.window.key_table import MODIFIER_KEYS
 from app.screen.window.x_server import XServer, open_x_server
 
 Key = Qt.Key
@@ -42,10 +43,6 @@ _STOP_SCAN_CODES = {127: "hold", 78: "estop"}
 _PC_PLATFORMS = frozenset({"xcb", "wayland"})  # Platforms on which the scan code is an X key code.
 _LETTERS_BY_CODE = dict(
     zip((*range(24, 34), *range(38, 47), *range(52, 59)), "QWERTYUIOPASDFGHJKLZXCVBNM", strict=True)
-)
-_MODIFIER_KEYS = frozenset(
-    {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
-    | {Key.Key_Super_R, Key.Key_CapsLock, Key.Key_NumLock, Key.Key_Mode_switch, Key.Key_Hyper_L}
 )
 _EDITING_KEYS = frozenset(
     {Key.Key_Backspace, Key.Key_Delete, Key.Key_Left, Key.Key_Right, Key.Key_Up, Key.Key_Down}
@@ -196,7 +193,7 @@ class KeyboardFilter(QObject):
 
     def is_only_key(self, event: QKeyEvent) -> bool:
         """Return whether no other key is down except modifiers."""
-        return not {key for code, key in self._down.items() if code != find_scan_code(event)} - _MODIFIER_KEYS
+        return not {key for code, key in self._down.items() if code != find_scan_code(event)} - MODIFIER_KEYS
 
     def is_stop_held(self) -> bool:
         """Return whether a stop key is still down, so that nothing may start."""
@@ -299,7 +296,7 @@ class KeyboardFilter(QObject):
             self._stops.add(code)
             stop(press=make_press_number(code, self._stamp))
             return True
-        return event.key() not in _MODIFIER_KEYS and self._pressed(event, code)
+        return event.key() not in MODIFIER_KEYS and self._pressed(event, code)
 
     def _pressed(self, event: QKeyEvent, code: int) -> bool:
         if self._is_repeat_overtaken(code) and (self._late or not self._is_writing(event)):
@@ -345,7 +342,7 @@ class KeyboardFilter(QObject):
         dead = code in self._dead
         self._down.pop(code, None)
         self._dead.discard(code)
-        return dead and event.key() not in _MODIFIER_KEYS
+        return dead and event.key() not in MODIFIER_KEYS
 
     def _is_repeat(self, event: QKeyEvent, code: int) -> bool:
         """Record a press, and return whether it is only a repeat.

@@ -32,7 +32,7 @@ from app.screen.screen_theme import ScreenTheme, style_application, use_language
 from app.screen.text_sizes import make_panel_size
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
-from app.screen.window.key_table import PALM_BUTTON_KEYS, REPEATING_KEYS, find_key_name
+from app.screen.window.key_table import HELP_KEY, PALM_BUTTON_KEYS, REPEATING_KEYS, find_key_name
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
 from app.screen.window.typed_keys import TypedKeys
 from app.screen.window.window_frame import ScreenContext, WindowFrame
@@ -186,6 +186,8 @@ class MainWindow(QWidget):
         if action is not None:
             if frame is not None:
                 frame.current_page.stop_held_actions()
+                if key_name != HELP_KEY:
+                    frame.help_panel.close_help()
                 if key_name != "Esc":  # Esc removes the message itself.
                     frame.desk.prompt_answers.clear_message()
             action()
@@ -256,6 +258,7 @@ class MainWindow(QWidget):
         """
         if self.frame is not None:
             self.frame.current_page.stop_held_actions()
+            self.frame.help_panel.close_help()
             self.frame.desk.start_feed_hold(source or SOURCE_SCREEN, press)
             self.refresh()
 
@@ -263,6 +266,7 @@ class MainWindow(QWidget):
         """Press the E-stop, regardless of the open page, input field or question."""
         if self.frame is not None:
             self.frame.current_page.stop_held_actions()
+            self.frame.help_panel.close_help()
             self.frame.desk.station_keys.press_estop(press)
             self.refresh()
 
@@ -353,7 +357,7 @@ class MainWindow(QWidget):
         frame = self.frame
         if frame is None or self.typed_keys.handle_answer(frame, event):
             return
-        if frame.current_page.handle_key_press(event):
+        if self._handle_help_key(frame, event) or frame.current_page.handle_key_press(event):
             self.refresh()
             return
         if (
@@ -372,6 +376,16 @@ class MainWindow(QWidget):
             and not self.typed_keys.is_used_elsewhere(frame, name)
         ):
             self.press_key(name)
+
+    def _handle_help_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the help handled the key, because it is open or because the key opens it."""
+        if not frame.help_panel.isHidden():
+            frame.help_panel.handle_key(event)
+            return True
+        if event.text() != HELP_KEY or event.isAutoRepeat() or frame.accepts_text(HELP_KEY):
+            return False
+        self.press_key(HELP_KEY)
+        return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Release a palm button or a key of the page."""

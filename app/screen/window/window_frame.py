@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -14,23 +13,20 @@ from app.desk.desk import Desk
 from app.desk.pages.first_job import CLOSE_KEY
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status import formats, prompt_line
-from app.desk.status.interrupted_notice import (
-    NoticeRow,
-    can_restart,
-    make_interrupted_notice,
-    make_unknown_notice,
-)
 from app.desk.status.machine_status import MachineStatus
 from app.desk.status.readouts import Lamp, make_drives_lamp
 from app.desk.status.state_prompt import find_time_left, make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.page_base import KeyActions, Page, PageHost
+from app.screen.page_help import make_page_help
 from app.screen.page_table import find_replacement_page, make_page
 from app.screen.panel import Panel
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.alarm_panels import AlarmList, AlarmNotice
-from app.screen.window.key_table import AUTOMATIC_KEYS
+from app.screen.window.help_panel import HelpPanel
+from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY
+from app.screen.window.notices import make_notices
 from app.screen.window.readout_panels import (
     FeedPanel,
     PositionPanel,
@@ -53,14 +49,13 @@ from app.screen.window_layout import (
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 
-_SEARCHTO, _FROM_LINE_1 = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1")
 GAP_PX = 4  # Pixels below the notice rows.
 _REST_STATES = frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT})
 MAX_REFRESH_AGE_S = 0.45  # Seconds after which everything is refreshed even without a visible change.
 _LAYOUT_DELAY_S = 3.0  # Seconds after a manual move before the layout of a page may change.
 
 
-ScreenContext = tuple[str, bool, bool, str]
+ScreenContext = tuple[str, bool, bool, bool, str]
 
 
 class WindowFrame(QWidget):
@@ -94,6 +89,8 @@ class WindowFrame(QWidget):
         self.key_bar = FunctionKeyBar(theme, lambda number: press(f"F{number}"), self)
         self.alarm_notice = AlarmNotice(theme, self)
         self.alarm_list = AlarmList(theme, self.open_recording, self)
+        self.help_panel = HelpPanel(theme, self)
+        self._help_area = Rect(0, 0, 0, 0)
         self._docked = True
         host = PageHost(theme, desk, press, self.open_page, self.alarm_list.hide)
         self._host = host
@@ -153,6 +150,7 @@ class WindowFrame(QWidget):
 
     def _front(self) -> None:
         page = self.current_page
+        self.help_panel.close_help()
         self.desk.window_state.set_page(can_start=page.STARTS, has_field=self.has_text_field)
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
             page.make_key_labels(),
@@ -175,6 +173,7 @@ class WindowFrame(QWidget):
             "F1": partial(self.open_page, page_table.MENU),
             "F7": self.toggle_alarm_log,
             "Scope": self.toggle_scope,
+            HELP_KEY: self.show_help,
             **{
                 page.shortcut_key: partial(self.open_page, page.name)
                 for page in page_table.ALL_PAGES
@@ -209,6 +208,27 @@ class WindowFrame(QWidget):
         self.alarm_list.setVisible(not self.alarm_list.isVisible())
         self.alarm_list.raise_()
 
+    def show_help(self) -> None:
+        """Show the help about the page or the alarm log, or the next screenful if the help is open."""
+        if not self.help_panel.isHidden():
+            self.help_panel.show_next_screenful()
+            return
+        page = self.current_page
+        blocks = make_page_help(page.NAME, page.find_marked_help(), is_log=self.alarm_list.isVisible())
+        if blocks:
+            page.stop_held_actions()
+            self.help_panel.open_help(blocks)
+            self._place_help()
+        else:
+            self.desk.say(tr("THE GUIDE IS NOT INSTALLED"))
+
+    def _place_help(self) -> None:
+        """Place the help over the page, or next to the notice of an alarm or stop."""
+        area, notice = self._help_area, self.alarm_notice
+        if not notice.isHidden():
+            area = area._replace(w=max(0, notice.x() - GAP_PX - area.x))
+        self.help_panel.setGeometry(*area)
+
     def handle_escape(self) -> bool:
         """Close the alarm log or a part of the page, and return False if neither was open."""
         if self.alarm_list.isVisible():
@@ -236,6 +256,7 @@ class WindowFrame(QWidget):
         return (
             self.current_page.NAME,
             self.alarm_list.isVisible(),
+            self.help_panel.isVisible(),
             self.automatic_page.file_prompt.isVisible(),
             self.desk.confirm_key,
         )
@@ -283,6 +304,8 @@ class WindowFrame(QWidget):
         place_widget(self.key_bar, at.keys)
         place_widget(self.alarm_notice, over)
         place_widget(self.alarm_list, over)
+        self._help_area = work
+        self._place_help()
         return work
 
     @property
@@ -336,8 +359,8 @@ class WindowFrame(QWidget):
         self._shown, self._paints = (snapshot, loaded), Panel.paint_count
         self._shown_at = self.desk.clock.read_seconds()
         self.is_at_rest = snapshot.state in _REST_STATES and not snapshot.wheel
-        self.notice_rows.notice_rows = self._make_notices(
-            snapshot, loaded, here=self.current_page is self.automatic_page
+        self.notice_rows.notice_rows = make_notices(
+            self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
         by_hand = self._is_manual_motion(snapshot)
         if self._has_dock_changed or (self.notice_rows.needs_new_height and not by_hand):
@@ -355,6 +378,7 @@ class WindowFrame(QWidget):
             self.run_line.show_status(view, self._make_times(snapshot, view, loaded))
             # The prompt line shows the alarm, so that no notice covers an input field.
             self.alarm_notice.show_notice("", "")
+        self._place_help()
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
@@ -379,16 +403,18 @@ class WindowFrame(QWidget):
 
         Touching the lamp has the same function on every page.
         """
+        if key == HELP_KEY:
+            return self.accepts_text(key)
         elsewhere = key in AUTOMATIC_KEYS and self.current_page is not self.automatic_page
         return elsewhere or self.has_text_field() or self.accepts_text(key)
 
     def accepts_text(self, key: str) -> bool:
         """Return whether a character goes to an input field of the page or to a standard text field."""
-        return self.current_page.accepts_key(key) or self._stock_field()
+        return self.help_panel.isHidden() and (self.current_page.accepts_key(key) or self._stock_field())
 
     def has_text_field(self) -> bool:
         """Return whether an input field has the keyboard focus, so that characters are text."""
-        return self.current_page.has_text_field() or self._stock_field()
+        return self.help_panel.isHidden() and (self.current_page.has_text_field() or self._stock_field())
 
     def _stock_field(self) -> bool:
         at = QApplication.focusWidget()
@@ -444,44 +470,8 @@ class WindowFrame(QWidget):
             *kept,
             make_drives_lamp(snapshot, "D"),
             Lamp("RESET", False, "R"),
+            Lamp("HELP", False, HELP_KEY),
         )
-
-    def _make_notices(
-        self, snapshot: Snapshot, loaded: LoadedProgram, *, here: bool
-    ) -> tuple[NoticeRow, ...]:
-        """Return the notices that remain until the operator acts.
-
-        ``here`` is True while the Automatic page, on which the keys of the notices work, is open.
-        """
-        desk, rows = self.desk, []
-        unheard = make_unknown_notice(snapshot)
-        if unheard is not None:
-            rows.append(unheard)
-        found = make_interrupted_notice(snapshot, loaded, desk.settings_store.display_units)
-        if found is not None:
-            rows.append(replace(found, keys=self._make_prompt_keys(snapshot, loaded) if here else ()))
-        if here and desk.settings_store.current_settings.first_job:
-            rows.append(desk.program_runs.first_job_card.notice_row)
-        differs = desk.storage_state.read_file_difference()
-        if differs:
-            rows.append(NoticeRow(differs))
-        offered_job = desk.page_registry.find_notice(snapshot) if here else None
-        if offered_job is not None:
-            rows.append(offered_job)
-        if desk.storage_state.read_problem():
-            held = desk.storage_state.read_unsaved()
-            waits = tr(Message("NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW", what=held)) if held else ""
-            rows.append(
-                NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.storage_state.read_problem())), waits)
-            )
-        return tuple(rows)
-
-    def _make_prompt_keys(self, snapshot: Snapshot, loaded: LoadedProgram) -> tuple[tuple[str, str], ...]:
-        """Return the keys for an interrupted job. A start that would be rejected has no key."""
-        if snapshot.state is not MachineState.IDLE or not snapshot.interrupted_line:
-            return ()
-        searchto = (_SEARCHTO,) if can_restart(loaded) else ()
-        return searchto if self.desk.find_first_move_refusal(snapshot) else (*searchto, _FROM_LINE_1)
 
 
 def _find_area_below(area: Rect, rows: Rect) -> Rect:

@@ -1,0 +1,193 @@
+"""Sections of the user's guide that the screen shows as help, read from the Markdown files of the guide.
+
+A wheel contains these files in ``resources/guide``. In a clone, they are in ``docs``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from app.desk.translation import ENGLISH_CODE
+
+REFERENCE_FILE, FUNCTIONS_FILE = "guide/screen.md", "guide/special-functions.md"
+_SPANISH_FILE = "guide.es.md"
+COMMON_KEYS, ALARM_LOG = "EVERY PAGE", "ALARMS AND STOPS"  # Topics that are not pages.
+_SETUP, _PROGRAMMING = (
+    "Preparación: herramientas, correctores, mover a mano",
+    "Programador: escribir y comprobar",
+)
+_ALWAYS, _SCOPE, _JOB = "Lo que siempre está", "El osciloscopio", "Operador: hacer un trabajo"
+# Headings of the English reference and of the Spanish guide, whose sections are larger, by page name.
+_PAGE_HEADINGS = {
+    COMMON_KEYS: ("Keys that act on every page", _ALWAYS),
+    ALARM_LOG: ("Alarms and stops, F7", _ALWAYS),
+    "MAIN MENU": ("Main menu, F1", _ALWAYS),
+    "AUTOMATIC": ("Automatic", _JOB),
+    "EDITOR": ("Editor", _PROGRAMMING),
+    "MDI": ("MDI", _SETUP),
+    "JOG": ("Jog", _SETUP),
+    "SEARCHTO": ("SEARCHTO", _JOB),
+    "PROGRAMS": ("Programs", "La lista de programas"),
+    "JOBS": ("Jobs", "Trabajos"),
+    "SHARED PROGRAMS": ("Shared programs", "Programas compartidos"),
+    "TOOL OFFSETS": ("Tool offsets, F8", _SETUP),
+    "TOOL SHAPE": ("Tool shape", _SETUP),
+    "SECONDARY OFFSETS": ("Secondary offsets, F9", _SETUP),
+    "ZERO OFFSETS": ("Zero offsets", _SETUP),
+    "TOOL TABLE": ("Tool table and presets of a mill", _SETUP),
+    "PRESETS": ("Tool table and presets of a mill", _SETUP),
+    "PART": ("Part", _PROGRAMMING),
+    "SPECIAL FUNCTIONS": ("Special functions, F10", "F10, funciones especiales"),
+    "MEASURED PARTS": ("Measured parts", "Piezas medidas, vida de herramienta, tendencias"),
+    "SCOPE": ("Scope", _SCOPE),
+    "ANALYSES": ("Analyses", _SCOPE),
+    "DRIVE TEST": ("Drive test", _SCOPE),
+}
+
+_HEADING = re.compile(r"(#+) (.*)")
+_PICTURE = re.compile(r"!\[[^\]]*\]\(([^)]+)\)")
+_LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+_LIST_ITEM = re.compile(r"\s*(-|\d+\.) +(.*)")
+
+
+class BlockKind(Enum):
+    """Kinds of blocks of a section."""
+
+    HEADING = "heading"
+    TEXT = "text"
+    KEY = "key"
+    PICTURE = "picture"
+
+
+@dataclass(frozen=True, slots=True)
+class GuideBlock:
+    """One heading, paragraph, key or picture of the guide.
+
+    ``text`` of a picture is its path. ``key`` is the first cell of a table row.
+    """
+
+    kind: BlockKind
+    text: str
+    key: str = ""
+
+
+def find_guide_folder() -> Path:
+    """Return the folder with the files of the guide, which may not exist."""
+    shipped = Path(str(files("resources"))) / "guide"
+    return shipped if shipped.is_dir() else Path(__file__).parents[3] / "docs"
+
+
+def read_page_help(topic: str, language: str) -> tuple[GuideBlock, ...]:
+    """Return the section about a page in the operator's language.
+
+    ``topic`` is the name of the page, ``COMMON_KEYS`` or ``ALARM_LOG``. The result is empty if the guide
+    does not describe the page.
+    """
+    english, spanish = _PAGE_HEADINGS.get(topic, ("", ""))
+    if language == ENGLISH_CODE:
+        return read_section(REFERENCE_FILE, english)
+    return read_section(_SPANISH_FILE, spanish)
+
+
+def read_function_help(name: str, language: str) -> tuple[GuideBlock, ...]:
+    """Return the section about a special function, or an empty tuple if the guide does not describe it.
+
+    The Spanish guide describes all functions in one section, which ``read_page_help`` returns.
+    """
+    if language != ENGLISH_CODE:
+        return ()
+    wanted = name.casefold()
+    for heading in _list_headings(find_guide_folder(), FUNCTIONS_FILE):
+        if heading.lstrip("0123456789 ").casefold() == wanted:
+            return read_section(FUNCTIONS_FILE, heading)
+    return ()
+
+
+@cache
+def _read_lines(folder: Path, name: str) -> tuple[str, ...]:
+    """Return the lines of a file of the guide, or an empty tuple if the file cannot be read."""
+    try:
+        return tuple((folder / name).read_text(encoding="utf-8").splitlines())
+    except OSError:
+        return ()
+
+
+@cache
+def _list_headings(folder: Path, name: str) -> tuple[str, ...]:
+    found = (_HEADING.fullmatch(line) for line in _read_lines(folder, name))
+    return tuple(match[2] for match in found if match)
+
+
+def read_section(name: str, heading: str) -> tuple[GuideBlock, ...]:
+    """Return the blocks of one section of a file, with its subsections and without its own heading."""
+    folder = find_guide_folder()
+    return tuple(_make_blocks(_find_section(_read_lines(folder, name), heading), (folder / name).parent))
+
+
+def _find_section(lines: Sequence[str], heading: str) -> list[str]:
+    """Return the lines after a heading, up to the next heading of the same or a higher level."""
+    found: list[str] = []
+    level = 0
+    for line in lines:
+        match = _HEADING.fullmatch(line)
+        if level and match and len(match[1]) <= level:
+            break
+        if level:
+            found.append(line)
+        elif match and match[2] == heading:
+            level = len(match[1])
+    return found
+
+
+def _make_blocks(lines: Sequence[str], folder: Path) -> Iterator[GuideBlock]:
+    """Yield the blocks of these lines. Consecutive lines of text form one paragraph."""
+    text: list[str] = []
+    heads: list[str] = []
+    for line in (*lines, ""):
+        is_row, item, other = (
+            line.startswith("|"),
+            _LIST_ITEM.fullmatch(line),
+            _make_single_block(line, folder),
+        )
+        if text and (is_row or item or other or not line.strip()):
+            yield GuideBlock(BlockKind.TEXT, strip_marks(" ".join(text)))
+            text = []
+        heads = heads if is_row else []
+        if other:
+            yield other
+        elif is_row:
+            cells = [strip_marks(cell.strip()) for cell in line.strip().strip("|").split(" | ")]
+            if heads and not set(line) <= set("|-: "):
+                yield _make_key(heads, cells)
+            heads = heads or cells
+        elif item:
+            text = ["·" if item[1] == "-" else item[1], item[2]]
+        elif line.strip():
+            text.append(line.strip())
+
+
+def _make_single_block(line: str, folder: Path) -> GuideBlock | None:
+    """Return the heading or the picture that a line contains, or None if it contains something else."""
+    heading, picture = _HEADING.fullmatch(line), _PICTURE.fullmatch(line.strip())
+    if heading:
+        return GuideBlock(BlockKind.HEADING, strip_marks(heading[2]))
+    return GuideBlock(BlockKind.PICTURE, str((folder / picture[1]).resolve())) if picture else None
+
+
+def _make_key(heads: Sequence[str], cells: Sequence[str]) -> GuideBlock:
+    """Return the block of a table row. If the row has several actions, each is named by its column."""
+    actions = [(head, cell) for head, cell in zip(heads[1:], cells[1:], strict=False) if cell != "–"]
+    several = len(heads) > 2
+    text = "   ".join(f"{head}: {cell}" if several else cell for head, cell in actions)
+    return GuideBlock(BlockKind.KEY, text, cells[0])
+
+
+def strip_marks(text: str) -> str:
+    """Return the text without the Markdown marks for links, code and bold letters."""
+    return _LINK.sub(r"\1", text).replace("**", "").replace("`", "").strip()
