@@ -98,7 +98,7 @@ class ControlClient:
 
         If an earlier control has ended, its scope ``recordings`` continue with the data of this control.
         Raises DriverError if the control reports an error, ends, does not respond or has a different
-        version. Raises OSError or EOFError if the connection ends after the first message.
+        version.
         """
         self._connection, self.control_process = connection, process = started_control
         hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)

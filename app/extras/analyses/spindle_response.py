@@ -61,9 +61,9 @@ class SpindleResponse:
 def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0.
 
-    A change counts only if it exceeds twice the at-speed tolerance of the new speed. Raises AnalysisError
-    if the machine has no spindle, if the record has no such change or no measured spindle speed, or if the
-    change is too small for one of ``TOLERANCE_RATIOS``.
+    A change counts only if it exceeds twice the at-speed tolerance of the new speed and twice each of
+    ``TOLERANCE_RATIOS``. Raises AnalysisError if the machine has no spindle, or if the record has no such
+    change or no measured spindle speed.
     """
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
