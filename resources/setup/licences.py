@@ -45,6 +45,8 @@ _NAMES = {
 # What says no more than "BSD" of itself, by the text that it brings.
 _BY_TEXT = {
     "colorama": "BSD-3-Clause",
+    "ghp-import": "Apache-2.0",
+    "mergedeep": "MIT",
     "Jinja2": "BSD-3-Clause",
     "partd": "BSD-3-Clause",
     "pyserial": "BSD-3-Clause",

@@ -1,9 +1,9 @@
 """Build a release from a clean checkout of the last commit: ``python -m resources.setup.release FOLDER``.
 
 The release consists of the wheel, the source distribution, the bundle for a computer without a network, a
-folder that can be moved, and Debian packages, with ``SHA256SUMS`` and the SBOM. Everything is built twice
-and compared byte for byte. A network is required once, for the locked packages. ``dpkg-deb``, which is part
-of every Debian and Ubuntu, writes the Debian packages.
+folder that can be moved, Debian packages and the documentation, with ``SHA256SUMS`` and the SBOM.
+Everything is built twice and compared byte for byte. A network is required once, for the locked packages.
+``dpkg-deb``, which is part of every Debian and Ubuntu, writes the Debian packages.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from resources.documentation.build_site import SiteError, build_site
 from resources.setup.bundle import (
     GLIBC_MINOR_VERSIONS,
     BundleError,
@@ -43,8 +44,21 @@ CHECKSUM_FILE_NAME = "SHA256SUMS"
 def build_artifacts(folder: Path, wheels: Path, machine: str, targets: Sequence[str]) -> None:
     """Build all artifacts from the checkout that contains this module.
 
-    Raises BundleError if a step fails, or LicenseError if a license does not permit distribution.
+    Raises BundleError if a step fails, LicenseError if a license does not permit distribution, or SiteError
+    if the documentation has an error.
     """
+    with tempfile.TemporaryDirectory() as work:
+        site = Path(work) / "documents"
+        build_site(site)
+        _build_artifacts_with_site(folder, wheels, machine, targets, site)
+
+
+def _build_artifacts_with_site(
+    folder: Path, wheels: Path, machine: str, targets: Sequence[str], site: Path
+) -> None:
+    set_times(site)
+    stem = f"turndesk-{get_bundle_version()}-documents"
+    write_tar_gz(site, folder / f"{stem}.tar.gz", stem)
     build_product_wheel(folder)
     wheel = next(folder.glob("turndesk-*.whl"))
     _write_source_distribution(folder)
@@ -58,6 +72,7 @@ def build_artifacts(folder: Path, wheels: Path, machine: str, targets: Sequence[
         with tempfile.TemporaryDirectory() as work:
             environment = Path(work) / "environment"
             make_environment_folder(environment, wheel, target.python_version, machine, wheels)
+            shutil.copytree(site, environment / site.name)
             set_times(environment)
             stem = f"turndesk-{get_bundle_version()}-linux-{machine}-python{target.python_version}"
             write_tar_gz(environment, folder / f"{stem}.tar.gz", stem)
@@ -155,7 +170,7 @@ def main(argv: Sequence[str]) -> int:
             sys.stdout.write((args.folder / CHECKSUM_FILE_NAME).read_text(encoding="utf-8"))
         else:
             parser.error("name the folder for the release")
-    except (BundleError, LicenseError, OSError) as error:
+    except (BundleError, LicenseError, SiteError, OSError) as error:
         sys.stderr.write(f"No release: {error}\n")
         return 1
     return 0

@@ -142,6 +142,9 @@ def _copyright() -> str:
         "Files: opt/turndesk/*/lib/*/site-packages/turndesk/resources/fonts/*",
         "Copyright: the B612 project\nLicense: OFL-1.1",
         " The text is in OFL.txt, in the folder of the fonts.\n",
+        "Files: opt/turndesk/*/documents/assets/*",
+        "Copyright: Martin Donath, the authors of Material for MkDocs, and Oliver Nightingale (lunr)",
+        f"License: MIT\n{mit}\n",
     ]
     for row in parse_page(PAGE_PATH.read_text(encoding="utf-8").partition("## Only for")[0]):
         name = row.name.replace("-", "?")

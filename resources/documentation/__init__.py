@@ -1,0 +1,1 @@
+"""Documentation site, built from the Markdown pages of the repository."""
