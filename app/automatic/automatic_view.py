@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.pages.code_help import make_code_blocks
 from app.desk.pages.guide_text import GuideBlock
 from app.desk.pages.page_entry import find_editor_refusal, find_program_refusal, find_searchto_refusal
+from app.desk.pages.table_content import WHOLE_LIST
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES, NO_NAME_TYPED
@@ -203,6 +204,7 @@ class AutomaticPage(Page):
             "Pan down": partial(looked_at.pan_view, 0, 1),
             "Page up": lambda: self.program_listing.scroll_by(-self.program_listing.rows),
             "Page down": lambda: self.program_listing.scroll_by(self.program_listing.rows),
+            "End": lambda: self.program_listing.scroll_by(WHOLE_LIST),
             "Follow": self.program_listing.follow_run,
         }
 

@@ -10,7 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.code_help import CodeHelp
-from app.desk.pages.table_content import FunctionKey
+from app.desk.pages.table_content import WHOLE_LIST, FunctionKey
 from app.editor.live_proof import LiveProof
 from app.editor.text_view import ProgramTextField
 from app.screen.code_choices_view import CodeChoiceList, draw_code_entry
@@ -261,11 +261,15 @@ class CodeList(CodeChoiceList):
         }
 
     def arrow_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the actions of the arrow keys and of Enter."""
+        """Return the actions of the arrow and page keys, Home, End and Enter."""
         by = {number: key.action for number, key in self.function_keys().items()}
         return {
             Qt.Key.Key_Up: by[4],
             Qt.Key.Key_Down: by[5],
+            Qt.Key.Key_PageUp: partial(self.scroll_by, -self.rows),
+            Qt.Key.Key_PageDown: partial(self.scroll_by, self.rows),
+            Qt.Key.Key_Home: partial(self.scroll_by, -WHOLE_LIST),
+            Qt.Key.Key_End: partial(self.scroll_by, WHOLE_LIST),
             Qt.Key.Key_Left: by[6],
             Qt.Key.Key_Right: by[7],
             Qt.Key.Key_Return: by[2],

@@ -8,7 +8,7 @@ from functools import partial
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.table_content import FunctionKey
+from app.desk.pages.table_content import WHOLE_LIST, FunctionKey
 from app.desk.status.formats import format_local_time
 from app.editor.version_history import DifferenceRow, VersionHistory
 from app.screen.panel import RedrawingAttribute
@@ -122,11 +122,16 @@ class VersionList(RowPanel):
         }
 
     def arrow_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the actions of the arrow and page keys, which are the same as those of F4 to F7."""
+        """Return the actions of the arrow and page keys, which are the same as those of F4 to F7.
+
+        Home selects the newest version, and End the oldest.
+        """
         by = {number: key.action for number, key in self.function_keys().items()}
         return {
             Qt.Key.Key_Up: by[4],
             Qt.Key.Key_Down: by[5],
             Qt.Key.Key_PageUp: by[6],
             Qt.Key.Key_PageDown: by[7],
+            Qt.Key.Key_Home: lambda: self._history.mark(0),
+            Qt.Key.Key_End: lambda: self._history.mark(WHOLE_LIST),
         }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.pages.code_help import CodeHelp
 from app.desk.pages.page_entry import find_mdi_refusal
+from app.desk.pages.table_content import ROW_STEPS
 from app.desk.persistence import Persistence
 from app.desk.programs.prepared_line import PreparedMdiLine, ProveLine
 from app.desk.status import prompt_line
@@ -162,8 +163,8 @@ class LineCompletion:
                 self.toggle_choices()
             return self.is_open
         match key:
-            case "Up" | "Down":
-                self.code_help.mark(self.code_help.marked + (1 if key == "Down" else -1))
+            case "Up" | "Down" | "Page up" | "Page down" | "Home" | "End":
+                self.code_help.mark(self.code_help.marked + ROW_STEPS[key])
             case "Left" | "Right":
                 self.code_help.move_chapters(1 if key == "Right" else -1)
             case "Enter" | "Tab":

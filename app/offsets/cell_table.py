@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.table_content import edit_text, refused
+from app.desk.pages.table_content import ROW_STEPS, edit_text, refused
 from app.desk.status.machine_status import Tone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
@@ -21,7 +21,7 @@ from core.store.store_rows import FIELDS_BY_KIND, FieldType, FieldValue, OffsetR
 
 _ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
 _CELL_STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
-_PAGE_STEPS = {"Page up": -10, "Page down": 10}
+_PAGE_STEPS = {key: rows for key, rows in ROW_STEPS.items() if key not in {"Up", "Down"}}
 
 
 class CellTable(OffsetTable):

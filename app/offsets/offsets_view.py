@@ -29,7 +29,7 @@ from app.screen.entry_panel import EntryPanel, EntryTexts, LetterPad, NumberPad
 from app.screen.page_base import KeyActions, ModelPage, PageHost
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter
-from app.screen.table_panel import RowPanel, TablePanel
+from app.screen.table_panel import LIST_KEYS, RowPanel, TablePanel
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 
@@ -195,8 +195,8 @@ class OffsetPage(ModelPage):
 
         While the effect on the path is shown, characters are rejected with a message.
         """
-        if self.history_list.isVisible() and key in {"Page up", "Page down"}:
-            self.history_list.scroll_by((1 if key == "Page down" else -1) * self.history_list.rows)
+        if self.history_list.isVisible() and key in LIST_KEYS:
+            self.history_list.scroll_by(self.history_list.find_scroll_rows(key))
             return True
         if self.effect_display.is_open and len(key) == 1 and self.model.accepts_key(key):
             self.desk.say(tr("TYPE VALUES IN THE TABLE. ESC: SHOW TABLE"))

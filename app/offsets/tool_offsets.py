@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
+from app.desk.pages.table_content import ROW_STEPS
 from app.desk.translation import tr
 from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_changes import describe_effective_time
@@ -159,6 +160,8 @@ class ToolOffsetTable(ToolFieldTable):
         """
         if key in {"Page up", "Page down"}:
             self._step(self.page_rows if key == "Page down" else -self.page_rows, 0)
+        elif key in {"Home", "End"}:
+            self._step(ROW_STEPS[key], 0)
         elif key in _CURSOR_MOVES:
             self._step(*_CURSOR_MOVES[key])
         elif self.page_key and key.upper() == self.page_key and not self.is_text_open:

@@ -156,6 +156,8 @@ class ToolShapeTable(ToolFieldTable):
             self.move_cursor(self.field_names.index(self.name) + _CURSOR_MOVES[key])
         elif key in _CHOICE_STEPS:
             self.show_choice(_CHOICE_STEPS[key])
+        elif key in {"Home", "End"}:
+            self.select_tool(OFFSET_NUMBERS[0] if key == "Home" else OFFSET_NUMBERS[-1])
         elif key in {"Page up", "Page down"}:
             self.select_tool(get_tool_number(self.tool_number) + (1 if key == "Page down" else -1))
         elif len(key) == 1 and self.accepts_key(key) and self.field_choices:

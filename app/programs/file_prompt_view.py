@@ -114,6 +114,8 @@ class FilePrompt(RowPanel):
             Qt.Key.Key_Up: lambda: self._mark(self._row - 1),
             Qt.Key.Key_PageDown: lambda: self._mark(self._row + self.rows),
             Qt.Key.Key_PageUp: lambda: self._mark(self._row - self.rows),
+            Qt.Key.Key_Home: lambda: self._mark(0),
+            Qt.Key.Key_End: lambda: self._mark(len(self._entries) - 1),
         }
         action = actions.get(event.key())
         if action is None:

@@ -370,8 +370,8 @@ class _ScopeKeys:
         if scope.cursors.shown and key == "Tab":
             scope.cursors.activate_other_cursor()
             return True
-        if scope.side_panel is SidePanel.READINGS and key in {"Page up", "Page down"}:
-            return False  # These keys shift the lane.
+        if scope.side_panel is SidePanel.READINGS and key in {"Page up", "Page down", "Home"}:
+            return False  # These keys shift the lane and show everything.
         return self._sheets.handle_key(key)
 
     def accepts_key(self, key: str) -> bool:

@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, TableContent, TableRow
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry_box
 from app.screen.page_base import ModelPage, PageHost, PageModel
@@ -20,6 +20,10 @@ from app.screen.window_layout import FINGERTIP_PX
 
 SCROLL_KEY_SIZE = 5.0  # Units: size of the two scroll keys, at least a fingertip.
 NARROW_WIDTH = 50.0  # Units: a narrower list uses its full width for rows.
+
+
+LIST_KEYS = frozenset({"Page up", "Page down", "Home", "End"})
+"""Keys that scroll every list."""
 
 
 class RowPanel(Panel):
@@ -55,6 +59,11 @@ class RowPanel(Panel):
         """
         self.first_row = self._limited(self.first_row + rows)
         self.update()
+
+    def find_scroll_rows(self, key: str) -> int:
+        """Return the number of rows by which one of the ``LIST_KEYS`` scrolls, negative for up."""
+        pages = {"Page up": -self.rows, "Page down": self.rows}
+        return pages.get(key, ROW_STEPS[key])
 
     def _limited(self, top: int) -> int:
         return max(0, min(top, self._count - self.rows))

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.code_help import make_code_blocks
 from app.desk.pages.guide_text import GuideBlock
+from app.desk.pages.table_content import ROW_STEPS
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
@@ -192,12 +193,8 @@ class SearchtoPage(ModelPage):
         """
         if not self.model.can_choose_line:
             return False
-        steps = {
-            "Up": -1,
-            "Down": 1,
-            "Page up": -self.program_listing.rows,
-            "Page down": self.program_listing.rows,
-        }
+        page = self.program_listing.rows
+        steps = {**ROW_STEPS, "Page up": -page, "Page down": page}
         if key in steps:
             self.model.move_cursor(steps[key])
             return True

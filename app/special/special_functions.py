@@ -207,12 +207,13 @@ class SpecialFunctionList:
     def handle_key(self, key: str) -> bool:
         """Handle a key.
 
-        Arrow keys or a number select a function, and Enter opens it. An open function receives all keys.
+        Arrow and page keys or a number select a function, and Enter opens it. An open function receives all
+        keys.
         """
         if self.inside:
             return self.shown_function.handle_key(key)
-        if key in {"Up", "Down"}:
-            self.show_function(self.at + (1 if key == "Down" else -1))
+        if key in ROW_STEPS:
+            self.show_function(self.at + ROW_STEPS[key])
         elif key in {"Enter", "Tab"}:
             self.open_function(self.at)
         elif self.accepts_key(key):

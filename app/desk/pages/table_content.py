@@ -13,7 +13,16 @@ if TYPE_CHECKING:
     from core.part.tool_outline import ToolOutline
 
 T = TypeVar("T")
-ROW_STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # Rows that the selection moves, by key.
+WHOLE_LIST = 1_000_000  # Rows: more than any list has.
+# Rows that the selection moves, by key. The lists limit the result to their first and last row.
+ROW_STEPS = {
+    "Up": -1,
+    "Down": 1,
+    "Page up": -10,
+    "Page down": 10,
+    "Home": -WHOLE_LIST,
+    "End": WHOLE_LIST,
+}
 
 
 def following(choices: Iterable[T], current: T) -> T:

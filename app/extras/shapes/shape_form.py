@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
-from app.desk.pages.table_content import FunctionKey, edit_text
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, edit_text
 from app.desk.translation import tr
 from core.extras.shapes.contour import ContourPoint, make_point_label
 from core.extras.shapes.editor_shape import FilledShape, Shape, fill_shape
@@ -277,6 +277,7 @@ class ShapeForm:
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the key has no function in the form."""
         moves = {"Up": -1, "Down": 1, "Enter": 1, "Page up": -8, "Page down": 8}
+        moves |= {key: ROW_STEPS[key] for key in ("Home", "End")}
         if key in moves:
             self.select_row(self.selected_row + moves[key])
         elif key in {"Left", "Right", "Tab"}:

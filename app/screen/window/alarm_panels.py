@@ -8,13 +8,14 @@ from functools import partial
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QWidget
 
+from app.desk.pages.table_content import ROW_STEPS
 from app.desk.status.alarm_log import LoggedStop
 from app.desk.status.machine_status import Tone
 from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter, draw_state_symbol
-from app.screen.table_panel import RowPanel
+from app.screen.table_panel import LIST_KEYS, RowPanel
 from core.alarms import CATALOG, Reaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
@@ -159,6 +160,21 @@ class AlarmList(RowPanel):
         The index is limited to the list.
         """
         self.marked = max(0, min(index, len(self.logged_stops) - 1))
+
+    def handle_key(self, key: str) -> bool:
+        """Select an entry with the arrow keys, or scroll with the page, Home and End keys.
+
+        Return False for any other key.
+        """
+        if key in {"Up", "Down"}:
+            self.mark(self.marked + ROW_STEPS[key])
+        elif key in LIST_KEYS:
+            self.scroll_by(self.find_scroll_rows(key))
+            if key in {"Home", "End"}:
+                self.mark(ROW_STEPS[key])
+        else:
+            return False
+        return True
 
     @property
     def recording_name(self) -> str:

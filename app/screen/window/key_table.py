@@ -58,6 +58,7 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_PageUp, NO_MODIFIER): "Page up",
     (Key.Key_PageDown, NO_MODIFIER): "Page down",
     (Key.Key_Home, NO_MODIFIER): "Follow",
+    (Key.Key_End, NO_MODIFIER): "End",
     (Key.Key_F10, SHIFT_MODIFIER): "Scope",
     (Key.Key_F1, SHIFT_MODIFIER): "Codes",
     (Key.Key_F3, SHIFT_MODIFIER): "Shapes",
@@ -107,6 +108,8 @@ _EDITING_KEYS = {
     Key.Key_Right: "Right",
     Key.Key_PageUp: "Page up",
     Key.Key_PageDown: "Page down",
+    Key.Key_Home: "Home",
+    Key.Key_End: "End",
 }
 # These keys may repeat while they are held down.
 REPEATED_WHEN_TYPED = frozenset({"Back", "Up", "Down", "Left", "Right", "Page up", "Page down"})

@@ -81,8 +81,11 @@ class TypedKeys:
         return True
 
     def handle_typed(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether the page has handled the key as text input."""
+        """Return whether the alarm log or the page has handled the key as text input."""
         key = find_typed_text(event)
+        if frame.alarm_list.isVisible() and frame.alarm_list.handle_key(key):
+            self._refresh()
+            return True
         if (
             not key
             or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)

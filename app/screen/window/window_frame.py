@@ -188,8 +188,6 @@ class WindowFrame(QWidget):
         """Return the actions of the keys that scroll the alarm log while it covers the page."""
         log = self.alarm_list
         return {
-            "Page up": lambda: log.scroll_by(-log.rows),
-            "Page down": lambda: log.scroll_by(log.rows),
             "Pan up": lambda: log.mark(log.marked - 1),
             "Pan down": lambda: log.mark(log.marked + 1),
             "Scope": self._open_selected_recording,

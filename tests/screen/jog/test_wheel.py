@@ -197,7 +197,7 @@ def test_handwheel_targets_are_touch_sized_with_two_notice_rows(
         NoticeRow("INTERRUPTED: LINE 4", "T1"),
         NoticeRow("NOT SAVED: the disk is full", "20 parts"),
     )
-    monkeypatch.setattr(frame, "_make_notices", lambda *_what, **_more: rows)
+    monkeypatch.setattr("app.screen.window.window_frame.make_notices", lambda *_what, **_more: rows)
     wheeled.window.resize(1024, 600)
     wheeled.window.refresh()
     assert frame.notice_rows.isVisible()

@@ -1,0 +1,145 @@
+"""Home, End, Page up and Page down act alike in every list, and never on a list that another one covers."""
+
+from __future__ import annotations
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.offsets.tool_offsets_view import ToolOffsetsPage
+from app.offsets.tool_shapes import ToolShapeTable
+from app.programs.program_list_model import ProgramListModel
+from app.screen import page_table
+from app.searchto.searchto_model import SearchtoModel
+from app.special.special_functions import SpecialFunctionList
+from core.executor.snapshot import Alarm, LogEvent
+from tests.attached import attached
+from tests.screen.lathe import Key, Operator
+
+LOGGED = 30
+
+
+@pytest.fixture
+def ready(operator: Operator) -> Operator:
+    operator.stage.make_ready()
+    return operator
+
+
+def fill_log(operator: Operator) -> None:
+    for line in range(LOGGED):
+        alarm = Alarm(102, "following", "FOLLOWING ERROR", "cause", "free the slide", line=line + 1)
+        operator.stage.desk.hear(LogEvent(float(line), "alarm", alarm.text, alarm.line, alarm))
+    operator.window.refresh()
+
+
+def wait_for_programs(qtbot: QtBot, operator: Operator, programs: ProgramListModel) -> None:
+    def look() -> bool:
+        operator.window.refresh()
+        return len(programs.listed_programs) > 1
+
+    qtbot.waitUntil(look, timeout=60_000)
+
+
+def test_end_and_home_select_last_and_first_special_function(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.SPECIAL)
+    functions = attached(ready.stage.desk, SpecialFunctionList)
+    ready.key(Key.Key_End)
+    assert functions.at == len(functions.functions) - 1
+    ready.key(Key.Key_Home)
+    assert functions.at == 0
+
+
+def test_end_and_home_select_last_and_first_program(qtbot: QtBot, ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.PROGRAMS)
+    programs = attached(ready.stage.desk, ProgramListModel)
+    wait_for_programs(qtbot, ready, programs)
+    ready.key(Key.Key_End)
+    assert programs.selected_row == len(programs.listed_programs) - 1
+    ready.key(Key.Key_Home)
+    assert programs.selected_row == 0
+
+
+def test_end_and_home_select_last_and_first_tool(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.TOOLS)
+    page = ready.frame.current_page
+    assert isinstance(page, ToolOffsetsPage)
+    ready.key(Key.Key_End)
+    assert page.model.tool_number == 32
+    ready.key(Key.Key_Home)
+    assert page.model.tool_number == 1
+
+
+def test_end_and_home_select_last_and_first_tool_shape(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.SHAPE)
+    model = getattr(ready.frame.current_page, "model")  # noqa: B009
+    assert isinstance(model, ToolShapeTable)
+    ready.key(Key.Key_End)
+    assert model.tool_number == 32
+    ready.key(Key.Key_Home)
+    assert model.tool_number == 1
+
+
+def test_end_and_home_select_last_and_first_zero_offset(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.ZERO)
+    model = getattr(ready.frame.current_page, "model")  # noqa: B009
+    ready.key(Key.Key_End)
+    assert model.number == 59
+    ready.key(Key.Key_Home)
+    assert model.number == 54
+
+
+def test_end_and_home_select_last_and_first_line_of_searchto(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.SEARCHTO_PAGE)
+    cursor = attached(ready.stage.desk, SearchtoModel).line_cursor
+    ready.key(Key.Key_End)
+    assert cursor.selected_line == len(cursor.lines)
+    ready.key(Key.Key_Home)
+    assert cursor.selected_line == 1
+
+
+def test_end_shows_the_last_line_of_the_program(qtbot: QtBot, ready: Operator) -> None:
+    listing = ready.frame.automatic_page.program_listing
+    ready.window.grab()
+    ready.key(Key.Key_End)
+    ready.window.grab()
+    assert listing.first_row > 0
+    assert not listing.follows_run
+    ready.key(Key.Key_Home)
+    assert listing.follows_run
+
+
+@pytest.mark.parametrize("page", [page_table.PROGRAMS, page_table.MDI, page_table.AUTOMATIC])
+def test_keys_of_the_alarm_log_do_not_reach_the_covered_page(ready: Operator, page: str) -> None:
+    assert ready.frame.open_page(page)
+    programs = attached(ready.stage.desk, ProgramListModel)
+    fill_log(ready)
+    before = programs.selected_row, ready.mdi.mdi_input.text
+    ready.key(Key.Key_F7)
+    ready.window.grab()
+    log = ready.frame.alarm_list
+    ready.key(Key.Key_Down)
+    assert log.marked == 1
+    ready.key(Key.Key_End)
+    assert log.first_row + log.rows == LOGGED
+    ready.key(Key.Key_Home, Key.Key_Up)
+    assert log.first_row == log.marked == 0
+    assert (programs.selected_row, ready.mdi.mdi_input.text) == before
+
+
+def test_an_arrow_key_jogs_while_the_alarm_log_covers_the_jog_page(ready: Operator) -> None:
+    """The log must not change what an arrow key does on this page."""
+    assert ready.frame.open_page(page_table.JOG)
+    fill_log(ready)
+    ready.key(Key.Key_F7)
+    ready.key(Key.Key_Down)
+    assert ready.frame.alarm_list.marked == 0
+
+
+def test_home_does_not_select_a_program_while_its_new_name_is_typed(qtbot: QtBot, ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.PROGRAMS)
+    programs = attached(ready.stage.desk, ProgramListModel)
+    wait_for_programs(qtbot, ready, programs)
+    ready.key(Key.Key_End, Key.Key_F4)
+    chosen = programs.selected_row
+    assert programs.name_question
+    ready.key(Key.Key_Home)
+    assert programs.selected_row == chosen > 0
