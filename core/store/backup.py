@@ -167,11 +167,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
             )
         here = _read_users(path) if there else None
         kept = _save_old_store(path) if there else None
-        for leftover in get_log_and_index_paths(path):
-            try:
-                leftover.unlink(missing_ok=True)
-            except OSError as error:
-                raise _unwritable(leftover, error) from error
+        _remove_log(path)
         _copy(source, resolve_link(path), partial(_replace_users, here))
         return kept
 
@@ -219,13 +215,6 @@ def _is_there(target: Path) -> bool:
         raise _unwritable(target, error) from error
 
 
-def _is_same_file(path: Path, other: Path) -> bool:
-    try:
-        return path.samefile(other)
-    except OSError as error:
-        raise why(path, error) from error
-
-
 def _save_old_store(path: Path) -> Path:
     """Copy the store that is about to be replaced, intact or damaged, with its log if one exists."""
     _empty_log(path)
@@ -240,7 +229,7 @@ def _save_old_store(path: Path) -> Path:
             shutil.copy2(path, unfinished)
             replace_atomically(unfinished, kept)
     except OSError as error:
-        with suppress(OSError):
+        with suppress(OSError):  # the error above is the cause
             kept_log.unlink(missing_ok=True)
         raise _unwritable(kept, error) from error
     return kept

@@ -7,6 +7,7 @@ unfinished change at the end of the log is not damage, because its write was nev
 
 from __future__ import annotations
 
+import errno
 import sqlite3
 import struct
 from contextlib import closing
@@ -51,7 +52,7 @@ def count_lost_changes(log: Path, index: Path) -> int:
     """Return the number of complete changes in ``log`` that SQLite ignores according to its ``index``.
 
     While this function runs, a reader must have the store open, and no process may write to the store.
-    Raises OSError if a file cannot be read or the index is incomplete.
+    Raises OSError if a file cannot be read or the index is too short.
     """
     with log.open("rb") as file:
         head, content = file.read(_HEAD.size), file.read()
@@ -62,10 +63,11 @@ def count_lost_changes(log: Path, index: Path) -> int:
     if not _has_valid_header(head, magic):
         return sum(frame.is_commit and frame.salts == frames[0].salts for frame in frames) or 1
     salts, sums = tuple(rest[:2]), tuple(rest[2:])
-    index_head = index.read_bytes()[: _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size]
-    if len(index_head) < _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size:
-        raise OSError("the index of its log is incomplete")
-    taken = _FRAME_COUNT_STRUCT.unpack_from(index_head, _FRAME_COUNT_OFFSET)[0]
+    with index.open("rb") as file:
+        counted = file.read(_FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size)
+    if len(counted) < _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size:
+        raise OSError(errno.EIO, "the index of the log is too short", str(index))
+    (taken,) = _FRAME_COUNT_STRUCT.unpack_from(counted, _FRAME_COUNT_OFFSET)
     before = frames[taken - 1].sums if taken else sums
     tail = frames[taken:]
     ends = [at for at, frame in enumerate(tail) if frame.is_commit and _has_equal_salt(frame.salts, salts)]
@@ -153,7 +155,7 @@ def _calculate_checksums(checksummed_data: bytes, previous_sums: Pair, order: st
 
 
 def check_log_is_readable(path: Path, reader: sqlite3.Connection) -> None:
-    """Raise StoreError if the log, or a change in it, cannot be read and TurnDesk is not running.
+    """Raise StoreError if changes in the log cannot be read and TurnDesk is not running.
 
     A running TurnDesk has already reported the damage. The check is then skipped, because it opens and
     closes SQLite's index (see ``database.check_header``).
@@ -178,7 +180,7 @@ def save_damaged_log(path: Path) -> tuple[str, ...]:
     """Save a copy of a log that has lost changes before the log is overwritten.
 
     The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError if
-    the log cannot be examined, or if the copy or the store file cannot be written.
+    the log cannot be examined or emptied, or if the copy cannot be saved.
     """
     log, _ = get_log_and_index_paths(path)
     with closing(connect_store(path, is_read_only=True)) as reader:

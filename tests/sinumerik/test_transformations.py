@@ -215,9 +215,3 @@ def test_transmit_program_is_proved_as_milling() -> None:
     assert "TRANSMIT" not in str(stopped.diagnostics)
     passed: Passed = run(text, around(2.0))
     assert passed.blocks[-1].modal.mill is None
-
-
-def test_error_of_a_frame_in_the_plane_leaves_the_diameter_mode_of_later_lines() -> None:
-    """X90 as a diameter is inside the limit of X100; as a radius it would be reported as well."""
-    text = "G26 X100 Z100\nTRANSMIT\nTRANS X=DC(5)\nTRAFOOF\nG0 X90 Z5\nM30"
-    assert [(each.line, each.code) for each in run(text).errors] == [(3, "16800")]

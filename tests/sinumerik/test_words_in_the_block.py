@@ -278,18 +278,6 @@ def test_rndm_rounds_every_corner_until_it_is_canceled() -> None:
     assert kinds.count(BlockKind.ARC) == 3
 
 
-@pytest.mark.parametrize("value", ["R1", "R1*100", "IC(-1)", "-1"])
-def test_negative_rndm_is_rejected(value: str) -> None:
-    """A rounding of -2 would feed to Z-12 instead of Z-10, into the shoulder."""
-    found = run(f"R1=-2\nG1 X20 Z0 F200\nRNDM={value} G1 Z-10\nX40").errors
-    assert [each.line for each in found] == [3]
-
-
-def test_rndm_of_a_formula_rounds_and_ends() -> None:
-    kinds = [b.kind for b in good("R1=2\nG1 X20 Z0 F200\nRNDM=R1 Z-10\nX40\nRNDM=R1-2 Z-20\nX60")]
-    assert kinds.count(BlockKind.ARC) == 2
-
-
 def test_rndm_rounds_no_corner_before_a_rapid() -> None:
     assert [b.kind for b in good("G1 RNDM=2 Z-10 F200\nG0 X90")] == [BlockKind.FEED, BlockKind.RAPID]
 

@@ -87,30 +87,6 @@ def test_restore_of_file_that_is_not_a_backup_changes_nothing(
     assert (folder / STORE_FILE_NAME).read_bytes() == before
 
 
-@pytest.mark.parametrize(("method", "code"), [("samefile", "forbidden"), ("unlink", "cannot-write")])
-def test_restore_without_permission_is_a_store_error(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str, code: str
-) -> None:
-    """On Windows, another reader of a file causes PermissionError. The store stays as it is."""
-    target = tmp_path / "backup.db"
-    with Store.open(folder) as store:
-        fill(store)
-        backup.back_up_store(folder, target)
-
-    def fail(*_: object, **__: object) -> bool:
-        raise PermissionError(errno.EACCES, "in use")
-
-    before = (folder / STORE_FILE_NAME).read_bytes()
-    monkeypatch.setattr(Path, method, fail)
-    with raises_code(StoreError, code, "in use"):
-        backup.restore_store(folder, target)
-    if method == "samefile":
-        with raises_code(StoreError, code, "in use"):
-            backup.back_up_store(folder, target)
-    monkeypatch.undo()
-    assert (folder / STORE_FILE_NAME).read_bytes() == before
-
-
 def test_restore_of_damaged_backup_is_rejected(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)

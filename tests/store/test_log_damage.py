@@ -184,58 +184,6 @@ def test_missing_sectors_of_earlier_change_are_damage(killed: Path) -> None:
         backup.find_problems(killed / STORE_FILE_NAME)
 
 
-@pytest.mark.parametrize(
-    ("number", "code"), [(errno.EACCES, "forbidden"), (errno.EIO, "disk-failing"), (errno.EBUSY, "unusable")]
-)
-def test_log_that_cannot_be_read_is_a_store_error(
-    killed: Path, monkeypatch: pytest.MonkeyPatch, number: int, code: str
-) -> None:
-    def fail(*_: object) -> int:
-        raise OSError(number, "no")
-
-    monkeypatch.setattr(log_damage, "count_lost_changes", fail)
-    with raises_code(StoreError, code, "no"):
-        backup.find_problems(killed / STORE_FILE_NAME)
-    with raises_code(StoreError, code, "no"):
-        Store.open(killed)
-    with raises_code(StoreError, code, "no"):
-        Store.open(killed, read_only=True)
-
-
-def test_incomplete_index_of_the_log_is_a_store_error(killed: Path, tmp_path: Path) -> None:
-    """SQLite's index counts the entries of the log at its bytes 16 to 19."""
-    index = tmp_path / "index"
-    index.write_bytes(bytes(19))
-    with pytest.raises(OSError, match="incomplete"):
-        log_damage.count_lost_changes(killed / LOG, index)
-
-
-def test_full_disk_after_the_copy_of_a_damaged_log_is_a_store_error(
-    killed: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The log is emptied into the store file after it is saved."""
-
-    class Writer:
-        def execute(self, _: str) -> None:
-            error = sqlite3.OperationalError("database or disk is full")
-            error.sqlite_errorcode = sqlite3.SQLITE_FULL
-            raise error
-
-        def close(self) -> None:
-            pass
-
-    flip(killed, 32 + 24)
-    connect = store_connection.connect_store
-    monkeypatch.setattr(
-        log_damage,
-        "connect_store",
-        lambda path, is_read_only: connect(path, is_read_only=True) if is_read_only else Writer(),
-    )
-    with raises_code(StoreError, "disk-full"):
-        Store.open(killed)
-    assert len(left_beside(killed)) == 1
-
-
 def test_log_with_header_only_has_lost_nothing(killed: Path) -> None:
     (killed / LOG).write_bytes(bytes(32))
     with Store.open(killed) as store:

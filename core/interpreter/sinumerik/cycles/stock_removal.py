@@ -35,7 +35,6 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
 )
 from core.interpreter.sinumerik.flow.control_structures import Routine, find_label_index
 from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
-from core.interpreter.sinumerik.flow.variables import VariableScope
 from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
@@ -110,10 +109,7 @@ class _Reader:
         own = copy.copy(state)
         own.log, own.moved_by_tool = log, set(state.moved_by_tool)
         own.variables = copy.copy(state.variables)
-        scope = state.variables.variable_scope
-        own.variables.variable_scope = VariableScope(
-            dict(scope.numbers), dict(scope.strings), dict(scope.array_dimensions)
-        )
+        own.variables.variable_scope = state.variables.variable_scope.copy()
         own.variables.r_parameters = dict(state.variables.r_parameters)
         own.threads, own.rounding, own.motion = (), 0.0, MotionKind.LINE
         # The feeds of a contour have no effect, so a missing feed is not an error.
@@ -242,10 +238,7 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
 
 
 class _Plan:
-    """Planner of the cycle's motions in depth and length.
-
-    Depth and length are along X and Z, or along Z and X if the passes are along X.
-    """
+    """Planner of the motions in depth and length: X and Z, or Z and X for passes along X."""
 
     def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
@@ -262,7 +255,7 @@ class _Plan:
         self._start = self._start_point()
 
     def _free_side(self) -> tuple[float, float]:
-        """Return the signs of the depth and length directions that lead away from the material."""
+        """Return the signs of the directions in depth and length toward the open side of the contour."""
         if self._kind.is_transverse:  # The face is on the right side.
             return 1.0, (-1.0 if self._kind.is_inside else 1.0)
         first, last = self._contour[0].start, self._contour[-1].end
@@ -289,7 +282,8 @@ class _Plan:
     def _start_point(self) -> Point:
         """Return the start point of the cycle, outside both ends of the contour.
 
-        It is at the outermost depth of the contour, in front of it by the allowance plus _VRT.
+        The start point is at the outermost depth of the contour, at a distance of the allowance plus _VRT
+        in front of it.
         """
         out, front = self._signs
         boxes = [each.bounding_box for each in self._contour]

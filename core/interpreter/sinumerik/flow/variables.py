@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import cycle, product
+from itertools import product
 
 from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.shared.job_setup import ToolOffset
@@ -105,26 +105,26 @@ class Variables:
         compute_formula: Callable[[Formula], float],
         make_error: ErrorFactory,
     ) -> int:
-        """Assign values to consecutive array elements or R parameters, starting at ``first_element``.
+        """Assign values to elements, starting at ``first_element``.
 
         Returns the number of surplus values. Raises the error that ``make_error`` returns if the number of
         elements of REP is not a whole number of 0 or more.
         """
         places = _r_places() if variable_name == "R" else self.variable_scope.list_elements(variable_name)
         places = places[places.index(first_element) :]
-        times = 1
+        formulas, surplus = list(values.formulas), len(values.formulas) - len(places)
         if values.is_repeated:
-            times = (
-                len(places) if values.repeat_count is None else round(compute_formula(values.repeat_count))
-            )
-        count = len(values.formulas) * max(times, 0)
-        for place, formula in zip(places[:count], cycle(values.formulas), strict=False):
+            count = len(places)
+            if values.repeat_count is not None:
+                count = _check_repeat_count(compute_formula(values.repeat_count), make_error)
+            formulas, surplus = formulas * min(count, len(places)), count - len(places)
+        for place, formula in zip(places, formulas, strict=False):
             if formula is not None:
                 self.set_value(place, compute_formula(formula))
-        return max(count - len(places), 0)
+        return max(surplus, 0)
 
     def set_value(self, name: str, value: float) -> bool:
-        """Set an R parameter or variable, and return whether it is defined; R parameters always are."""
+        """Set a value, or return False if the variable is not defined."""
         if name[0] == "R" and name[1:].isdigit():
             self.r_parameters[f"R{int(name[1:])}"] = value
         elif name in self.variable_scope.numbers:
@@ -189,7 +189,7 @@ def format_variable_name(
     """Return the name of a variable or element, such as R7, LENGTH or TABLE[2].
 
     Raises the error that ``make_error`` returns if an index is negative or not a whole number, or if an R
-    parameter does not exist or has more than one index.
+    parameter has more than one index or an index above 299.
     """
     if number is None:
         return letters
@@ -197,18 +197,15 @@ def format_variable_name(
         return f"{letters}{number}"
     indices = [float(number)] if isinstance(number, int) else list(map(compute_formula, split_index(number)))
     for place, index in enumerate(indices):
-        is_missing = letters == "R" and (place > 0 or index > MAX_R_NUMBER)
-        if abs(index - round(index)) > 1e-9 or index < 0 or is_missing:
+        is_too_high = letters == "R" and (place or index > MAX_R_NUMBER)
+        if convert_to_whole_number(index) is None or index < 0 or is_too_high:
             code = WRONG_OTHER_INDEX if place else WRONG_FIRST_INDEX
             text = Message(
                 "{letters}[{item}] does not exist.",
                 letters=letters,
                 item=",".join(f"{each:g}" for each in indices),
             )
-            hint = "Use a whole number of 0 or more as the index."
-            if is_missing:
-                hint = Message("Use a parameter from R0 to R{most_r}.", most_r=MAX_R_NUMBER)
-            raise make_error(code, text, hint)
+            raise make_error(code, text, _INDEX_HINTS.get(letters, _ARRAY_INDEX_HINT))
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"
 

@@ -34,11 +34,7 @@ def execute_feed_words(state: State, statement: Statement) -> None:
         value = state.number(statement, word)
         state.corner_feed = convert_feed(state, statement, word) if value else None
     if word := statement.words.get("RNDM"):
-        rounding = state.length(statement, word)
-        text = "{word}: the rounding radius cannot be negative."
-        hint = "Correct the value, or use RNDM=0 to end the rounding."
-        statement.check_condition(rounding >= 0.0, word, "not-positive", text, hint, word=word.text)
-        state.rounding = rounding
+        state.rounding = state.length(statement, word)
     word = statement.words.get("F")
     motion = statement.get_g_code(MOTION_GROUP)
     leads = (state.motion if motion is None else motion) in _LEAD_MOTIONS
@@ -64,12 +60,9 @@ def check_block_feed(
 
     The feed is in mm (or degrees) per second or per revolution, and includes the factor of OVR. A feed per
     revolution of the live tool is converted to a feed per second, because the live tool has a constant
-    speed. Raises ProgramError in the following cases:
-
-    - No feed is active (alarm 10860).
-    - FB is not above 0.
-    - G96 is active without a surface speed.
-    - The spindle or live tool that determines a feed per revolution is stopped.
+    speed. Raises ProgramError with alarm 10860 if no feed is active. Raises ProgramError with a TurnDesk
+    code if FB is not above 0, if G96 is active without a surface speed, or if the spindle or the live tool
+    that determines a feed per revolution is stopped.
     """
     modal = state.modal
     word = statement.words.get("FB")

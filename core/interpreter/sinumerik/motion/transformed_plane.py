@@ -101,9 +101,9 @@ class ActiveTransformation:
         return self._depth - self._plane.programmed_frame.shift_c
 
     def update_position(self) -> None:
-        """Set the position of the virtual mill from the positions of the lathe axes.
+        """Set the position of the mill from the axis positions.
 
-        This is required at the start and after a change of tool or zero point.
+        This is required at the start and after a change of tool or zero.
         """
         state, modal = self._state, self._state.modal
         self._offset = modal.drawing_zero_x, modal.drawing_zero_z
@@ -175,7 +175,7 @@ class ActiveTransformation:
         return word._replace(value=value, formula=None)
 
     def _follow_state(self) -> None:
-        """Copy the modal values that the plane shares from the lathe's state to the state of the plane."""
+        """Copy changes of the lathe's state to the state of the plane."""
         state, plane = self._state, self._plane
         for name in _COPIED_ATTRIBUTES:
             setattr(plane, name, getattr(state, name))
@@ -209,13 +209,8 @@ class ActiveTransformation:
         if key := statement.frame_word:
             turned = {name: word for name, word in statement.words.items() if name in AXIS_NAMES}
             if key.name.removeprefix("A") == "TRANS":  # TRANS does not have diameters
-                modal = self._state.modal
-                self._state.modal = modal._replace(diameter=False)
-                try:
-                    taken = self.convert_statement(replace(statement, words=turned))
-                finally:  # The check of the program continues after an error.
-                    self._state.modal = modal
-                if "C" in taken.words and not modal.metric:
+                taken = self.convert_statement(replace(statement, words=turned), x_is_radius=True)
+                if "C" in taken.words and not self._state.modal.metric:
                     depth = taken.words["C"]
                     taken.words["C"] = depth._replace(value=(depth.value or 0.0) * 25.4)
             else:
@@ -272,7 +267,7 @@ class ActiveTransformation:
         return made
 
     def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
-        """Return a rapid to a hole position of a hole pattern in the plane, in mm."""
+        """Return a rapid to a point of the plane for a hole pattern, in mm."""
         self._follow_state()
         state = self._plane
         z, ordinate = (y, x) if not self.has_z_depth else (x, y)
@@ -284,7 +279,7 @@ class ActiveTransformation:
         return made
 
     def _set_allowance(self, statement: Statement, word: Word) -> None:
-        """Set the contour allowance that OFFN programs.
+        """Set OFFN, the allowance of the contour.
 
         Raises ProgramError if a contour is active, and for a value other than 0 in TRACYL.
         """
@@ -329,7 +324,7 @@ class ActiveTransformation:
         )  # fmt: skip
 
     def _set_end_position(self, block: Block) -> None:
-        """Set the position in the lathe's state to the programmed end point, without nose compensation."""
+        """Set the lathe's state to the programmed end point without compensation."""
         state, frame = self._state, self._frame
         end = _spot(frame, block.x + block.offset_x, block.z + block.offset_z, block.c)
         if isinstance(frame, FacePlane):
@@ -467,10 +462,10 @@ class ActiveTransformation:
 
 
 def _spot(frame: FacePlane | SidePlane, ordinate: float, abscissa: float, depth: float) -> MillPoint:
-    """Convert a point of the programmed plane to the frame of the virtual mill."""
+    """Convert a point of the plane to the frame of the mill."""
     return (abscissa, ordinate, depth) if isinstance(frame, FacePlane) else (-ordinate, abscissa, depth)
 
 
 def _to_plane(frame: FacePlane | SidePlane, point: MillPoint) -> MillPoint:
-    """Return the abscissa, the ordinate and the depth of a point that is given in the mill's frame."""
+    """Return the abscissa, the ordinate and the depth of a point in the frame of the mill."""
     return (point[0], point[1], point[2]) if isinstance(frame, FacePlane) else (point[1], -point[0], point[2])
