@@ -65,7 +65,7 @@ _INVERTER = 0.05  # s between two polls of the inverter's values while the contr
 _START_TIMEOUT_S = (
     20.0  # s until the first response, because the process must start and configure every drive
 )
-_END_TIMEOUT_S = 10.0
+_END_TIMEOUT_S = 15.0  # s, because the spindle brakes for up to 8 s before HAL is shut down
 
 
 class DriverHostProcess:

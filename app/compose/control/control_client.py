@@ -92,16 +92,20 @@ class ControlClient:
     """
 
     def __init__(
-        self, started_control: StartedControl, folder: Path, recordings: ControlRecordings | None = None
+        self,
+        started_control: StartedControl,
+        folder: Path,
+        recordings: ControlRecordings | None = None,
+        start_timeout_s: float = START_TIMEOUT_S,
     ) -> None:
-        """Wait for the first message of the control.
+        """Wait for the first message of the control, at most ``start_timeout_s`` if it was just started.
 
         If an earlier control has ended, its scope ``recordings`` continue with the data of this control.
         Raises DriverError if the control reports an error, ends, does not respond or has a different
         version.
         """
         self._connection, self.control_process = connection, process = started_control
-        hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
+        hello = _receive_hello(connection, start_timeout_s if process is not None else REPLY_TIMEOUT_S)
         self.hello_message = hello
         self.is_attached = process is None  # connected to a control that another screen has started
         memory = _receive_memory(connection)
