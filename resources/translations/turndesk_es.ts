@@ -26800,6 +26800,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
+      <source>REP cannot fill {count} elements.</source>
+      <translation>REP no puede llenar {count} elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use a parameter from R0 to R{most_r}.</source>
       <translation>Use un parámetro de R0 a R{most_r}.</translation>
     </message>
@@ -27370,11 +27375,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
-      <source>Correct the value, or use RNDM=0 to end the rounding.</source>
-      <translation>Corrija el valor, o use RNDM=0 para terminar el redondeo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>G95 needs a spindle speed, but the spindle is stopped.</source>
       <translation>G95 necesita una velocidad de husillo, pero el husillo está parado.</translation>
     </message>
@@ -27397,16 +27397,6 @@
       <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
       <source>Start the spindle with S and M3 or M4, or use G94.</source>
       <translation>Arranque el husillo con S y M3 o M4, o use G94.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
-      <source>{word} is not between 1 and 200.</source>
-      <translation>{word} no está entre 1 y 200.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/sinumerik_feeds.py" />
-      <source>{word}: the rounding radius cannot be negative.</source>
-      <translation>{word}: el radio de redondeo no puede ser negativo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/third_axis.py" />
@@ -30900,11 +30890,6 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/word_values.py" />
-      <source>R{number} is not a valid parameter</source>
-      <translation>R{number} no es un parámetro válido</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/word_values.py" />
       <source>Use a value of {word} between {low} and {high}.</source>
       <translation>Use un valor de {word} entre {low} y {high}.</translation>
     </message>
@@ -33275,8 +33260,8 @@
     </message>
     <message>
       <location filename="core/store/log_damage.py" />
-      <source>the index of its log is incomplete</source>
-      <translation>el índice de su bitácora está incompleto</translation>
+      <source>the index of the log is too short</source>
+      <translation>el índice de la bitácora es demasiado corto</translation>
     </message>
     <message>
       <location filename="core/store/log_damage.py" />
