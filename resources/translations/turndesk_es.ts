@@ -19910,6 +19910,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the end point with X and Z.</source>
+      <translation>Escriba el punto final con X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write the number.</source>
       <translation>Escriba el número.</translation>
     </message>
@@ -20077,6 +20082,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>{word}: a segment of the contour is too short for the distance of the cycle.</source>
       <translation>{word}: un tramo del contorno es demasiado corto para la distancia del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: an angle is converted only with either X or Z.</source>
+      <translation>{word}: un ángulo solo se convierte con X o con Z.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

@@ -8,6 +8,10 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.message import Message
 
 ERRORS: Mapping[str, tuple[str, str]] = {
+    "angle-word": (
+        "{word}: an angle is converted only with either X or Z.",
+        "Write the end point with X and Z.",
+    ),
     "arc-centre": ("The arc has neither R nor a center.", "Write R, or I and K."),
     "arc-radius": (
         "The arc's radius is {first} at its start and {last} at its end.",

@@ -6,6 +6,7 @@ from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.path_steps import PathStep, StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import SourceControl
+from core.extras.convert.source_preset import cancel_preset
 from core.extras.convert.source_spindle import stop_spindle
 from core.extras.convert.source_state import SourceState
 
@@ -90,8 +91,8 @@ def _select_other_mode(state: SourceState, statement: SourceStatement, word: Sou
             state.add_warning(word, "plane", word=word.text)
             return
     elif code in _PRESET_CANCEL and state.has_preset:
-        # Moves after the code would start at another position; at the end of a program there are none.
-        state.move_error = make_error(word.line_number, word.column, "preset-cancelled", word=word.text)
+        cancel_preset(state, word)
+        return
     if (code in _ALWAYS_ACTIVE or code in _PRESET_CANCEL) and is_mode(state, code):
         state.add_note(word, "no-change", word=word.text)
     elif code in _LEFT_OUT:

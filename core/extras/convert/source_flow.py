@@ -88,6 +88,8 @@ class ProgramFlow:
         Raises ProgramError if the file does not contain this subprogram.
         """
         depth, found = len(self._calls), list[SourceStatement]()
+        for key in ("<_x", "<_z", "5420", "5422"):
+            self.variables.pop(key, None)  # LinuxCNC would follow the contour; this position does not.
         self._enter(word, self._find_sub(f"{word.value:g}"), 1, {str(n): 0.0 for n in range(1, 31)})
         while len(self._calls) > depth and self.at < len(self.lines) and not self.ended:
             found += self._execute_line()

@@ -9,6 +9,7 @@ from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.cycles.source_cycles import SourceCycles
 from core.extras.convert.cycles.thread_cycles import append_thread_pass
 from core.extras.convert.path_steps import PathStep, StepKind
+from core.extras.convert.source_angles import find_angle_target, is_angle_word
 from core.extras.convert.source_arcs import append_arc
 from core.extras.convert.source_codes import (
     ROTARY_LETTERS,
@@ -24,8 +25,9 @@ from core.extras.convert.source_dwell import append_dwell, read_seconds
 from core.extras.convert.source_flow import ProgramFlow
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import ConversionOptions, SourceControl
+from core.extras.convert.source_preset import add_preset_shift
 from core.extras.convert.source_spindle import execute_spindle_words
-from core.extras.convert.source_state import SourceState
+from core.extras.convert.source_state import MM_PER_INCH, SourceState
 from core.extras.convert.source_tools import execute_tool_words, report_unused_tool
 from core.language.diagnostics import Diagnostic, ProgramError
 
@@ -57,6 +59,8 @@ class SourceReader:
                 self.state.add_warning(word, "block-delete", word=each.code.strip())
         for statement in self.flow.iter_statements():
             self.execute_statement(statement)
+            if not self.state.source_control.is_fanuc:
+                self._store_position()
         self._require_no_corner()
         report_unused_tool(self.state)
         for first, last in self.flow.find_unexecuted_lines():
@@ -68,6 +72,17 @@ class SourceReader:
         if not any(each.kind is StepKind.END for each in self.state.steps):
             line = self.state.steps[-1].line if self.state.steps else 1
             self.state.append_step(PathStep(StepKind.END, line, number=30))
+
+    def _store_position(self) -> None:
+        """Store the position in the predefined variables of LinuxCNC, or remove these if it is unknown."""
+        state, variables = self.state, self.flow.variables
+        factor = 2.0 if state.is_x_diameter else 1.0
+        unit = 1.0 if state.is_metric else MM_PER_INCH
+        for value, keys in ((state.x, ("<_x", "5420")), (state.z, ("<_z", "5422"))):
+            for key in keys:
+                variables.pop(key, None)
+                if value is not None and state.is_metric is not None:
+                    variables[key] = value / unit * (factor if keys[0] == "<_x" else 1.0)
 
     # --- one statement
 
@@ -152,6 +167,7 @@ class SourceReader:
             return
         self._check_letters(statement)
         if not axes:
+            find_angle_target(state, statement)  # An angle without an end point is an error.
             return
         self._move(statement, motion[-1] if motion else axes[0])
         if self._nose_ends:
@@ -210,7 +226,7 @@ class SourceReader:
             self._require_no_corner()
             append_arc(state, statement, code)
             return
-        x, z = state.find_target(statement)
+        x, z = find_angle_target(state, statement) or state.find_target(statement)
         corner, self._corner = self._corner, None
         if corner is not None:
             if x is None or z is None or state.motion_code != 1:
@@ -260,7 +276,8 @@ class SourceReader:
                 self.state.add_warning(word, "left-out", word=word.text)
             return True
         return (
-            (letter == "D" and statement.has_g(96) and not self.state.source_control.is_fanuc)
+            is_angle_word(self.state, word)
+            or (letter == "D" and statement.has_g(96) and not self.state.source_control.is_fanuc)
             or (letter == "H" and statement.has_g(43))
             or letter in get_left_out_letters(statement)
         )
@@ -362,9 +379,11 @@ class SourceReader:
             if each.letter in "UW":
                 raise make_error(each.line_number, each.column, "code-unknown", word=each.text)
         state.has_preset = True
+        before = state.x, state.z
         x, z = statement.find_word("X"), statement.find_word("Z")
         state.x = state.convert_x(x) if x is not None else state.x
         state.z = state.convert_length(z) if z is not None else state.z
+        add_preset_shift(state, before)
         state.append_step(PathStep(StepKind.PRESET, statement.line_number, state.x, state.z))
 
 

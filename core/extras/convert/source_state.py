@@ -46,6 +46,7 @@ class SourceState:
     uses_tool_change: bool = False  # T only prepares the tool, and M06 changes it
     prepared_tool: SourceWord | None = None
     has_preset: bool = False
+    preset_shift: tuple[float, float] | None = (0.0, 0.0)  # X and Z of all presets; None if unknown
     move_error: ProgramError | None = None  # raised by the next move
     comment: str = ""
     cycle_code: float = -1  # single cycle whose values are stored

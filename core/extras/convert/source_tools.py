@@ -82,4 +82,5 @@ def _check_number(word: SourceWord, offset: int) -> None:
 
 def _change_tool(state: SourceState, number: int, line: int) -> None:
     state.tool_number, state.x, state.z = number, None, None
+    state.preset_shift = None if state.has_preset else state.preset_shift
     state.append_step(PathStep(StepKind.TOOL, line, number=number))

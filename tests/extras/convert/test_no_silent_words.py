@@ -176,7 +176,7 @@ def test_actions_inside_a_roughing_contour_are_reported() -> None:
     ("body", "code"),
     [
         ("G43H33", "tool-number"),
-        ("G92X1\nG92.1\nG0X3", "preset-cancelled"),
+        ("T4M6\nG92X1Z1\nG92.1\nG0X3", "preset-cancelled"),
         ("G17G81Z-1R0\nG80\nX1", "motion-missing"),
         ("G17G81Z-1R0L3", "code-unknown"),
         ("T101M6", "tool-number"),
