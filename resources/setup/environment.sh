@@ -44,6 +44,34 @@ installed() {
         || dpkg-query -W -f='${Status}' "$1t64" 2>/dev/null | grep -q 'ok installed'
 }
 
+ROUTES=${ROUTES:-/proc/net}  # the folder in which Linux lists its routes
+
+# has_network: whether this computer has a route to a network, or a setting that may work without one.
+has_network() {
+    [ -r "$ROUTES/route" ] || return 0
+    cat "$ROUTES/route" "$ROUTES/ipv6_route" 2>/dev/null \
+        | awk '$1 != "Iface" && $1 != "lo" && $NF != "lo" { found = 1 } END { exit !found }' && return
+    [ -n "${http_proxy:-}${HTTP_PROXY:-}${https_proxy:-}${HTTPS_PROXY:-}${all_proxy:-}${ALL_PROXY:-}" ]
+}
+
+# may_fetch WHAT: ends the set-up at once, with the reason, if WHAT must be downloaded and there is no network.
+may_fetch() {
+    has_network && return
+    say "This computer has no network: it has no route to one. These must be downloaded: $1."
+    say "Connect it to a network, then start again. Without a network, install the bundle in one file:"
+    say "see 'Install without a network' in docs/integrator/install.md."
+    exit 2
+}
+
+# Packages of Debian can come from a medium, and those of Python from a folder or an index on this computer.
+has_own_debs() { [ -n "$APT_OPTIONS" ] || grep -rqsE '(file|copy|cdrom):|Proxy' /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf /etc/apt/apt.conf.d; }
+has_own_wheels() {
+    [ -n "${PIP_FIND_LINKS:-}${PIP_CONFIG_FILE:-}${UV_FIND_LINKS:-}" ] && return
+    printf '%s\n' "${PIP_INDEX_URL:-} ${UV_DEFAULT_INDEX:-} ${UV_INDEX_URL:-}" \
+        | cat - /etc/pip.conf "${HOME:-}/.config/pip/pip.conf" "${HOME:-}/.pip/pip.conf" "${HOME:-}/.config/uv/uv.toml" 2>/dev/null \
+        | grep -qE 'file:|localhost|127\.|\[::1\]|find-links|proxy'
+}
+
 # may_install PACKAGES: whether packages can be installed by this user; else it says what whoever can has to do.
 may_install() {
     [ "$(id -u)" = 0 ] && return
@@ -76,6 +104,7 @@ system_packages() {
     missing=""
     for package in "$@"; do installed "$package" || missing="$missing $package"; done
     [ -z "$missing" ] && return
+    has_own_debs || may_fetch "system packages$missing"
     may_install "$missing" || exit 2
     say "Installing system packages:$missing"
     fresh_package_lists
@@ -88,6 +117,9 @@ not_installed() {
     say "$apt_says"
     case $apt_says in
         *"No space left"* | *"enough free space"*) say "Its disk is full: make room, then start again." ;;
+        *ertificate*)
+            say "The certificate of the package server is not trusted. If a proxy decrypts the traffic, copy its certificate to"
+            say "/usr/local/share/ca-certificates, run update-ca-certificates as root, then start again." ;;
         *"Unable to locate"* | *"no installation candidate"* | *"Failed to fetch"* | *resolving* | *onnect*)
             say "Is there a network? Without one, bring the bundle in one file (docs/integrator/install.md), or install them from the distribution's medium." ;;
     esac
@@ -99,7 +131,7 @@ optional_packages() {
     command -v apt-get >/dev/null || return 0
     for package in "$@"; do
         installed "$package" && continue
-        { may_install " $package" && apt_get install -y --no-install-recommends "$package"; } \
+        { { has_own_debs || has_network; } && may_install " $package" && apt_get install -y --no-install-recommends "$package"; } \
             || say "$package cannot be installed here: tests that need it are skipped"
     done
 }
@@ -183,16 +215,35 @@ pip_install() {
 
 log_has() { printf '%s\n' "$said" | grep -qiE "$1"; }
 
-# is_full FOLDER: whether its disk has less than 2 MB left; Python's venv does not say why it gave up.
-is_full() {
-    free=$(df -Pk -- "$1" 2>/dev/null | awk 'NR == 2 { print $4 }')
-    [ "${free:-9999}" -lt 2048 ]
+# has_less_than MB FOLDER: whether the disk of the folder has less than this left, in MB.
+has_less_than() {
+    free=$(df -Pk -- "$2" 2>/dev/null | awk 'NR == 2 { print $4 }')
+    [ "${free:-999999999}" -lt "$(($1 * 1024))" ]
 }
 
-# keep_log: what was said goes to a file, where the disk takes it.
+# Python's venv does not say why it gave up, so that a disk with 2 MB left counts as full.
+is_full() { has_less_than 2 "$1"; }
+
+NEEDED=500  # MB for the Python packages
+
+# name_full_disks: prints each disk without room for the Python packages, by its mount point and a folder on it.
+name_full_disks() {
+    for folder in "$PYTHON_ENV" "${TMPDIR:-/tmp}"; do
+        has_less_than "$NEEDED" "$folder" || continue
+        df -Pk -- "$folder" | awk -v folder="$folder" \
+            'NR == 2 { printf "  %s, with %s: %d MB free\n", $6, folder, $4 / 1024 }'
+    done
+}
+
+# keep_log: writes what was said to a file, on a disk that has room for it; else the last lines are shown.
 keep_log() {
-    log="$PYTHON_ENV/.turndesk-log"
-    { printf '%s\n' "$said" >"$log"; } 2>/dev/null && say "All that it said is in $log"
+    for log in "$PYTHON_ENV/.turndesk-log" "$(mktemp "${TMPDIR:-/tmp}/turndesk-log-XXXXXX" 2>/dev/null)"; do
+        [ -n "$log" ] || continue
+        { printf '%s\n' "$said" >"$log"; } 2>/dev/null && { say "All that it said is in $log"; return; }
+        rm -f -- "$log"
+    done
+    say "No disk has room for a log. The last lines were:"
+    say "$(printf '%s\n' "$said" | tail -n 4)"
 }
 
 # not_fetched: one clear sentence for why pip gave up, told from what it wrote.
@@ -202,12 +253,15 @@ not_fetched() {
         say "$(printf '%s\n' "$said" | grep -iE '^ +[a-z0-9._-]+==|hash mismatch' | sed 's/ (from -r .*//' | head -n 2)"
         say "Start again; if it stays, find out what stands between here and the package index (a proxy, a mirror, a folder of wheels)."
     elif log_has 'no space left' || is_full "$PYTHON_ENV" || is_full "${TMPDIR:-/tmp}"; then
-        say "No room left on the disk of $PYTHON_ENV or of ${TMPDIR:-/tmp}: the Python packages need 500 MB. Make room, then start again."
+        say "No room left on the disk of $PYTHON_ENV or of ${TMPDIR:-/tmp}: the Python packages need $NEEDED MB. Make room, then start again."
+        name_full_disks >&2
     elif log_has 'permission denied|read-only file system'; then
         say "$(id -un) may not write to $PYTHON_ENV: name a folder in TURNDESK_VENV, or start as its owner."
     elif log_has 'certificate'; then
         say "The package index could not be trusted: is this computer's date right ($(date '+%Y-%m-%d %H:%M'))? A proxy that looks into"
         say "encrypted traffic needs its certificate named in PIP_CERT (for uv: SSL_CERT_FILE)."
+        [ -z "${REQUESTS_CA_BUNDLE:-}${CURL_CA_BUNDLE:-}" ] \
+            || say "REQUESTS_CA_BUNDLE or CURL_CA_BUNDLE is set, and pip prefers it to PIP_CERT: set it to the same file, or unset it."
     elif log_has 'name resolution|name or service|connection|network is unreachable|timed out|proxy|dns error|error sending request|could not connect'; then
         say "The Python packages could not be fetched: is there a network, or a proxy to be named in https_proxy?"
         say "Without one, bring the bundle in one file: docs/integrator/install.md says how it is made on a computer that has a network."
@@ -228,10 +282,11 @@ LOCKED="--require-hashes --no-deps"
 # python_environment SET: makes or renews the environment by locked-SET.txt when that or TurnDesk's own list has changed.
 python_environment() {
     locked="$ROOT/resources/setup/locked-$1.txt"
-    right_environment || new_environment
     stamp="$PYTHON_ENV/.turndesk-$1"
     wanted=$(cat "$ROOT/pyproject.toml" "$locked" "$ROOT/setup.cfg" | cksum)
-    [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
+    right_environment && [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
+    has_own_wheels || may_fetch "Python packages, about 130 MB"
+    right_environment || new_environment
     say "Setting up Python packages in $PYTHON_ENV (about 130 MB to fetch, once)"
     # shellcheck disable=SC2086
     pip_install $LOCKED --only-binary :all: -r "$locked" || not_fetched

@@ -306,3 +306,122 @@ def test_folder_with_other_files_is_not_emptied(tmp_path: Path) -> None:
     assert told.returncode == 2
     assert "is no Python environment of TurnDesk" in told.stderr
     assert (tmp_path / "letters").exists()
+
+
+HEADER = "Iface\tDestination\tGateway\n"
+LOOPBACK = f"{'0' * 32} 00 {'0' * 32} 00 {'0' * 32} ffffffff 00000001 00000000 00200200       lo\n"
+
+
+def routes(folder: Path, version_4: str = "", version_6: str = LOOPBACK) -> str:
+    """Writes the routes as Linux lists them."""
+    folder.mkdir()
+    (folder / "route").write_text(HEADER + version_4, encoding="utf-8")
+    (folder / "ipv6_route").write_text(version_6, encoding="utf-8")
+    return str(folder)
+
+
+@pytest.mark.parametrize(
+    ("version_4", "version_6", "found"),
+    [
+        ("", LOOPBACK, False),
+        ("lo\t0000007F\t00000000\n", "", False),
+        ("eth0\t00000000\t010200C0\n", LOOPBACK, True),
+        ("", LOOPBACK.replace("lo\n", "eth0\n"), True),
+    ],
+)
+def test_network_is_a_route_of_another_interface_than_loopback(
+    tmp_path: Path, version_4: str, version_6: str, found: bool
+) -> None:
+    told = tell("has_network", ROUTES=routes(tmp_path / "net", version_4, version_6))
+    assert (told.returncode == 0) is found
+
+
+def test_proxy_counts_as_network(tmp_path: Path) -> None:
+    told = tell("has_network", ROUTES=routes(tmp_path / "net"), https_proxy="http://127.0.0.1:3128")
+    assert told.returncode == 0
+
+
+def test_root_without_network_is_told_before_anything_is_tried(tmp_path: Path) -> None:
+    executable(tmp_path / "dpkg-query", "#!/bin/sh\nexit 1\n")
+    executable(tmp_path / "grep", "#!/bin/sh\nexit 1\n")  # no medium in the sources of apt
+    executable(tmp_path / "id", "#!/bin/sh\necho 0\n")
+    executable(tmp_path / "apt-get", f"#!/bin/sh\ntouch {tmp_path}/asked\n")
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    told = tell("system_packages libegl1", PATH=path, ROUTES=routes(tmp_path / "net"))
+    assert told.returncode == 2
+    assert "This computer has no network" in told.stderr
+    assert "must be downloaded: system packages libegl1." in told.stderr
+    assert "docs/integrator/install.md" in told.stderr
+    assert not (tmp_path / "asked").exists()
+
+
+def test_no_python_environment_is_made_without_network(shop: Path) -> None:
+    (shop / ".venv" / "bin" / "python").unlink()
+    told = tell(
+        "has_own_wheels() { return 1; }; python_environment desk",
+        ROOT=str(shop),
+        ROUTES=routes(shop / "net"),
+    )
+    assert told.returncode == 2
+    assert "must be downloaded: Python packages" in told.stderr
+    assert "Making the Python environment" not in told.stderr
+
+
+@needs_pip
+def test_folder_of_wheels_needs_no_network(shop: Path) -> None:
+    told = set_up(shop, ROUTES=routes(shop / "net"))
+    assert "no network" not in told.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+def test_log_is_written_to_another_disk_if_its_own_is_full(shop: Path, tmp_path: Path) -> None:
+    pip_that_says(shop, "OSError: [Errno 28] No space left on device")
+    (shop / ".venv" / ".turndesk-log").symlink_to("/dev/full")
+    (tmp_path / "other").mkdir()
+    told = set_up(shop, TMPDIR=str(tmp_path / "other"))
+    (log,) = (tmp_path / "other").glob("turndesk-log-*")
+    assert f"All that it said is in {log}" in told.stderr
+    assert "No space left on device" in log.read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+def test_last_lines_are_shown_if_no_disk_takes_the_log(shop: Path) -> None:
+    pip_that_says(shop, "OSError: [Errno 28] No space left on device")
+    (shop / ".venv" / ".turndesk-log").symlink_to("/dev/full")
+    told = set_up(shop, TMPDIR=str(shop / "missing"))
+    assert "No disk has room for a log. The last lines were:\nOSError: [Errno 28]" in told.stderr
+    assert "All that it said" not in told.stderr
+
+
+def test_full_disk_is_named_with_its_free_space(shop: Path) -> None:
+    """By hand: 10 240 KiB are 10 MB, which is less than the 500 MB that are needed."""
+    pip_that_says(shop, "OSError: [Errno 28] No space left on device")
+    executable(
+        shop / "bin" / "df",
+        "#!/bin/sh\necho Filesystem\ncase $* in *.venv*) echo /dev/sdb1 1 1 10240 99% /data ;;"
+        " *) echo /dev/sda1 1 1 9999999 1% / ;; esac\n",
+    )
+    told = set_up(shop, PATH=f"{shop / 'bin'}:{os.environ['PATH']}")
+    assert f"  /data, with {shop / '.venv'}: 10 MB free\n" in told.stderr
+    assert "sda1" not in told.stderr
+    assert "  /, with" not in told.stderr
+
+
+def test_untrusted_package_server_of_apt_is_reported(tmp_path: Path) -> None:
+    executable(tmp_path / "dpkg-query", "#!/bin/sh\nexit 1\n")
+    executable(tmp_path / "id", "#!/bin/sh\necho 0\n")
+    executable(
+        tmp_path / "apt-get",
+        "#!/bin/sh\necho 'E: Failed to fetch https://x  Certificate verification failed'; exit 100\n",
+    )
+    told = tell("system_packages libegl1", PATH=f"{tmp_path}:{os.environ['PATH']}")
+    assert told.returncode == 2
+    assert "update-ca-certificates" in told.stderr
+    assert "Is there a network" not in told.stderr
+
+
+@pytest.mark.parametrize("name", ["REQUESTS_CA_BUNDLE", "CURL_CA_BUNDLE"])
+def test_variable_that_overrides_the_certificate_of_pip_is_named(shop: Path, name: str) -> None:
+    pip_that_says(shop, "[SSL: CERTIFICATE_VERIFY_FAILED] self-signed certificate")
+    assert "pip prefers it to PIP_CERT" in set_up(shop, **{name: "/etc/ssl/certs/other.crt"}).stderr
+    assert "pip prefers it to PIP_CERT" not in set_up(shop).stderr
