@@ -11,6 +11,7 @@ from core.message import Message
 from core.store.store_errors import StoreError
 
 SETTINGS_KEY = "screen"
+SYSTEM_THEME = "system"  # Dark or light, whichever the operating system uses.
 
 
 class DisplayUnits(StrEnum):
@@ -32,7 +33,7 @@ class DisplayUnits(StrEnum):
 class ScreenSettings:
     """All screen settings, with default values for a new machine."""
 
-    theme: str = "dark"
+    theme: str = SYSTEM_THEME
     language: str = "en"
     units: str = DisplayUnits.PROGRAM.value
     readout: str = "POSITION"
@@ -43,7 +44,7 @@ class ScreenSettings:
 
 
 SETTING_CHOICES: Mapping[str, tuple[object, ...]] = {
-    "theme": ("dark", "light"),
+    "theme": (SYSTEM_THEME, "light", "dark", "contrast"),
     "language": ("en", "es"),
     "units": tuple(unit.value for unit in DisplayUnits),
     "readout": ("POSITION", "DISTANCE TO GO", "FROM HOME"),

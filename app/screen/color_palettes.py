@@ -1,4 +1,4 @@
-"""The color palettes of the dark and the light theme, and the colors of the curves."""
+"""The color palettes of the themes, and the colors of the curves."""
 
 from __future__ import annotations
 
@@ -101,15 +101,48 @@ LIGHT_PALETTE = ColorPalette(
     centre="#94497f",
     tip="#b32d00",
 )
-PALETTES = {palette.name: palette for palette in (DARK_PALETTE, LIGHT_PALETTE)}
+# For sunlight and color-blind operators: every text has a contrast ratio of at least 7 to its background
+# (WCAG 2.2, level AAA), and the colors of the machine states differ for every kind of color blindness.
+CONTRAST_PALETTE = ColorPalette(
+    name="contrast",
+    ground="#ffffff",
+    panel="#ffffff",
+    frame="#000000",
+    text="#000000",
+    soft="#2e2e2e",
+    accent="#00357a",
+    key="#d6d6d6",
+    ready="#000000",
+    run="#004f7c",
+    pause="#6b3a00",
+    wait="#3c1f9c",
+    alarm="#9c0000",
+    off="#4a4a4a",
+    on_state="#ffffff",
+    mark="#6b3a00",
+    on_mark="#ffffff",
+    lit="#00357a",
+    on_lit="#ffffff",
+    here="#ffe600",
+    todo="#6e6e6e",
+    done="#000000",
+    rapid="#a04800",
+    ghost="#a8a8a8",
+    centre="#7a2e6a",
+    tip="#9c0000",
+    estop="#a60d0d",
+)
+PALETTES = {palette.name: palette for palette in (DARK_PALETTE, LIGHT_PALETTE, CONTRAST_PALETTE)}
 # Colors of chart curves on the color ``panel``. Adjacent colors differ in lightness and in hue.
+_LIGHT_CURVES = (
+    *("#005f99", "#8f4e00", "#006a52", "#b32d00"),
+    *("#86347a", "#0a101b", "#5d6b00", "#3a3fb8"),
+)
 CURVE_COLORS = {
     "dark": (
         *("#74d4f7", "#f5b638", "#35c4a2", "#ff7f50"),
         *("#d6a2e8", "#f4f7fb", "#b5d36a", "#8f9bff"),
     ),
-    "light": (
-        *("#005f99", "#8f4e00", "#006a52", "#b32d00"),
-        *("#86347a", "#0a101b", "#5d6b00", "#3a3fb8"),
-    ),
+    "light": _LIGHT_CURVES,
+    "contrast": _LIGHT_CURVES,
 }

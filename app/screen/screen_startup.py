@@ -16,9 +16,9 @@ from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
 from app.desk.programs.first_program import load_first_program
+from app.desk.screen_settings import SYSTEM_THEME
 from app.screen import accessible
-from app.screen.color_palettes import PALETTES
-from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
+from app.screen.screen_theme import ScreenTheme, find_palette, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.message import Message
 
@@ -33,7 +33,7 @@ def run_screen(
     machine: str | None = None,
     program_file: str | None = None,
     offsets_file: str | None = None,
-    theme: str = "dark",
+    theme: str = SYSTEM_THEME,
     build_model: BuildModel | None = None,
     *,
     is_kiosk: bool = False,
@@ -43,6 +43,7 @@ def run_screen(
     - ``machine``: a machine file.
     - ``program_file``: a program to load at the start.
     - ``offsets_file``: an offsets file that replaces the stored offsets.
+    - ``theme``: the colors until the settings are read.
     - ``build_model``: function that creates the model. By default, the standard model is built. Its
       exception is raised here after the window has closed.
     - ``is_kiosk``: whether the window fills the screen and cannot be closed by hand.
@@ -51,7 +52,7 @@ def run_screen(
     app = _application(theme)
     # Otherwise Qt would post a quit event that remains after this event loop.
     app.setQuitOnLastWindowClosed(False)
-    window = MainWindow(ScreenTheme(PALETTES[theme]), app.quit)
+    window = MainWindow(ScreenTheme(find_palette(theme)), app.quit)
     window.is_kiosk = is_kiosk
     window.show_on_screen(app.primaryScreen())
     start = _Startup(window, build_model, program_file)
@@ -150,5 +151,5 @@ def _application(theme: str) -> QApplication:
     app.setDesktopFileName("turndesk")
     load_fonts()
     accessible.register_accessibility()
-    style_application(PALETTES[theme])
+    style_application(find_palette(theme))
     return app

@@ -14,6 +14,7 @@ from PySide6.QtGui import (
     QFont,
     QFontDatabase,
     QFontMetricsF,
+    QGuiApplication,
     QPaintDevice,
     QPainter,
     QPalette,
@@ -22,9 +23,10 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication
 
+from app.desk.screen_settings import SYSTEM_THEME
 from app.desk.status.machine_status import Tone
 from app.desk.translation import ENGLISH_CODE, Translate, set_translator, tr
-from app.screen.color_palettes import ColorPalette
+from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE, PALETTES, ColorPalette
 from app.screen.text_sizes import PanelSize, TextRole
 from app.screen.window_layout import FINGERTIP_PX
 from core.message import Message
@@ -287,6 +289,18 @@ class ThemedPainter(QPainter):
         self.setPen(self.theme.make_pen(line_color, width))
         self.setBrush(self.theme.get_color(fill_color) if fill_color else Qt.BrushStyle.NoBrush)
         self.drawRect(rect)
+
+
+def find_palette(theme_name: str) -> ColorPalette:
+    """Return the palette of a theme.
+
+    For ``SYSTEM_THEME``, this is the light palette if the operating system uses light colors, and otherwise
+    the dark palette. Raise KeyError if there is no such theme.
+    """
+    if theme_name != SYSTEM_THEME:
+        return PALETTES[theme_name]
+    is_light = QGuiApplication.styleHints().colorScheme() is Qt.ColorScheme.Light
+    return LIGHT_PALETTE if is_light else DARK_PALETTE
 
 
 def style_application(palette: ColorPalette) -> None:

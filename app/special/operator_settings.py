@@ -10,6 +10,7 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.persistence import Persistence
+from app.desk.screen_settings import SYSTEM_THEME
 from app.desk.status import formats
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.status.readouts import UNKNOWN_VALUE
@@ -166,7 +167,14 @@ YES_NO_NAMES = {
     "full_screen": ("FULL SCREEN", "WINDOW"),
     "first_job": ("SHOWN", "HIDDEN"),
 }
-VALUE_NAMES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
+VALUE_NAMES = {
+    "en": "ENGLISH",
+    "es": "ESPAÑOL",
+    SYSTEM_THEME: "AS THE SYSTEM",
+    "dark": "DARK",
+    "light": "LIGHT",
+    "contrast": "HIGH CONTRAST",
+}
 
 
 class ScreenSettingsFunction(SpecialFunction):

@@ -15665,6 +15665,11 @@
     </message>
     <message>
       <location filename="app/special/operator_settings.py" />
+      <source>AS THE SYSTEM</source>
+      <translation>COMO EL SISTEMA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
       <source>COLORS</source>
       <translation>COLORES</translation>
     </message>
@@ -15722,6 +15727,11 @@
       <location filename="app/special/operator_settings.py" />
       <source>HIDDEN</source>
       <translation>OCULTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/operator_settings.py" />
+      <source>HIGH CONTRAST</source>
+      <translation>ALTO CONTRASTE</translation>
     </message>
     <message>
       <location filename="app/special/operator_settings.py" />

@@ -372,7 +372,7 @@ def test_changes_of_settings_sounds_and_notes_are_logged(room: Room) -> None:
     sheet.select_next_paper_size()
     texts = [text for text, who in room.log("change") if who == "CARLA"]
     assert texts[:5] == [
-        wording("log.screen-setting", what="theme", before="dark", after="light"),
+        wording("log.screen-setting", what="theme", before="system", after="light"),
         wording("log.sound-setting", before=0, after=40, silent="nothing"),
         wording("log.notes", program="pin.nc", note="'soft jaws'"),
         wording("log.notes", program="pin.nc", note="'stop 12 mm'"),

@@ -22,7 +22,7 @@ from tests.screen.fake import FakeMachine
 from tests.texts import shows, text
 
 
-@pytest.mark.parametrize("theme", ["dark", "light"])
+@pytest.mark.parametrize("theme", ["system", "dark", "light", "contrast"])
 def test_failed_model_build_ends_screen_with_reason(theme: str) -> None:
     def broken() -> None:
         raise ValueError("lathe.toml: no axis X")

@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from types import SimpleNamespace
 
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
-from app.screen.color_palettes import CURVE_COLORS, DARK_PALETTE, PALETTES, ColorPalette
-from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, load_fonts, measure_text
+from app.desk.screen_settings import SYSTEM_THEME, ScreenSettings
+from app.screen.color_palettes import (
+    CONTRAST_PALETTE,
+    CURVE_COLORS,
+    DARK_PALETTE,
+    LIGHT_PALETTE,
+    PALETTES,
+    ColorPalette,
+)
+from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, find_palette, load_fonts, measure_text
+from tests.screen.lathe import Operator
 
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),
@@ -66,6 +77,58 @@ def test_known_contrast_ratios_are_calculated() -> None:
 @pytest.mark.parametrize(("ink", "ground"), TEXT)
 def test_text_has_readable_contrast(palette: ColorPalette, ink: str, ground: str) -> None:
     assert contrast(getattr(palette, ink), getattr(palette, ground)) >= 4.5
+
+
+@pytest.mark.parametrize(
+    ("ink", "ground"),
+    [
+        *TEXT,
+        *(
+            (tone, ground)
+            for tone in ("ready", "run", "pause", "wait", "alarm", "off", "mark", "lit")
+            for ground in ("ground", "panel")
+        ),
+        ("on_state", "estop"),
+    ],
+)
+def test_high_contrast_text_has_contrast_of_7(ink: str, ground: str) -> None:
+    """Level AAA of WCAG 2.2, for sunlight."""
+    assert contrast(getattr(CONTRAST_PALETTE, ink), getattr(CONTRAST_PALETTE, ground)) >= 7.0
+
+
+@pytest.mark.parametrize(
+    ("scheme", "palette"),
+    [
+        (Qt.ColorScheme.Light, LIGHT_PALETTE),
+        (Qt.ColorScheme.Dark, DARK_PALETTE),
+        (Qt.ColorScheme.Unknown, DARK_PALETTE),
+    ],
+)
+def test_theme_follows_the_system_until_the_operator_chooses(
+    monkeypatch: pytest.MonkeyPatch, scheme: Qt.ColorScheme, palette: ColorPalette
+) -> None:
+    hints = SimpleNamespace(colorScheme=lambda: scheme)
+    monkeypatch.setattr("app.screen.screen_theme.QGuiApplication", SimpleNamespace(styleHints=lambda: hints))
+    assert ScreenSettings().theme == SYSTEM_THEME
+    assert find_palette(SYSTEM_THEME) is palette
+    for name, chosen in PALETTES.items():
+        assert find_palette(name) is chosen
+
+
+@pytest.mark.parametrize("name", ["", "pink", "System"])
+def test_an_unknown_theme_is_rejected(name: str) -> None:
+    with pytest.raises(KeyError):
+        find_palette(name)
+
+
+def test_theme_key_selects_each_theme_in_turn(operator: Operator) -> None:
+    """The machine runs on a screen whose system reports no colors, so the first theme is dark."""
+    seen = []
+    for _ in range(4):
+        seen.append(operator.window.theme.palette.name)
+        operator.type("t")
+    assert seen == ["dark", "light", "contrast", "dark"]
+    assert operator.stage.desk.settings_store.current_settings.theme == "light"
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)

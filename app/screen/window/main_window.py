@@ -28,7 +28,7 @@ from app.desk.translation import get_language, tr
 from app.screen.color_palettes import PALETTES
 from app.screen.page_table import AUTOMATIC, PagePreloader
 from app.screen.panel import TouchPanel
-from app.screen.screen_theme import ScreenTheme, style_application, use_language
+from app.screen.screen_theme import ScreenTheme, find_palette, style_application, use_language
 from app.screen.text_sizes import make_panel_size
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
@@ -197,9 +197,11 @@ class MainWindow(QWidget):
             self.refresh()
 
     def toggle_theme(self) -> None:
-        """Switch between the dark and the light theme."""
+        """Select the theme that follows the shown theme, which then no longer follows the system."""
         if self.frame is not None:
-            self.frame.desk.apply_setting("theme", self.frame.desk.settings_store.find_next_choice("theme"))
+            names = tuple(PALETTES)
+            following = names[(names.index(self.theme.palette.name) + 1) % len(names)]
+            self.frame.desk.apply_setting("theme", following)
 
     def _apply_settings(self, frame: WindowFrame) -> None:
         """Apply the selected colors, language and window size."""
@@ -207,8 +209,9 @@ class MainWindow(QWidget):
         if settings.language != get_language():
             use_language(settings.language)
             frame.apply_theme()
-        if settings.theme != self.theme.palette.name:
-            self.theme.set_palette(PALETTES[settings.theme])
+        palette = find_palette(settings.theme)
+        if palette is not self.theme.palette:
+            self.theme.set_palette(palette)
             style_application(self.theme.palette)
             frame.apply_theme()
 
