@@ -23,6 +23,7 @@ from app.special.special_functions import SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.convert.source_options import SourceControl
+from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
@@ -73,9 +74,11 @@ class ConvertFunction(SpecialFunction):
     name = "CONVERT PROGRAM"
     use = "loaded program of another control, with preview"
 
-    def __init__(self, desk: Desk, machine: Machine, worker: LatestRequestWorker) -> None:
+    def __init__(
+        self, desk: Desk, machine: Machine, limits: ControlLimits, worker: LatestRequestWorker
+    ) -> None:
         super().__init__(desk)
-        self.machine, self.worker = machine, worker
+        self.machine, self.limits, self.worker = machine, limits, worker
         self.control: SourceControl | None = None  # None: recognized from the program
         self.settings = ConversionSettings()
         self.error_text = ""
@@ -165,7 +168,7 @@ class ConvertFunction(SpecialFunction):
             return
         self._requested, self._result, self.error_text = wanted, None, ""
         self.worker.enqueue_work(
-            partial(_convert, wanted, self.machine), partial(self._take, wanted), self._fail
+            partial(_convert, wanted, self.machine, self.limits), partial(self._take, wanted), self._fail
         )
 
     def _take(self, request: _Request, result: _Result) -> None:
@@ -258,9 +261,8 @@ class RecognitionNotice:
             self._desk.say("PROGRAM OF ANOTHER CONTROL. F10, CONVERT PROGRAM CONVERTS IT")
 
 
-def _convert(request: _Request, machine: Machine) -> _Result:
+def _convert(request: _Request, machine: Machine, limits: ControlLimits) -> _Result:
     """Convert and prove the program on the worker."""
-    from app.compose.machine.machine_setup import get_control_limits
     from core.extras.convert.conversion import convert_program
     from core.extras.convert.recognition import recognize_control
 
@@ -269,7 +271,7 @@ def _convert(request: _Request, machine: Machine) -> _Result:
     if control is None:
         return _Result(None)
     options = make_options(control, request.settings, machine)
-    return _Result(control, convert_program(lines, options, get_control_limits(machine)))
+    return _Result(control, convert_program(lines, options, limits))
 
 
 def _save(target: Path, text: str) -> Path:

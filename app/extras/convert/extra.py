@@ -38,11 +38,12 @@ class ConvertExtra(OptionalFeature):
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
         """Return CONVERT PROGRAM, which follows ACCESS LEVELS in the list of an OmniTurn lathe."""
+        from app.compose.machine.machine_setup import get_control_limits
         from app.extras.convert.convert_function import ConvertFunction
 
         if not _runs_omniturn(machine):
             return ()
-        return ((ConvertFunction(desk, machine, worker), "ACCESS LEVELS"),)
+        return ((ConvertFunction(desk, machine, get_control_limits(machine), worker), "ACCESS LEVELS"),)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         """Return the JSON outputs of ``turndesk convert``.
