@@ -38,7 +38,7 @@ ALIGN_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 MIN_TEXT_SIZE = 1.35  # Units: the smallest text.
 MIN_ROW_PX = 20.0  # Pixels: a line of text.
-_GROWN = 1.35  # Largest factor by which a text of a table is enlarged for the distance.
+_GROWN = 1.6  # Largest factor by which a text of a table is enlarged for the distance.
 _ROW_SHARE = {
     TextRole.TABLE: 0.9,
     TextRole.PROMPT: 0.95,

@@ -135,7 +135,9 @@ def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
         7.7
     )  # 1.1 times the row of 7 units
     assert look.find_em_height(5.0, TextRole.POSITION, 8.0) == 5.0  # never smaller than its least size
-    assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == pytest.approx(2.7)  # 1.35 times
+    needed = 16.29 / CAPITAL_HEIGHT_RATIO / 8.0
+    assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == pytest.approx(needed, rel=1e-3)
+    assert look.find_em_height(1.5, TextRole.TABLE, 80.0) == pytest.approx(2.4)  # 1.6 times
     assert look.find_em_height(1.5, TextRole.TABLE, 12.8) == pytest.approx(1.5)
     look.screen = PanelSize(2.0)
     assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == 2.0  # A large screen needs no more.
