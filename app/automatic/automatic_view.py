@@ -133,6 +133,7 @@ class AutomaticPage(Page):
         if loaded is self._loaded:
             return
         self._loaded = loaded
+        self.path_view.is_loading = loaded.is_busy
         lines: Sequence[str] = loaded.source.lines if loaded.source else _NO_LINES
         self.program_listing.error_text = loaded.error_text
         self.program_listing.show_source(lines, {d.line: d.message for d in loaded.blocking_errors if d.line})

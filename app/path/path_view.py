@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.translation import tr
 from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect, TipPosition
 from app.path.path_pointer_view import PathPointer
-from app.screen.panel import OnPress, Panel
+from app.screen.panel import OnPress, Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ class PathView(Panel):
     accessible_name = "PATH"
     title = "PATH"
     preserves_view = False  # whether adjusted projections remain when the picture changes
+    is_loading = RedrawingAttribute(False)  # A program is being read or drawn, so its path follows.
     shows_whole_approach = False  # whether the visible area includes all legs of an approach
 
     def __init__(
@@ -412,7 +413,7 @@ class PathView(Panel):
 
         look, panes = self.theme, self.panes
         if not panes:
-            why = tr("Load a program to see its path.")
+            why = tr("Loading the program.") if self.is_loading else tr("Load a program to see its path.")
             marks.draw_no_path(painter, look, self.inside(), why)
             return
         for pane in panes:

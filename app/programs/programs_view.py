@@ -210,6 +210,7 @@ class ProgramsPage(ListPage):
             self._lay_out()
         self.detail_panel.program = here
         self.detail_panel.part_thumbnail = model.preview.find_thumbnail(here)
+        self.path_view.is_loading = model.preview.is_busy
         self.detail_panel.error_text = (
             "DRAWING THE PREVIEW …" if model.preview.is_busy else model.preview.error_text
         )

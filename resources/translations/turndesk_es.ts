@@ -8065,6 +8065,11 @@
     </message>
     <message>
       <location filename="app/extras/access/sign_in.py" />
+      <source>WRONG PIN FOR {name}. TRY AGAIN</source>
+      <translation>PIN ERRÓNEO DE {name}. INTÉNTELO OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
       <source>WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S</source>
       <translation>PIN ERRÓNEO DE {name}. REINTENTE EN {seconds} S</translation>
     </message>
@@ -13057,6 +13062,11 @@
       <location filename="app/path/path_view.py" />
       <source>Load a program to see its path.</source>
       <translation>Cargue un programa para ver su trayectoria.</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
+      <source>Loading the program.</source>
+      <translation>Cargando el programa.</translation>
     </message>
     <message>
       <location filename="app/path/path_view.py" />

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 from PySide6.QtGui import QColor, QImage, QPainter
+from pytestqt.qtbot import QtBot
 
 from app.path.path_layers_view import MAX_SMOOTH_CHORDS, PIXELS_PER_SLICE, LineStyle, PathLayers, make_polygon
 from app.path.path_marks_view import (
@@ -29,6 +30,7 @@ from app.path.path_projection import (
     project_runs,
     rasterize_chords,
 )
+from app.path.path_view import PathView
 from app.path.polyline import Polyline, Stroke
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
@@ -276,3 +278,16 @@ def test_a_label_moves_into_the_pane() -> None:
     room = QRectF(0.0, 0.0, 400.0, 200.0)
     assert move_box_inside(QRectF(390.0, -5.0, 40.0, 20.0), room) == QRectF(360.0, 0.0, 40.0, 20.0)
     assert move_box_inside(QRectF(50.0, 50.0, 40.0, 20.0), room) == QRectF(50.0, 50.0, 40.0, 20.0)
+
+
+def test_view_without_a_path_states_whether_a_program_is_loading(qtbot: QtBot) -> None:
+    view = PathView(ScreenTheme(DARK_PALETTE))
+    qtbot.addWidget(view)
+    view.resize(500, 300)
+    view.show()
+    shown = {}
+    for view.is_loading in (False, True):
+        view.grab()
+        shown[view.is_loading] = view.describe_content()
+    assert "Load a program to see its path." in shown[False]
+    assert "Loading the program." in shown[True]

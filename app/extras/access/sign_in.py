@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -65,7 +66,7 @@ class PinSignIn:
         left = self.wrong_pins.get_remaining_delay(self.access.read_time_s())
         if left > 0.0:
             self.access.say(
-                tr(Message("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S", seconds=f"{left:.0f}"))
+                tr(Message("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S", seconds=math.ceil(left)))
             )
         elif not row.has_pin:
             self.access.say(
@@ -122,8 +123,11 @@ class PinSignIn:
                 )
             )
             left = self.wrong_pins.get_remaining_delay(self.access.read_time_s())
-            text = tr("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S")
-            self.access.say(tr(Message(text, name=mark_untranslated(row.name), seconds=f"{left:.0f}")))
+            name, seconds = mark_untranslated(row.name), math.ceil(left)
+            text = Message("WRONG PIN FOR {name}. TRY AGAIN", name=name)
+            if seconds:
+                text = Message("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S", name=name, seconds=seconds)
+            self.access.say(tr(text))
         self._keep(_WRONG, self.wrong_pins.wrong_pin_count or None)
 
     # --- time ----------------------------------------------------------------------------------------

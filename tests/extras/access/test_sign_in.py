@@ -72,6 +72,19 @@ def test_repeated_wrong_pins_increase_the_delay_and_are_logged(room: PinRoom) ->
     assert room.log("access")[2] == (wording("log.wrong-pin", name="BEN", count=3), "operator")
 
 
+def test_first_wrong_pin_states_no_delay_and_a_later_one_rounds_up(room: PinRoom) -> None:
+    """The first two attempts are free; after the third, 5 s less 4.7 s leave 0.3 s, so 1 s is shown."""
+    room.enter_people()
+    room.sign_in("BEN", "0815")
+    assert shows(room.desk.prompt_notice, "desk.wrong-pin-now")
+    room.sign_in("BEN", "0815")
+    room.sign_in("BEN", "0815")
+    room.at += 4.7
+    room.sign_in("BEN")
+    assert room.access.user_name == ""
+    assert room.desk.prompt_notice == wording("desk.too-many-pins", seconds=1)
+
+
 def test_wrong_pin_count_survives_a_restart(room: PinRoom) -> None:
     room.enter_people()
     for _ in range(3):
