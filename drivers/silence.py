@@ -26,9 +26,9 @@ _SPINDLE_STOP_S = 8.0  # Maximum wait in s for a spindle to brake.
 
 
 class SilenceTimer:
-    """A timer of the silence of another process.
+    """Timer of the time since the last message of another process.
 
-    One check counts at most ``max_step_s``.
+    Each check adds at most ``max_step_s``, so that a delay of this process counts only in part.
     """
 
     def __init__(self, timeout_s: float, now: float = 0.0, max_step_s: float = math.inf) -> None:
@@ -85,7 +85,7 @@ class SilenceStop(SilenceTimer):
         return self._switched_off_at is not None
 
     def advance(self, now: float, *, has_ended: bool) -> None:
-        """Check the silence, and execute the next steps if the control is silent or has ended."""
+        """Execute the next steps of the stop if the control is silent for too long or has ended."""
         steps = self._steps
         if not (self.check(now) or has_ended):
             self._switched_off_at = None

@@ -17,7 +17,7 @@ from core.message import Message, join_messages
 
 
 class ProductionPlan(Protocol):
-    """Plan of an optional feature for the next parts, which can prevent their start."""
+    """An optional feature that plans the next parts and can prevent their start."""
 
     def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return why the next part must not start, or an empty string."""

@@ -347,7 +347,7 @@ class ProgramRun:
         return self.cycle.modal if self.cycle is not None else self.status.modal_state
 
     def _end_functions(self) -> None:
-        """Stop the spindle, and turn off all outputs except the collet, because of M30."""
+        """Stop the spindle and turn off all outputs except the collet, as M30 requires."""
         context = self._context
         context.spindle.stop()
         for name, on in context.ports.io.get_outputs().items():

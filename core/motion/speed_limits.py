@@ -390,9 +390,9 @@ def _radii(piece: PathPieces, owner: BlockTable, at: FloatArray) -> FloatArray:
 
 
 def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> FloatArray:
-    """Return the distances along the piece at which the radius-dependent rpm reaches a dividing level.
+    """Return the distances along the piece at which the spindle speed reaches a limit between two levels.
 
-    The levels form a geometric series.
+    The spindle speed depends on the radius. The levels form a geometric series.
     """
     if piece.curvatures[0] == 0.0:
         x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]

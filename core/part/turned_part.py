@@ -227,9 +227,9 @@ class TurnedPart:
     # --- cuts
 
     def cut_outside(self, first_column: int, radii: FloatArray, *, remove: bool = True) -> Cut:
-        """Return all material further out than ``radii`` (m,) from column ``first_column`` on.
+        """Return the material outside ``radii``, one for each column from ``first_column`` on.
 
-        The material is removed if ``remove`` is True.
+        If ``remove`` is True, this material is also removed.
         """
         there = slice(first_column, first_column + len(radii))
         met = NO_CUT

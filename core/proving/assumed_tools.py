@@ -352,7 +352,8 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 def parse_tap_size(comment: str) -> tuple[float, float]:
     """Return the diameter and pitch in mm of a tap named in a comment, with 0 for a missing value.
 
-    Examples are 1/4-20, 10-32 and M6X1, or 1 4 20, 10 32 and 20 TPI with the characters of the control.
+    Examples are 1/4-20, 10-32 and M6X1. The forms 1 4 20, 10 32 and 20 TPI use only characters that the
+    control accepts in comments.
     """
     text = _normalize_comment(comment)
     if found := re.search(_TAP_METRIC, text):

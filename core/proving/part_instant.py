@@ -128,9 +128,9 @@ def find_hit(
 def _clamping_hit(
     finding: Diagnostic, cut: Cut | None, clamping: Clamping | None, stock: Stock | None
 ) -> MaterialHit | None:
-    """Return the hit of a tool in the chuck, collet or tailstock.
+    """Return the collision of a tool with the chuck, collet or tailstock.
 
-    The hit extends from the outside of this body to the depth of the cut.
+    The collision extends from the outside of this body to the depth of the cut.
     """
     if cut is None or clamping is None or stock is None:
         return None

@@ -104,7 +104,7 @@ def _names(numbers: Iterable[int]) -> str:
 
 
 class PartSimulation:
-    """The simulation of the part while the program makes it."""
+    """Simulation of the part while a program is proved."""
 
     def __init__(
         self, tools: ProgramTools, stock: Stock | None, part_settings: PartSettings | None = None

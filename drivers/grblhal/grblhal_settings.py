@@ -15,7 +15,10 @@ _MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
 
 
 def find_required_settings(c: GrblController, there: Mapping[int, str]) -> dict[int, float | str]:
-    """Return the required settings for a controller that reports these settings."""
+    """Return the settings that TurnDesk requires from a controller.
+
+    ``there`` contains the settings that the controller reports now.
+    """
     wanted: dict[int, float | str] = dict(c.config.table.settings)
     always = c.identity is not None and c.identity.is_lathe_mode and _MODE not in there
     if always and wanted.get(_MODE) == _LATHE:

@@ -37,7 +37,10 @@ class ConvertExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return CONVERT PROGRAM, which follows ACCESS LEVELS in the list of an OmniTurn lathe."""
+        """Return the special function CONVERT PROGRAM of an OmniTurn lathe.
+
+        It is listed after ACCESS LEVELS.
+        """
         from app.compose.machine.machine_setup import get_control_limits
         from app.extras.convert.convert_function import ConvertFunction
 

@@ -193,7 +193,7 @@ class QueuedPlans:
         return self._tracks[0] if self._tracks else None
 
     def replace_plans(self, time_s: float, plans: Sequence[QueuedPlan], now: float) -> None:
-        """Replace the plans from ``time_s`` on, and drop the plans that have ended at ``now``."""
+        """Replace the plans from ``time_s`` on, and drop the plans that ended before ``now``."""
         kept = [track for track in self._tracks if track.start_time_s < time_s]
         over = max((i for i, track in enumerate(kept) if track.start_time_s <= now), default=0)
         self._tracks = [*kept[over:], *plans]

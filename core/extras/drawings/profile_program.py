@@ -270,10 +270,11 @@ def calculate_end_extension(tool: ToolShape | None) -> float:
 
 
 def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
-    """Yield the contour, preceded by a move up the face if the contour starts into the material.
+    """Yield the contour, preceded by a move along X if the contour starts into the material.
 
-    This direction is toward the axis outside, and away from the axis in a bore. Roughing rejects a contour
-    that starts in this direction, because the return path would cross the contour.
+    Into the material means toward the axis for an outside contour, and away from the axis in a bore.
+    Roughing rejects a contour that starts in this direction, because the return path would cross the
+    contour.
     """
     side = 1.0 if outside else -1.0
     r, z = elements[0].start

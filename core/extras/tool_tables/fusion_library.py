@@ -240,7 +240,7 @@ def _choose_insert(shape: str, code: str, recognized: str, values: dict[str, Fie
 
 
 def _is_same_insert(one_code: str, other_code: str) -> bool:
-    """Return whether two codes differ at most by the rounding of inches."""
+    """Return whether two insert codes are equal, apart from the rounding of sizes in inches."""
     one, other = decode_insert_code(one_code), decode_insert_code(other_code)
     sizes = ((one.inscribed_circle, other.inscribed_circle), (one.nose_radius, other.nose_radius))
     letters = (one.shape, one.clearance_angle) == (other.shape, other.clearance_angle)

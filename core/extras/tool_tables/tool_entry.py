@@ -151,7 +151,7 @@ class TableReader:
     def get_unit_mm(self, place: str) -> float:
         """Return the size of the file's length unit in mm.
 
-        If the unit is not specified, a mistake is added and the result is 1.
+        If the unit is not specified, this mistake is added to ``mistakes``, and the result is 1.
         """
         if self.options.unit:
             return MM_PER_UNIT[self.options.unit]

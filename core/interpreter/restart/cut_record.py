@@ -227,10 +227,10 @@ def _record(rows: _Rows, blocks: int) -> CutRecord:
 def _faces(
     feeds: BoolArray, x0: FloatArray, x: FloatArray, z: FloatArray, tool: IntArray, radius: float
 ) -> dict[int, float]:
-    """Return for each tool the minimum Z, in front of all cuts, at which a rapid moves along X.
+    """Return, by tool, the smallest Z of its rapids along X that pass in front of all cuts.
 
-    The rapid ends inside the radius of the cuts. Only the end of a cut is certainly in material, because
-    its start may be in air.
+    Only rapids that end inside the radius of the cuts count. The comparison uses the ends of the cuts,
+    because the start of a cut may be in air.
     """
     cut = _greatest(z[feeds], inf)
     within = max(radius - SAME_POINT_MM, _CENTERLINE_TOLERANCE_MM)

@@ -151,7 +151,7 @@ def _compiled() -> tuple[tuple[re.Pattern[str], str, Callable[[re.Match[str]], s
 
 
 def find_intended_code(code: str) -> IntendedCode | None:
-    """Return the mistake in a line that is written for another control, or None for any other line."""
+    """Return the code of another control that a line contains, with a message, or None if it has none."""
     for form, message, hint in _compiled():
         match = form.search(code)
         if match is not None:

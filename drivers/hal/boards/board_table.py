@@ -290,7 +290,7 @@ def _missing(place: str, expected: str) -> FileFinding:
 
 
 def _number_finding(path: str, number: int, expected: str) -> FileFinding:
-    """Return the finding for a number that is out of range, or negative because it is missing."""
+    """Return the finding for a number that is out of range, or for a missing number, which is negative."""
     if number < 0:
         return _missing(path, expected)
     return FileFinding(path, str(number), Message("expected {expected}", expected=expected))

@@ -395,7 +395,10 @@ def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: 
 
 
 def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, is_inside: bool) -> float:
-    """Return the final diameter of a tool tip with the radius ``nose``; 0 means the standard profile."""
+    """Return the diameter that the tip of the tool reaches.
+
+    ``nose`` is its radius, or 0 for the standard profile.
+    """
     if nose:
         sharp = _V55 if angle == 55.0 else V60_HEIGHT_FACTOR
         high = sharp * pitch - 2.0 * nose * (1.0 / math.sin(math.radians(angle / 2.0)) - 1.0)

@@ -62,7 +62,7 @@ class HolePositions(NamedTuple):
 def read_hole(cycle: CycleCall) -> HolePositions:
     """Return the hole of a cycle call.
 
-    Raises ProgramError if G17 is not active, or, naming the parameter, if a parameter is invalid.
+    Raises ProgramError if G17 is not active or if a parameter is invalid. The error names the parameter.
     """
     if cycle.state.plane != 17:
         text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
