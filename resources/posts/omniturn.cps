@@ -323,8 +323,7 @@ function onCyclePoint(x, y, z) {
     writeHole("G83" + formatWord("Z", cycle.bottom) + formatWord("K", cycle.incrementalDepth));
     break;
   case "counter-boring":
-    moveRapid(0, cycle.clearance);
-    moveRapid(0, cycle.retract);
+    approachHole();
     moveFeed(0, cycle.bottom, cycle.feedrate);
     if (cycle.dwell > 0) {
       onDwell(cycle.dwell);
@@ -336,10 +335,18 @@ function onCyclePoint(x, y, z) {
   }
 }
 
-/** Writes a drilling cycle between its rapids; the cycle ends at its start point. */
-function writeHole(words) {
+/** Moves to R above the hole; below the clearance plane first in Z, so that the tool does not cross the part. */
+function approachHole() {
+  if (lastX !== undefined && lastZ < cycle.clearance) {
+    moveRapid(lastX, cycle.clearance);
+  }
   moveRapid(0, cycle.clearance);
   moveRapid(0, cycle.retract);
+}
+
+/** Writes a drilling cycle between its rapids; the cycle ends at its start point. */
+function writeHole(words) {
+  approachHole();
   writeLine(formatFeed(cycle.feedrate) + words);
   moveRapid(0, cycle.clearance);
 }

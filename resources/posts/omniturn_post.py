@@ -238,6 +238,8 @@ class Writer:
         if bottom >= plane:
             self.reject(name, "the bottom of the hole is not below R")
         high = max(plane, start) if start is not None else plane
+        if start is not None and start < plane:
+            self.rapid(self.x, plane)  # first in Z, so that the tool does not cross the part on its way to X0
         self.rapid(0.0, high)
         self.rapid(0.0, plane)
         if name in {"G73", "G83"}:

@@ -107,6 +107,14 @@ def test_cycle_with_g99_stays_at_r() -> None:
     assert drilled == ["X0", "Z1", "G94F60G81Z-10", "G00Z2"]  # the last line is the end of the program
 
 
+@pytest.mark.parametrize("state", ["G98", "G99"])
+def test_tool_below_r_moves_to_r_in_z_before_it_moves_to_the_hole(state: str) -> None:
+    """After a cut to Z -10 at X 5, the tool moves to R 1 at X 5. A diagonal to X 0 would cross the part."""
+    cut, cycle = ("G1", {"Z": -10.0, "F": 1.0}), ("G81", {"X": 0.0, "Z": -8.0, "R": 1.0, "F": 1.0})
+    lines = body(cut, (state, {}), cycle)
+    assert lines == ["G94F60Z-10", "G00Z1", "X0", "G94F60G81Z-8", "G00Z2"]
+
+
 def test_thread() -> None:
     """Drive line X 10, crest at X 9 (I -1), first pass J 0.2, depth K 0.9: X 17.6, then X 16.2."""
     start = ("G0", {"X": 10.0, "Z": 5.0})

@@ -97,7 +97,26 @@ CYCLE = {"clearance": 0.2, "retract": 0.1, "bottom": -0.5, "feedrate": 0.004}
 def test_drilling_cycles(tmp_path: Path, kind: str, values: dict[str, float], lines: list[str]) -> None:
     cycle: Call = ["cycle", kind, {**CYCLE, **values}]
     drilled = body(tmp_path, cycle, ["onCyclePoint", 0, 0, -0.5], ["onCycleEnd"])
-    assert drilled == ["X0Z.2", "Z.1", *lines, "G00Z.2"]
+    assert drilled == ["Z.2", "X0", "Z.1", *lines, "G00Z.2"]
+
+
+def test_tool_below_the_clearance_plane_moves_first_in_z(tmp_path: Path) -> None:
+    """After a cut to Z -.4 at X 1, the diagonal to X 0 Z .2 would cross the part."""
+    cut: Call = ["onLinear", 1.0, 0, -0.4, 0.005]
+    drilled = body(tmp_path, cut, ["cycle", "drilling", CYCLE], ["onCyclePoint", 0, 0, -0.5], ["onCycleEnd"])
+    assert drilled == ["G95F.005Z-.4", "G00Z.2", "X0", "Z.1", "G95F.004G81Z-.5", "G00Z.2"]
+
+
+def test_tool_above_the_clearance_plane_moves_directly_to_the_hole(tmp_path: Path) -> None:
+    """Each point of the diagonal from X 1 Z .3 to X 0 Z .2 is above the clearance plane."""
+    drilled = body(
+        tmp_path,
+        ["onRapid", 1.0, 0, 0.3],
+        ["cycle", "drilling", CYCLE],
+        ["onCyclePoint", 0, 0, -0.5],
+        ["onCycleEnd"],
+    )
+    assert drilled[:3] == ["Z.3", "X0Z.2", "Z.1"]
 
 
 def test_thread_passes_return_to_the_start_point(tmp_path: Path) -> None:
