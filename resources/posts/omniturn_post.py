@@ -177,6 +177,7 @@ class Writer:
         """Write an arc of the XZ plane; one of more than 180° is divided at its middle.
 
         G02 and G03 are exchanged, because FreeCAD looks at the plane with X+ up, and OmniTurn with X+ down.
+        An arc that ends at its start because of rounding is not written. The control would cut a full circle.
         """
         if x is None or z is None or self.x is None or self.z is None:
             self.reject(name, "the position before this arc is unknown")
@@ -186,6 +187,8 @@ class Writer:
         radius = math.hypot(self.x - center_x, self.z - center_z)
         if radius < _NEAR_MM or abs(math.hypot(x - center_x, z - center_z) - radius) > _ARC_TOLERANCE_MM:
             self.reject(name, "the end of the arc is not on its circle")
+        if 0.0 < math.hypot(x - self.x, z - self.z) < _NEAR_MM:
+            return
         sign = 1.0 if name == "G3" else -1.0  # seen with Z to the right and X+ up
         begin = math.atan2(self.x - center_x, self.z - center_z)
         sweep = sign * (math.atan2(x - center_x, z - center_z) - begin) % (2.0 * math.pi) or 2.0 * math.pi
@@ -201,7 +204,8 @@ class Writer:
                 )
             )
             words = self.word("I", center_x - self.x) + self.word("K", center_z - self.z)
-            self.cut(name, end_x, end_z, feed, ("G02" if name == "G3" else "G03") + words)
+            if self.position(end_x, end_z):
+                self.cut(name, end_x, end_z, feed, ("G02" if name == "G3" else "G03") + words)
 
     # --- tools, spindle, cycles
 

@@ -86,6 +86,32 @@ def test_arc_of_more_than_half_a_turn_is_divided() -> None:
     assert lines[1:3] == ["G02X14.2426Z-5.1213I0K-3", "G02X4Z-3I-2.1213K2.1213"]
 
 
+def test_full_circle_is_divided() -> None:
+    """Around X 5 Z -3 from X 5 Z 0; the middle is at X 5 Z -6."""
+    lines = body(("G1", {"Z": 0.0, "F": 2.0}), ("G3", {"X": 5.0, "Z": 0.0, "I": 0.0, "K": -3.0, "F": 2.0}))
+    assert lines[1:3] == ["G02X10Z-6I0K-3", "G02X10Z0I0K3"]
+
+
+@pytest.mark.parametrize("name", ["G2", "G3"])
+@pytest.mark.parametrize(
+    "end",
+    [
+        {"X": 5.0 + 1e-12, "Z": 0.0},  # rounding error of the CAM program
+        {"X": 5.0 - 1e-12, "Z": 0.0},
+        {"X": 5.0, "Z": 5e-7},
+    ],
+)
+def test_arc_that_ends_at_its_start_is_not_a_full_circle(name: str, end: dict[str, float]) -> None:
+    lines = body(("G1", {"Z": 0.0, "F": 2.0}), (name, {**end, "I": 0.0, "K": -3.0, "F": 2.0}))
+    assert lines == ["G94F120Z0", "G00Z2"]
+
+
+def test_arc_below_the_resolution_is_not_a_full_circle() -> None:
+    """A chord of 0.00002 mm is less than the last decimal, so its ends have the same words."""
+    short = ("G3", {"X": 5.00002, "Z": 0.0, "I": 0.0, "K": -3.0, "F": 2.0})
+    assert body(("G1", {"Z": 0.0, "F": 2.0}), short) == ["G94F120Z0", "G00Z2"]
+
+
 @pytest.mark.parametrize(
     ("cycle", "lines"),
     [
