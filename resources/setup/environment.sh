@@ -279,17 +279,27 @@ not_fetched() {
 # What is locked is whole, so pip resolves nothing: an older one would look at the newest coverage[toml] first, which has no hash.
 LOCKED="--require-hashes --no-deps"
 
+# has_locked_packages FILE: whether the environment contains all packages of the file. Needs no network.
+has_locked_packages() {
+    # shellcheck disable=SC2086
+    right_environment && pip_install --no-index $LOCKED --only-binary :all: -r "$1"
+}
+
 # python_environment SET: makes or renews the environment by locked-SET.txt when that or TurnDesk's own list has changed.
 python_environment() {
     locked="$ROOT/resources/setup/locked-$1.txt"
     stamp="$PYTHON_ENV/.turndesk-$1"
     wanted=$(cat "$ROOT/pyproject.toml" "$locked" "$ROOT/setup.cfg" | cksum)
     right_environment && [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
-    has_own_wheels || may_fetch "Python packages, about 130 MB"
-    right_environment || new_environment
-    say "Setting up Python packages in $PYTHON_ENV (about 130 MB to fetch, once)"
-    # shellcheck disable=SC2086
-    pip_install $LOCKED --only-binary :all: -r "$locked" || not_fetched
+    if has_own_wheels || has_network; then
+        right_environment || new_environment
+        say "Setting up Python packages in $PYTHON_ENV (about 130 MB to fetch, once)"
+        # shellcheck disable=SC2086
+        pip_install $LOCKED --only-binary :all: -r "$locked" || not_fetched
+    else
+        has_locked_packages "$locked" || may_fetch "Python packages, about 130 MB"
+        say "This computer has no network, and needs none: the Python packages are installed."
+    fi
     pip_install --no-deps --no-build-isolation -e "$ROOT" || not_fetched
     said=$({ printf '%s\n' "$wanted" | LC_ALL=C cat >"$stamp"; } 2>&1) || not_fetched
 }

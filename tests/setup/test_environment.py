@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import zipfile
+from importlib.metadata import version as metadata_version
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -355,16 +356,54 @@ def test_root_without_network_is_told_before_anything_is_tried(tmp_path: Path) -
     assert not (tmp_path / "asked").exists()
 
 
+def set_up_offline(shop: Path) -> subprocess.CompletedProcess[str]:
+    """Set up without a network and without a folder of wheels."""
+    script = "has_own_wheels() { return 1; }; python_environment desk"
+    return tell(script, ROOT=str(shop), ROUTES=routes(shop / "net"))
+
+
 def test_no_python_environment_is_made_without_network(shop: Path) -> None:
     (shop / ".venv" / "bin" / "python").unlink()
-    told = tell(
-        "has_own_wheels() { return 1; }; python_environment desk",
-        ROOT=str(shop),
-        ROUTES=routes(shop / "net"),
-    )
+    told = set_up_offline(shop)
     assert told.returncode == 2
     assert "must be downloaded: Python packages" in told.stderr
     assert "Making the Python environment" not in told.stderr
+
+
+@needs_pip
+def test_clone_updated_without_network_starts_if_the_packages_are_installed(shop: Path) -> None:
+    """The stamp is that of another pyproject.toml; the locked package is pip itself, which is installed."""
+    product = '[project]\nname = "turndesk"\nversion = "1"\n[tool.setuptools]\npy-modules = []\n'
+    (shop / "pyproject.toml").write_text(product, encoding="utf-8")
+    (shop / ".venv" / ".turndesk-desk").write_text("1 1\n", encoding="utf-8")
+    locked = f"pip=={metadata_version('pip')} --hash=sha256:{'0' * 64}\n"
+    (shop / "resources/setup/locked-desk.txt").write_text(locked, encoding="utf-8")
+    told = set_up_offline(shop)
+    assert told.returncode == 0, told.stderr
+    assert "the Python packages are installed" in told.stderr
+    assert (shop / ".venv" / ".turndesk-desk").read_text(encoding="utf-8") != "1 1\n"
+
+
+@needs_pip
+@pytest.mark.parametrize("package", ["tiny==1.0", "pip==0.1"], ids=["missing", "other version"])
+def test_missing_package_is_reported_without_network(shop: Path, package: str) -> None:
+    locked = f"{package} --hash=sha256:{'0' * 64}\n"
+    (shop / "resources/setup/locked-desk.txt").write_text(locked, encoding="utf-8")
+    told = set_up_offline(shop)
+    assert told.returncode == 2
+    assert "must be downloaded: Python packages" in told.stderr
+    assert not (shop / ".venv" / ".turndesk-desk").exists()
+
+
+def test_no_index_is_asked_without_network(shop: Path) -> None:
+    """Without the option, pip tries again for about 40 s before it fails."""
+    asked = shop / "asked"
+    python = shop / ".venv" / "bin" / "python"
+    asks = f'[ "$1" = -m ] && {{ echo "$@" >>"{asked}"; exit 1; }}\n'
+    executable(python, f'#!/bin/sh\n{asks}exec "{sys.executable}" "$@"\n')
+    assert set_up_offline(shop).returncode == 2
+    (words,) = asked.read_text(encoding="utf-8").splitlines()
+    assert "--no-index" in words.split()
 
 
 @needs_pip
