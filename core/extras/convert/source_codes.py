@@ -20,7 +20,9 @@ _LEFT_OUT_M_OF_HAAS = frozenset({12, 13, 31, 32, 33, 76, 77, 83, 84, 85, 86, 88,
 _STOPS = frozenset({0, 1, 2, 3, 4, 5, 9, 30, 60})
 _C_AXIS = frozenset({7.1, 12.1, 107, 112, 12, 16, 12.2})
 _PRESET_CANCEL = frozenset({92.1, 92.2})
-_WITH_WORDS = {64: "PQ", 9: "", 61: "", 22: "XZIK", 25: "", 26: "PQRI"}
+_WITH_WORDS = {64: "PQ", 22: "XZIK", 26: "PQRI", 50.1: "XZ"}
+LEFT_OUT_WITH_AXES = frozenset({22, 50.1})
+"""Codes whose X and Z are not an end point: G22 with travel limits, and G50.1 with mirrored axes."""
 _AXES = {"U": "X", "W": "Z"}
 ROTARY_LETTERS = "CHABYV"
 
@@ -93,16 +95,17 @@ def _select_other_mode(state: SourceState, statement: SourceStatement, word: Sou
     elif code in _PRESET_CANCEL and state.has_preset:
         cancel_preset(state, word)
         return
+    words = [word, *(each for each in statement.words if each.letter in _WITH_WORDS.get(code, ""))]
+    text = " ".join(each.text for each in words)
     if (code in _ALWAYS_ACTIVE or code in _PRESET_CANCEL) and is_mode(state, code):
-        state.add_note(word, "no-change", word=word.text)
+        state.add_note(word, "no-change", word=text)
     elif code in _LEFT_OUT:
-        words = [word, *(each for each in statement.words if each.letter in _WITH_WORDS.get(int(code), ""))]
-        state.add_warning(word, "left-out", word=" ".join(each.text for each in words))
+        state.add_warning(word, "left-out", word=text)
 
 
 def get_left_out_letters(statement: SourceStatement) -> str:
     """Return the letters of the words that belong to the left-out codes of a line."""
-    return "".join(_WITH_WORDS.get(int(each.value), "") for each in statement.find_words("G"))
+    return "".join(_WITH_WORDS.get(each.value, "") for each in statement.find_words("G"))
 
 
 def _select_work_offset(state: SourceState, word: SourceWord) -> None:

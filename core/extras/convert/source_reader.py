@@ -12,6 +12,7 @@ from core.extras.convert.path_steps import PathStep, StepKind
 from core.extras.convert.source_angles import find_angle_target, is_angle_word
 from core.extras.convert.source_arcs import append_arc
 from core.extras.convert.source_codes import (
+    LEFT_OUT_WITH_AXES,
     ROTARY_LETTERS,
     check_repeated_words,
     execute_mode,
@@ -126,19 +127,30 @@ class SourceReader:
         ):
             raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
         state.feed = word.value * state.get_unit_mm(word)
+        if state.source_control.is_fanuc:
+            state.last_lead_mm = 0.0  # F is one value on Fanuc controls, so that the next thread needs F.
         most = state.options.max_feed_mm_min
         if not state.is_feed_per_rev and state.feed > most:
             state.add_warning(word, "feed-limited", word=word.text)
             state.feed = most
 
     def _is_lead(self, statement: SourceStatement) -> bool:
-        """Return whether F of this line is the lead of a thread, which Fanuc programs in F."""
+        """Return whether F of this line is the lead of a thread, which Fanuc programs in F.
+
+        It is the lead on a line with a thread code, and on a line that continues an active thread code.
+        """
         if not self.state.source_control.is_fanuc:
             return False
         code = 92 if self.state.source_control.has_system_a else 78
         if statement.has_g(32, 33, 76, code):
             return True
-        return self.state.motion_code in {32, 33, code} and not statement.has_g(0, 1, 2, 3, 90, 94, 77, 79)
+        has_axes = any(each.letter in "XZUW" for each in statement.words)
+        others = [each for each in statement.find_words("G") if self._uses_axes(each)]
+        return self.state.motion_code in {32, 33, code} and has_axes and not others
+
+    def _uses_axes(self, word: SourceWord) -> bool:
+        """Return whether a G code is a move, a cycle or another code with axis words."""
+        return word.value in {0, 1, 2, 3} or self._cycles.is_modal(word.value) or self._is_one_shot(word)
 
     # --- moves
 
@@ -157,7 +169,7 @@ class SourceReader:
         self._nose_codes(statement)
         if one_shot:
             self._require_no_corner()
-            self._execute_one_shot(statement, one_shot[0])
+            self._execute_one_shot(statement, one_shot[0], motion)
             return
         axes = [each for each in statement.words if each.letter in state.source_control.axis_letters]
         if self._cycles.is_modal(state.motion_code):
@@ -204,6 +216,7 @@ class SourceReader:
         code, control = word.value, self.state.source_control
         return (
             code in {4, 28, 30, 53}
+            or code in LEFT_OUT_WITH_AXES
             or (code == 50 and control.is_fanuc)
             or (code == 92 and not control.has_system_a)
             or self._cycles.is_one_shot(code)
@@ -299,9 +312,13 @@ class SourceReader:
 
     # --- codes that act only on their line
 
-    def _execute_one_shot(self, statement: SourceStatement, word: SourceWord) -> None:
+    def _execute_one_shot(
+        self, statement: SourceStatement, word: SourceWord, motion: Sequence[SourceWord]
+    ) -> None:
         code = word.value
-        if code == 4:
+        if code in LEFT_OUT_WITH_AXES:
+            self._leave_out_axes(statement, word, motion)
+        elif code == 4:
             self._dwell(statement, word)
         elif code in {28, 30}:
             self._home(statement, word)
@@ -311,6 +328,16 @@ class SourceReader:
             self._cycles.execute_one_shot_cycle(statement, word)
         else:
             self._preset(statement, word)
+
+    def _leave_out_axes(
+        self, statement: SourceStatement, word: SourceWord, motion: Sequence[SourceWord]
+    ) -> None:
+        """Check the words of a code that is left out. Raises ProgramError if they may be a move."""
+        self._only(statement, f"GMSTFN{get_left_out_letters(statement)}")
+        if motion and any(each.letter in "XZ" for each in statement.words):
+            raise make_error(
+                word.line_number, word.column, "word-twice", word=motion[-1].text, other=word.text
+            )
 
     def _dwell(self, statement: SourceStatement, word: SourceWord) -> None:
         state = self.state
@@ -372,7 +399,7 @@ class SourceReader:
         state = self.state
         self._only(statement, "GMSTXZ" + ("UW" if state.source_control.is_fanuc else ""))
         if not any(each.letter in "XZUW" for each in statement.words):
-            if statement.find_word("S") is None:
+            if statement.find_word("S") is None or state.source_control is SourceControl.LINUXCNC:
                 raise make_error(code.line_number, code.column, "cycle-word", word="X Z")
             return
         for each in statement.words:

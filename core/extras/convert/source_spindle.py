@@ -55,13 +55,18 @@ def _select_mode(state: SourceState, statement: SourceStatement) -> SpindleState
 
 
 def _set_speed(state: SourceState, statement: SourceStatement, spindle: SpindleState) -> SpindleState:
-    """Return the spindle state after S and the maximum rpm. Raises ProgramError for a negative speed."""
+    """Return the spindle state after S and the maximum rpm. Raises ProgramError for a negative speed.
+
+    S is the maximum rpm in G50, and in G92 except in system A. Old programs of system B use G50 too.
+    """
     control = state.source_control
-    limit = statement.has_g(50) if control.has_system_a else statement.has_g(92)
+    limit = (control.is_fanuc and statement.has_g(50)) or (
+        statement.has_g(92) and not control.has_system_a and control is not SourceControl.LINUXCNC
+    )
     word = statement.find_word("S")
     if word is not None and word.value < 0:
         raise make_error(word.line_number, word.column, "spindle-negative", word=word.text)
-    if word is not None and limit and control is not SourceControl.LINUXCNC:
+    if word is not None and limit:
         spindle = replace(spindle, max_rpm=_limit_rpm(state, word))
     elif word is not None:
         spindle = replace(spindle, speed=word.value if spindle.is_css else _limit_rpm(state, word))
