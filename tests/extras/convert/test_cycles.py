@@ -124,6 +124,37 @@ def test_g74_pecks_and_g75_grooves() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("line", "control", "word", "made"),
+    [
+        ("G75X1.8Z-.5P1000Q1000F.02", "fanuc-a", "Q1000", ["Z-.5", "G95F.02X1.8", "G00X2"]),
+        ("G75X1.8P1000Q1000R0F.02", "fanuc-a", "Q1000", ["Z-.5", "G95F.02X1.8", "G00X2"]),
+        ("G74X2.Z-.7P500Q2000F.02", "fanuc-a", "P500", ["Z-.5", "G95F.02Z-.7", "G00Z-.5"]),
+        ("G75X1.8Z-.5I.1K.1F.02", "haas", "K.1", ["Z-.5", "G95F.02X1.8", "G00X2"]),
+    ],
+)
+def test_step_without_a_distance_is_left_out(line: str, control: str, word: str, made: list[str]) -> None:
+    """The depth is .1 per side or .2 in Z, so that each cut is one peck."""
+    done = converted(f"{FANUC}G00Z-.5\n{line}\nM30\n", control)
+    assert [each.text for each in done.lines][4:-1] == made
+    (note,) = [each for each in done.findings if each.code == "no-change" and each.line == 7]
+    assert (note.column, word in note.message) == (line.index(word) + 1, True)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "G75X1.8Z-.6P1000F.02",
+        "G75X1.8Z-.5P1000Q1000R.02F.02",
+        "G75X1.8P1000R.02F.02",
+        "G74X1.9Z-.7Q2000F.02",
+        "G75X1.8Z-.6I.1F.02",
+    ],
+)
+def test_distance_or_relief_without_a_step_is_rejected(line: str) -> None:
+    assert refused(f"G00Z-.5\n{line}") == (2, 1, "cycle-sideways")
+
+
 def test_drilling_and_tapping_are_converted() -> None:
     assert lines_after("G00X0\nG83Z-.5R-.05Q2500F.004\nG80\nG00X2.") == [
         "X0", "Z.05", "G95F.004Z-.2", "G00Z.05", "Z-.18", "G95F.004Z-.45", "G00Z.05", "Z-.43",

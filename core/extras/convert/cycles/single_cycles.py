@@ -106,6 +106,10 @@ def append_peck_cycle(
     main, cross = (start[1], start[0]) if along_z else (start[0], start[1])
     end, last = (z, x) if along_z else (x, z)
     require_words(statement, code, "ZW" if along_z else "XU")
+    if shift and abs(last - cross) <= _SAME:
+        word = _find_shift_word(state, statement, along_z=along_z)
+        state.add_note(word or code, "no-change", word=(word or code).text)
+        shift = 0.0
     _check_sizes(code, (end - main, last - cross), (depth, shift, relief))
     at = cross
     while True:
@@ -125,9 +129,9 @@ def _check_sizes(
     distances: tuple[float, float],
     sizes: tuple[float, float, float],
 ) -> None:
-    """Raise ProgramError for a distance without its step, a step without its distance, or too many steps."""
+    """Raise ProgramError for a distance or a relief without a step, or for too many steps."""
     (main, cross), (depth, shift, relief) = distances, sizes
-    if bool(shift) != (abs(cross) > _SAME) or (relief and not shift):
+    if not shift and (relief or abs(cross) > _SAME):
         raise make_error(code.line_number, code.column, "cycle-sideways", word=code.text)
     for distance, infeed in ((main, depth), (cross, shift)):
         if infeed:
@@ -137,16 +141,27 @@ def _check_sizes(
 def _sizes(state: SourceState, statement: SourceStatement, *, along_z: bool) -> tuple[float, float, float]:
     """Return the depth of a peck, the shift between plunges, and the relief at the bottom, in mm."""
     p, q, r, i, k, d = (statement.find_word(letter) for letter in "PQRIKD")
-    if state.source_control is SourceControl.HAAS or (p is None and q is None):
-        deep, side, off = (k, i, d) if along_z else (i, k, d)
-        sizes = [abs(state.convert_length(each)) if each else 0.0 for each in (deep, side, off)]
+    side = _find_shift_word(state, statement, along_z=along_z)
+    if _has_lengths(state, statement):
+        sizes = [abs(state.convert_length(each)) if each else 0.0 for each in (k if along_z else i, side, d)]
         return sizes[0], sizes[1], sizes[2]
-    deep, side = (q, p) if along_z else (p, q)
+    deep = q if along_z else p
     return (
         abs(state.convert_increment(deep)) if deep else 0.0,
         abs(state.convert_increment(side)) if side else 0.0,
         abs(state.convert_length(r)) if r else 0.0,
     )
+
+
+def _has_lengths(state: SourceState, statement: SourceStatement) -> bool:
+    """Return whether the steps are lengths in I, K and D, and not increments in P and Q."""
+    return state.source_control is SourceControl.HAAS or not any(map(statement.find_word, "PQ"))
+
+
+def _find_shift_word(state: SourceState, statement: SourceStatement, *, along_z: bool) -> SourceWord | None:
+    """Return the word with the shift between plunges."""
+    letters = "IK" if _has_lengths(state, statement) else "PQ"
+    return statement.find_word(letters[0] if along_z else letters[1])
 
 
 def _plunge(
