@@ -210,13 +210,16 @@ class ConvertFunction(SpecialFunction):
         return True
 
     def _skip_m_code(self) -> None:
-        """Add the M code of the present error to the codes that are left out, or clear these codes."""
+        """Add the M code of the present error to the codes that are left out, or clear these codes.
+
+        An M code that is not a whole number cannot be left out.
+        """
         conversion = self._result.conversion if self._result is not None else None
         error = next(iter(conversion.errors), None) if conversion is not None else None
         codes: frozenset[int] = frozenset()
-        if error is not None and error.code == "m-code" and isinstance(error.message, Message):
-            number = str(error.message.values["word"]).upper().lstrip("M")
-            codes = self.settings.skipped_m_codes | {int(float(number))}
+        if error is not None and error.code == "m-code" and isinstance(error.hint, Message):
+            number = str(error.hint.values["number"])
+            codes = self.settings.skipped_m_codes | ({int(number)} if number.isdecimal() else frozenset())
         self.settings = replace(self.settings, skipped_m_codes=codes)
 
     def save_program(self) -> None:

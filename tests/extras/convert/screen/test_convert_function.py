@@ -103,6 +103,22 @@ def test_an_existing_file_is_not_overwritten(hands: Hands, folder: Path) -> None
     assert hands.desk.program_loader.loaded_program.name == "OLD.NC"
 
 
+@pytest.mark.parametrize(
+    ("word", "shown"),
+    [("M#101", "M77"), ("M77.", "M77"), ("M[#101-.5]", "NONE"), ("M-77", "NONE"), ("M1234567", "NONE")],
+)
+def test_only_a_whole_m_code_is_left_out(hands: Hands, folder: Path, word: str, shown: str) -> None:
+    part = PART.replace("X1000Z100", "X1.Z.1").replace("G99", "G20G99\n#101=77").replace("M77", word)
+    (folder / "OLD.NC").write_text(part)
+    load(hands, folder / "OLD.NC")
+    function = open_function(hands)
+    hands.sees(lambda: any(word in row[1] for row in rows(hands, function)[6:]))
+    for _ in range(5):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert rows(hands, function)[5][1] == shown
+
+
 def test_an_omniturn_program_is_not_announced(hands: Hands, folder: Path) -> None:
     load(hands, folder / "own.nc")
     hands.sees(lambda: bool(hands.prompt()))
