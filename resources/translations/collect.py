@@ -237,7 +237,10 @@ _NO_TEXT = re.compile(
     r"|^[\w ,.-]* --json$|^One object\b|^[\w.*\[\]]+ \| "  # commands and keys in the reference of outputs
     r"|^<\w+ |^[^ ]*=\{[^ ]*; |^\s*WHERE .*= \?.*$|^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
 )
-_WORDS = re.compile(r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$")
+_WORDS = re.compile(
+    r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$"
+    r"|^[^\W\d_]{3,} [A-Z]\.$"  # a verb and the letter of a word, such as a remedy
+)
 _LETTERS = re.compile(r"[^\W\d_]{2}")
 _SENTENCE = 3  # words from which on a text of the command line is a sentence and no name
 # Program lines, scripts of other programs and tables of words, which nobody reads as sentences.
@@ -252,7 +255,7 @@ FILE_ENDINGS_WITHOUT_SENTENCES = (
     "_keys.py",
     "alarms_page.py",
 )
-_CAPITALS = re.compile(r"[A-ZÁÉÍÓÚÑ][A-ZÁÉÍÓÚÑ'’-]+$")
+_CAPITALS = re.compile(r"(?:\d+ )?[A-ZÁÉÍÓÚÑ][A-ZÁÉÍÓÚÑ'’-]+$")
 _SHORT = frozenset(
     {
         "ON",

@@ -155,6 +155,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Add Z.</source>
+      <translation>Agregue Z.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Adds X and Z to the work shift; the new shift takes effect at the next T word.</source>
       <translation>Suma X y Z al decalaje de trabajo; el decalaje nuevo tiene efecto en la palabra T siguiente.</translation>
     </message>
@@ -597,6 +602,16 @@
       <location filename="" />
       <source>Corner rounding with a given radius.</source>
       <translation>Redondeo de esquina de radio dado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Correct L.</source>
+      <translation>Corrija L.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Correct S.</source>
+      <translation>Corrija S.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2090,6 +2105,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Raise F.</source>
+      <translation>Aumente F.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Raises an alarm; a program that reaches this block is rejected.</source>
       <translation>Da una alarma; un programa que llega a este bloque se rechaza.</translation>
     </message>
@@ -3567,6 +3587,16 @@
       <location filename="" />
       <source>Write M19 or M89 before this line.</source>
       <translation>Escriba M19 o M89 antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write X.</source>
+      <translation>Escriba X.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write Z.</source>
+      <translation>Escriba Z.</translation>
     </message>
     <message>
       <location filename="" />
@@ -8707,6 +8737,11 @@
       <location filename="app/extras/convert/convert_function.py" />
       <source>1 mm OR .1 in</source>
       <translation>1 mm O .1 in</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>1000 UNITS</source>
+      <translation>1000 UNIDADES</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
@@ -19580,6 +19615,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Correct R.</source>
+      <translation>Corrija R.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Correct the depth of a pass.</source>
       <translation>Corrija la profundidad de pasada.</translation>
     </message>
@@ -22675,6 +22715,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
+      <source>Lower S.</source>
+      <translation>Baje S.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/cycle_moves.py" />
       <source>Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment.</source>
       <translation>Programe Q214=0, o gire el filo a mano cuando el programa se pare para este ajuste.</translation>
     </message>
@@ -23765,6 +23810,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
+      <source>Increase R.</source>
+      <translation>Aumente R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/radius_compensation.py" />
       <source>No path is possible for {form} because the tool is inside the arc of this move.</source>
       <translation>No hay trayectoria posible para {form} porque la herramienta está dentro del arco de este movimiento.</translation>
     </message>
@@ -24252,6 +24302,16 @@
       <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
       <source>Correct I (the depth of the first pass) or K.</source>
       <translation>Corrija I (la profundidad de la primera pasada) o K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Correct I.</source>
+      <translation>Corrija I.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
+      <source>Correct K.</source>
+      <translation>Corrija K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycles/threading_cycles.py" />
@@ -24947,6 +25007,16 @@
       <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
       <source>(~{name}) needs the tool on the negative X side, but X is {x}.</source>
       <translation>(~{name}) necesita la herramienta en el lado X negativo, pero X es {x}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>Correct F.</source>
+      <translation>Corrija F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
+      <source>Correct Z.</source>
+      <translation>Corrija Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/motion/plane_switching.py" />
@@ -26365,6 +26435,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
+      <source>Write K.</source>
+      <translation>Escriba K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/tapping_cycles.py" />
       <source>Write S before this block.</source>
       <translation>Escriba S antes de este bloque.</translation>
     </message>
@@ -27480,6 +27555,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
+      <source>Lower F.</source>
+      <translation>Baje F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/thread_moves.py" />
       <source>Start the spindle with S and M3 or M4.</source>
       <translation>Arranque el husillo con S y M3 o M4.</translation>
     </message>
@@ -27785,6 +27865,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
+      <source>Remove C.</source>
+      <translation>Elimine C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>Remove this axis, or select a machine file that has this axis.</source>
       <translation>Quite este eje, o elija un archivo de máquina que lo tenga.</translation>
     </message>
@@ -28032,6 +28117,11 @@
       <location filename="core/interpreter/sinumerik/setup/spindle_and_dwell.py" />
       <source>{word}: {value} is not a valid spindle angle.</source>
       <translation>{word}: {value} no es un ángulo de husillo válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>Correct D.</source>
+      <translation>Corrija D.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
