@@ -21,6 +21,7 @@ from app.extras.drawings.drawing_plan import (
     DrawingPlanner,
     PlanRequest,
     draw_plan,
+    get_contour_number,
 )
 from app.extras.shapes.shape_form import AddedForm, ShapeForm, ShowForm
 from core.extras.drawings.drawing_file import has_drawing_suffix
@@ -243,12 +244,8 @@ class DrawingForm(ShapeForm):
         self.comparison = comparison
         metric = self.settings.metric
         self.remarks = (*errors, *describe_program(plan.program, comparison, plan.profile, is_metric=metric))
-        self.plan = replace(plan, sketch=draw_plan(plan, self._chosen_number, comparison))
-
-    @property
-    def _chosen_number(self) -> int:
-        said = text(self.filled_shape.values, "CONTOUR")
-        return int(said) if said.isdigit() else 1
+        number = get_contour_number(self.filled_shape.values.get("CONTOUR"))
+        self.plan = replace(plan, sketch=draw_plan(plan, number, comparison))
 
     @property
     def current_sketch(self) -> Sketch:

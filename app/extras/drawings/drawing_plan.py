@@ -128,6 +128,12 @@ class DrawingPlanner:
         return self._known[2]
 
 
+def get_contour_number(value: FieldValue | None) -> int:
+    """Return the number of the selected contour, or 1 if the value is not a whole number."""
+    said = str(value)
+    return int(said) if said.isdecimal() else 1
+
+
 class _PlanBuilder:
     """Builder that calculates one plan in steps.
 
@@ -187,7 +193,7 @@ class _PlanBuilder:
             if self.view
             else ()
         )
-        number = int(self.get_entry_text("CONTOUR") or self.proposals.get("CONTOUR") or 1)
+        number = get_contour_number(self.get_entry_text("CONTOUR") or self.proposals.get("CONTOUR"))
         good = made if not troubles else None
         plan = DrawingPlan(
             self.request, self.proposals, self.choices, troubles, placed, program=good, profile=chosen

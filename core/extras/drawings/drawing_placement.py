@@ -203,7 +203,7 @@ def select_axis(drawing: Drawing, name: str, layer: str = "") -> DrawingAxis:
     known = find_axes(drawing, layer)
     if not name and known:
         return known[0]
-    if name.startswith("LINE ") and name[5:].isdigit():
+    if name.startswith("LINE ") and name[5:].isdecimal():
         return make_axis_from_line(drawing, int(name[5:]))
     found = next((axis for axis in known if axis.name == name), None)
     if found is None:

@@ -88,6 +88,14 @@ def test_invalid_axis_is_rejected(tmp_path: Path) -> None:
     assert [value in str(each) for each, value in ((axis, "Y 0"), (line, "9"), (arc, "3"))] == [True] * 3
 
 
+@pytest.mark.parametrize("name", ["LINE ²", "LINE ①", "LINE -1", "LINE 1.5", "LINE ", "LINE"])
+def test_axis_without_a_line_number_is_rejected(tmp_path: Path, name: str) -> None:
+    """The signs ² and ① are digits, but not numbers."""
+    path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4, 1), (-8, 0)))
+    error = refused(path, axis=name)
+    assert (error.code, name in str(error)) == ("no-axis", True)
+
+
 def test_face_alone_has_nothing_to_turn(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4))), axis="Y 0")
     with raises_code(DrawingError, "nothing-to-turn"):

@@ -130,6 +130,18 @@ def test_contour_and_side_are_picked_with_keys(desk: Desk, tmp_path: Path) -> No
     assert not any("G75" in line for line in form.program_lines)
 
 
+@pytest.mark.parametrize("number", ["²", "①", "-1", "2"])
+def test_unknown_contour_number_is_an_error_of_its_field(desk: Desk, tmp_path: Path, number: str) -> None:
+    dxf(tmp_path / "step.dxf", chain(*STEP))
+    form = desk.open()
+    desk.shapes.select_touched(f"CONTOUR {number}")
+    desk.settle()
+    assert "has 1 contours: choose 1 to 1." in form.error_texts["CONTOUR"]
+    assert form.filled_shape.get_text("CONTOUR") == number
+    form.show_trial(None, ())
+    assert not form.program_lines
+
+
 def test_second_program_head_is_not_written_after_a_program(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open("G90G94F7620G71G72(HEAD METRIC UNIT DIAMETER WORDS)\nM30\n")
