@@ -49,7 +49,7 @@ def _format_tool(tool: ToolEntry, unit: str) -> dict[str, object]:
     kind_name = "tap_left_hand" if is_left_tap else _TYPES[kind]
     remark = str(tool.offset_values.get("remark", ""))
     if kind == "parting" and "part" not in remark.lower():
-        remark = f"{remark} parting".strip()
+        remark = " ".join((remark, "parting")).strip()
     factor = MM_PER_UNIT[unit]
     content: dict[str, object] = {
         "type": kind_name.replace("_", " "),
