@@ -14,7 +14,7 @@ from app.programs.atomic_files import read_if_exists, write_program_file
 from core.file_replacement import write_atomically
 from core.language.source import SourceError, load_source
 from core.message import CodedError, Message
-from core.store.program_records import check_program_name
+from core.store.program_records import check_new_program_name
 from core.store.store_errors import StoreError
 
 MAX_LINES = 50_000  # The text field needs 0.7 s for this number of lines.
@@ -116,7 +116,7 @@ def make_program_name(typed_name: str, default_extension: str) -> str:
             Message("{name} WOULD BE A HIDDEN FILE. START WITH A LETTER OR DIGIT", name=name)
         )
     try:
-        check_program_name(name)
+        check_new_program_name(name)
     except StoreError as error:
         raise InvalidNameError(
             Message("{name}: INVALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE", name=name)

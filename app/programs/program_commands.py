@@ -20,7 +20,7 @@ from app.programs.atomic_files import FileOperationError, read_if_exists, write_
 from app.programs.program_rows import ListedFile
 from core.access.access_table import ProtectedChange
 from core.message import Message
-from core.store.program_records import check_program_name
+from core.store.program_records import check_new_program_name
 from core.store.store_errors import StoreError
 
 SAMPLE_READ_ONLY = "SAMPLES ARE READ-ONLY. F4: COPY THE SAMPLE FIRST"
@@ -41,7 +41,7 @@ def complete_name(name: str, reference_name: Path, accepts_name: AcceptsName = i
     if not Path(name).suffix or not accepts_name(name):
         name += reference_name.suffix
     try:
-        check_program_name(name)
+        check_new_program_name(name)
     except StoreError as error:
         raise FileOperationError(str(error)) from error
     if name.startswith("."):

@@ -32,24 +32,40 @@ RECORD_KEY_PREFIX = "sha256:"  # no file name contains a colon
 
 
 def check_program_name(name: str) -> None:
+    """Raise StoreError if the name contains a character that a file name cannot contain, or is too long.
+
+    A name that is new must also fulfill ``check_new_program_name``.
+    """
+    if name.strip() != name or name in {"", ".", ".."} or not name.isprintable():
+        raise _make_invalid_name_error(name)
+    if _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
+        raise _make_invalid_name_error(name)
+
+
+def check_new_program_name(name: str) -> None:
     """Raise StoreError if the name would not be a valid file name on every common operating system.
 
-    Windows removes a final period and reserves the names of devices, with any extension.
+    Windows removes a final period and reserves the names of devices, with any extension. Files and records
+    that already exist may have such names.
     """
-    clean = name.strip() == name and name != "" and not name.endswith(".")
-    if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
-        raise StoreError(
-            Message(
-                "{name} is not a valid program name; use letters, digits, periods, dashes and spaces",
-                name=f"{name!r}",
-            ),
-            "invalid-name",
-        )
+    check_program_name(name)
+    if name.endswith("."):
+        raise _make_invalid_name_error(name)
     if name.partition(".")[0].rstrip().upper() in _DEVICE_NAMES:
         raise StoreError(
             Message("Windows reserves the name {name} for a device; use another name", name=f"{name!r}"),
             "device-name",
         )
+
+
+def _make_invalid_name_error(name: str) -> StoreError:
+    return StoreError(
+        Message(
+            "{name} is not a valid program name; use letters, digits, periods, dashes and spaces",
+            name=f"{name!r}",
+        ),
+        "invalid-name",
+    )
 
 
 def save_program_version(
@@ -272,7 +288,7 @@ def transfer_records(connection: sqlite3.Connection, old_name: str, new_name: st
     If the new name already has versions or features, these remain, and those of the old name are not
     transferred. Raises StoreError if the new name is invalid.
     """
-    check_program_name(new_name)
+    check_new_program_name(new_name)
     connection.execute(
         "UPDATE programs SET name = ?2 WHERE name = ?1 AND NOT EXISTS"
         " (SELECT 1 FROM programs WHERE name = ?2)",

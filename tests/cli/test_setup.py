@@ -56,6 +56,20 @@ def test_saved_setup_is_restored_in_another_home(
     assert f"--machine {other / 'machines' / 'mine.toml'}" in told.out
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot store these names")
+@pytest.mark.parametrize("name", ["Smith Inc./pin.nc", "Aux/pin.nc", "NUL.nc"])
+def test_program_whose_name_windows_reserves_is_saved_and_restored(
+    saved: Path, turndesk: Turndesk, home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    (home / "programs" / name).parent.mkdir(exist_ok=True)
+    (home / "programs" / name).write_text("G91\nM30\n")
+    assert turndesk("setup", "save", saved).status == 0
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "other"))
+    told = turndesk("setup", "load", saved)
+    assert told.status == 0, told.err
+    assert (tmp_path / "other" / "programs" / name).read_text() == "G91\nM30\n"
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps its own rights")
 def test_saved_setup_is_readable_by_owner_only(saved: Path) -> None:
     assert stat.S_IMODE(saved.stat().st_mode) == 0o600

@@ -92,7 +92,9 @@ def test_default_extension_maps_back_to_its_dialect(dialect: Dialect) -> None:
     assert guess_dialect(f"part{get_default_extension(dialect)}") is dialect
 
 
-@pytest.mark.parametrize("typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "x" * 300])
+@pytest.mark.parametrize(
+    "typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "NUL.nc", "pin.", "x" * 300]
+)
 def test_invalid_program_name_is_rejected(typed: str) -> None:
     with pytest.raises(InvalidNameError):
         make_program_name(typed, ".nc")

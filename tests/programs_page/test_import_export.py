@@ -115,7 +115,7 @@ def test_missing_extension_is_added_to_name(typed: str, name: str) -> None:
     assert complete_name(typed, Path("like.nc")) == name
 
 
-@pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "x" * 300])
+@pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "aux", "x" * 300])
 def test_invalid_name_is_rejected(typed: str) -> None:
     with pytest.raises(FileOperationError):
         complete_name(typed, Path("like.nc"))

@@ -120,6 +120,7 @@ def test_renamed_program_retains_its_job(store: Store) -> None:
     ("program", "wanted", "note", "code", "value"),
     [
         ("a/b.nc", 1, "", "invalid-name", "a/b.nc"),
+        ("NUL.nc", 1, "", "device-name", "NUL.nc"),
         ("a.nc", 0, "", "part-count", "9999999"),
         ("a.nc", 10_000_000, "", "part-count", "10000000"),
         ("a.nc", 1, "x" * 81, "invalid-note", "80"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.store.offsets.offset_tables import ChangeReason
+from core.store.program_records import check_new_program_name
 from core.store.store import Store, StoreError
 from core.store.store_export import import_programs_and_offsets
 from core.store.store_rows import EventRow
@@ -39,25 +40,46 @@ def test_arbitrary_bytes_are_saved_unchanged(store: Store) -> None:
     assert store.programs.load_version("odd") == text
 
 
-@pytest.mark.parametrize(
-    "name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a", "part."]
-)
+_DEVICES = ["NUL", "con.nc", "COM1.nc", "Lpt9", "AUX .nc", "com².tar.nc", "PRN.H"]
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a"])
 def test_invalid_file_name_is_rejected(store: Store, name: str) -> None:
     with raises_code(StoreError, "invalid-name"):
         store.programs.save_version(name, b"", "x").result()
+    with raises_code(StoreError, "invalid-name"):
+        check_new_program_name(name)
     assert store.programs.list_programs() == ()
 
 
-@pytest.mark.parametrize("name", ["NUL", "con.nc", "COM1.nc", "Lpt9", "AUX .nc", "com².tar.nc", "PRN.H"])
-def test_name_of_a_windows_device_is_rejected(store: Store, name: str) -> None:
+@pytest.mark.parametrize("name", _DEVICES)
+def test_new_name_of_a_windows_device_is_rejected(store: Store, name: str) -> None:
+    store.programs.save_version("pin.nc", b"1", "x").result()
     with raises_code(StoreError, "device-name", repr(name)):
-        store.programs.save_version(name, b"", "x").result()
-    assert store.programs.list_programs() == ()
+        check_new_program_name(name)
+    with raises_code(StoreError, "device-name", repr(name)):
+        store.programs.rename_program("pin.nc", name).result()
+    assert [row.name for row in store.programs.list_programs()] == ["pin.nc"]
+
+
+def test_new_name_with_a_final_period_is_rejected(store: Store) -> None:
+    store.programs.save_version("pin.nc", b"1", "x").result()
+    with raises_code(StoreError, "invalid-name"):
+        store.programs.rename_program("pin.nc", "part.").result()
+    assert [row.name for row in store.programs.list_programs()] == ["pin.nc"]
+
+
+@pytest.mark.parametrize("name", [*_DEVICES, "part."])
+def test_versions_of_an_existing_program_are_saved_under_any_earlier_name(store: Store, name: str) -> None:
+    store.programs.save_loaded_version(name, b"1", "run").result()
+    assert store.programs.load_version(name) == b"1"
 
 
 @pytest.mark.parametrize("name", ["NULL.nc", "COM0.nc", "COM10.nc", "part.com1", "CONE.nc", "a.b", "-nul"])
 def test_name_that_only_resembles_a_device_is_accepted(store: Store, name: str) -> None:
-    assert store.programs.save_version(name, b"", "x").result() == 1
+    store.programs.save_version("pin.nc", b"1", "x").result()
+    store.programs.rename_program("pin.nc", name).result()
+    assert [row.name for row in store.programs.list_programs()] == [name]
 
 
 def test_missing_program_and_version_are_refused(store: Store) -> None:

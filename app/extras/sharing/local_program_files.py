@@ -13,7 +13,7 @@ from core.extras.sharing.shared_versions import make_program_key
 from core.extras.sharing.version_record import MAX_PROGRAM_BYTES
 from core.input_file import format_file_size, read_input_bytes
 from core.message import Message
-from core.store.program_records import check_program_name
+from core.store.program_records import check_new_program_name
 from core.store.store_errors import StoreError
 
 _Stamp = tuple[int, int]  # time of the last change in nanoseconds, size in bytes
@@ -98,7 +98,7 @@ def _why_not(name: str, size: int, *, twice: bool) -> str:
     if size > MAX_PROGRAM_BYTES:
         return Message("the file is larger than {limit}", limit=format_file_size(MAX_PROGRAM_BYTES))
     try:
-        check_program_name(name)
+        check_new_program_name(name)
     except StoreError as error:
         return str(error)
     return ""

@@ -116,7 +116,7 @@ def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, no
 
     Raises StoreError if the name, the number of parts or the note is invalid, or if the queue is full.
     """
-    program_records.check_program_name(program)
+    program_records.check_new_program_name(program)
     _check(parts_to_make, note)
     count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
     if count >= MAX_JOBS:
