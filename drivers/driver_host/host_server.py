@@ -248,6 +248,9 @@ class DriverHost:
         self._driven.run_cycle()
         for note in self._driven.collect_notes():
             self._note(note)
+        if self._guard.is_c_requested:
+            sample = self._ports.axes.sample()
+            self._guard.record_c_state(is_enabled=sample.enabled, fault=sample.fault)
         now = self._ports.clock.now()
         self._expire_outputs(self._silence.measure(now))
         self._silence.advance(now, has_ended=self.is_orphaned)
@@ -435,6 +438,7 @@ class DriverHost:
             self._guard.acknowledge_trip(number(message.header, "number"))
         else:
             execute_command(self._ports, message.header)
+            self._guard.record_accepted_command(message)
         return _value(0.0)
 
     def _hand(self, message: Message) -> Message:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.faults import DriverHostTrip, TrippedError
+from core.faults import DriverHostTrip, TrippedError, get_fault_code
 from core.message import Message as Text
 from drivers.driver_host.host_messages import Message, number
 from drivers.process_messages import text
@@ -20,7 +20,7 @@ class TripGuard:
         self.active_trip: DriverHostTrip | None = None
         self._count = 0
         self._turns = False  # The control has commanded the spindle to turn.
-        self.is_c_requested = False  # The control has commanded the spindle drive to engage as C.
+        self.is_c_requested = False  # The spindle drive has accepted a command to engage as C.
 
     def require_allowed(self, message: Message) -> None:
         """Raise TrippedError if a trip is not acknowledged and the message requests an action.
@@ -45,8 +45,16 @@ class TripGuard:
             )
         if what in {"run", "coast", "orient", "release"}:
             self._turns = turns
-        elif what == "hold":
-            self.is_c_requested = is_on
+
+    def record_accepted_command(self, message: Message) -> None:
+        """Record whether C is requested, after the drivers have accepted the command."""
+        if text(message.header, "what") == "hold":
+            self.is_c_requested = message.header.get("on") is True
+
+    def record_c_state(self, *, is_enabled: bool, fault: str) -> None:
+        """Record the end of C if the drives have no power or C has a fault; the drivers then end C."""
+        if not is_enabled or get_fault_code(fault, "axis") == "c-coupling":
+            self.is_c_requested = False
 
     def record_trip(
         self,

@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from core.faults import DriverHostTrip, TrippedError
+from core.faults import DriverHostTrip, Fault, TrippedError
 from core.ports import DriverError
 from drivers.driver_host.host_messages import NO_NUMBERS, Message
 from drivers.driver_host.host_server import DriverHost
@@ -23,9 +23,12 @@ class LoggedC:
     """A spindle drive as C which turns for its index until it is released or ready."""
 
     ready: bool = False
+    has_fault: bool = False
     orders: list[tuple[bool, bool]] = dataclasses.field(default_factory=list)
 
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
+        if is_enabled and self.has_fault:
+            raise DriverError("C has a fault", "c-coupling")
         self.orders.append((is_enabled, should_orient))
 
     def is_c_ready(self) -> bool:
@@ -165,3 +168,41 @@ def test_c_that_was_released_before_the_silence_is_no_trip(silent: SilentBench) 
     silent.be_silent()
     assert silent.c.orders == [(True, True), (False, False)]
     assert silent.trip is None
+
+
+@pytest.mark.parametrize("orient", [True, False])
+def test_c_command_that_the_driver_rejects_is_no_trip(silent: SilentBench, orient: bool) -> None:
+    silent.c.has_fault = True
+    assert "error" in silent.ask(what="hold", on=True, orient=orient).header
+    silent.be_silent()
+    assert silent.c.orders == []
+    assert silent.trip is None
+
+
+def test_rejected_second_c_command_leaves_the_first_one_active(silent: SilentBench) -> None:
+    silent.ask(what="hold", on=True, orient=True)
+    silent.c.has_fault = True
+    assert "error" in silent.ask(what="hold", on=True, orient=True).header
+    silent.be_silent()
+    assert silent.c.orders == [(True, True), (False, False)]
+    assert silent.trip is not None
+
+
+def test_c_that_ends_without_power_is_no_trip(silent: SilentBench) -> None:
+    """The drivers release C when the drives are off; switching them on again does not engage it."""
+    silent.ask(what="hold", on=True, orient=True)
+    silent.ask(what="enable", on=False)
+    silent.host.run_cycle()
+    silent.ask(what="enable", on=True)
+    silent.be_silent()
+    assert silent.c.orders == [(True, True)]
+    assert silent.trip is None
+
+
+def test_only_a_fault_of_c_ends_its_request() -> None:
+    guard = TripGuard()
+    guard.record_accepted_command(Message({"do": "do", "what": "hold", "on": True}, NO_NUMBERS))
+    guard.record_c_state(is_enabled=True, fault=Fault("X: following error", "axis"))
+    assert guard.is_c_requested
+    guard.record_c_state(is_enabled=True, fault=Fault("C: no index", "c-coupling"))
+    assert not guard.is_c_requested
