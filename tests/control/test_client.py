@@ -522,6 +522,22 @@ def test_control_process_that_does_not_start_raises_an_error(
     assert started.process.returncode is not None
 
 
+@pytest.mark.parametrize(("is_new", "seconds"), [(True, 45.0), (False, 2.0)])
+def test_first_start_also_waits_for_the_drivers_of_an_ended_control(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_new: bool, seconds: float
+) -> None:
+    """A new control waits 25 s for the old drivers and has 20 s to start; a running one responds in 2 s."""
+    ours, theirs = Pipe()
+    timeouts: list[float] = []
+    monkeypatch.setattr(ours, "poll", timeouts.append)  # None: nothing arrives
+    process = subprocess.Popen([sys.executable, "-c", ""]) if is_new else None
+    with pytest.raises(DriverError):
+        ControlClient(StartedControl(ours, process), tmp_path)
+    assert timeouts == [seconds]
+    StartedControl(ours, process).kill_process()
+    theirs.close()
+
+
 def test_a_process_that_does_not_end_is_killed(
     idle: Snapshot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -35,6 +35,7 @@ from app.compose.control.control_messages import (
     ThreadEndedMessage,
     is_own_user,
 )
+from app.compose.control.control_slot import DRIVERS_TIMEOUT_S
 from app.compose.control.control_start import StartedControl
 from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor, send_descriptor
 from app.compose.control.process_handle import ProcessHandle
@@ -54,7 +55,9 @@ from drivers.silence import SCREEN_ALIVE_INTERVAL_S
 from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
-START_TIMEOUT_S = 20.0  # s until the first message, because drives may have to be configured
+# s until the first message: a new control waits for the drivers of an ended control, and may then have to
+# configure drives
+START_TIMEOUT_S = DRIVERS_TIMEOUT_S + 20.0
 JOIN_TIMEOUT_S = 1.0  # =
 REPLY_TIMEOUT_S = 2.0  # s until the first message of a control that is already running
 # Exceptions that ``recv`` raises at the end of the connection, and for messages of another version.
@@ -96,16 +99,15 @@ class ControlClient:
         started_control: StartedControl,
         folder: Path,
         recordings: ControlRecordings | None = None,
-        start_timeout_s: float = START_TIMEOUT_S,
     ) -> None:
-        """Wait for the first message of the control, at most ``start_timeout_s`` if it was just started.
+        """Wait for the first message of the control, at most 45 s if it was just started.
 
         If an earlier control has ended, its scope ``recordings`` continue with the data of this control.
         Raises DriverError if the control reports an error, ends, does not respond or has a different
         version.
         """
         self._connection, self.control_process = connection, process = started_control
-        hello = _receive_hello(connection, start_timeout_s if process is not None else REPLY_TIMEOUT_S)
+        hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
         self.hello_message = hello
         self.is_attached = process is None  # connected to a control that another screen has started
         memory = _receive_memory(connection)

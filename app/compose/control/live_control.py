@@ -12,12 +12,10 @@ from pathlib import Path
 from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 
 from app.compose.control.control_client import (
-    START_TIMEOUT_S,
     ControlClient,
     ControlEventHandlers,
     ControlStationControls,
 )
-from app.compose.control.control_slot import DRIVERS_TIMEOUT_S
 from app.compose.control.control_start import start_control
 from app.compose.control.posted_state import PostedState
 from app.desk.translation import tr
@@ -32,8 +30,6 @@ from drivers.silence import SCREEN_CONTROL_TIMEOUT_S
 _log = logging.getLogger(__name__)
 END_TIMEOUT_S = 3.0  # s for a control that can still close its drivers in order
 KILL_TIMEOUT_S = 5.0  # s between SIGKILL and the end of the process
-# s until the first message of a new control, which waits for the drivers of the old one before it starts
-_START_TIMEOUT_S = DRIVERS_TIMEOUT_S + START_TIMEOUT_S
 _LOOK = 0.1  # =
 ShowText = Callable[[str], None]
 
@@ -183,7 +179,7 @@ class LiveControl:
         self._say(tr("THE CONTROL IS STARTING AGAIN"))
         started = start_control(self._machine, self._folder, old.clock.origin_s)
         try:
-            new = ControlClient(started, self._folder, old.control_records, _START_TIMEOUT_S)
+            new = ControlClient(started, self._folder, old.control_records)
         except DriverError:
             started.kill_process()
             raise
