@@ -68,10 +68,14 @@ class MessageSocket:
     def wait(self, timeout_s: float) -> bool:
         """Wait for received data or the end of the connection, and return whether it was in time.
 
-        Raises OSError if the socket is closed.
+        The method does not wait if a complete message is left from an earlier ``receive``. Raises OSError if
+        the socket is closed.
         """
         if self.fileno() < 0:
             raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+        size = len(self._bytes) - _LENGTHS.size
+        if size >= 0 and size >= sum(_LENGTHS.unpack_from(self._bytes)):
+            return True
         return bool(select.select([self._socket], [], [], timeout_s)[0])
 
     def receive(self) -> Iterator[ReceivedMessage]:
@@ -81,6 +85,7 @@ class MessageSocket:
         invalid data.
         """
         while True:
+            yield from self._take_complete_messages()
             try:
                 data = self._socket.recv(_RECEIVE_SIZE)
             except BlockingIOError:
@@ -88,15 +93,18 @@ class MessageSocket:
             if not data:
                 raise EOFError
             self._bytes += data
-            while len(self._bytes) >= _LENGTHS.size:
-                end = _find_ends(self._bytes)[1]
-                if len(self._bytes) < end:
-                    break
-                message = bytes(self._bytes[:end])
-                del self._bytes[:end]
-                yield decode_message(message)
-            if self._bytes and self._has_packets:
-                raise ValueError("the packet contains an incomplete message")
+
+    def _take_complete_messages(self) -> Iterator[ReceivedMessage]:
+        """Yield the complete messages that were received, which may be left from an earlier call."""
+        while len(self._bytes) >= _LENGTHS.size:
+            end = _find_ends(self._bytes)[1]
+            if len(self._bytes) < end:
+                break
+            message = bytes(self._bytes[:end])
+            del self._bytes[:end]
+            yield decode_message(message)
+        if self._bytes and self._has_packets:
+            raise ValueError("the packet contains an incomplete message")
 
     def send(self, data: bytes, timeout_s: float = 0.0) -> None:
         """Send one encoded message, and wait at most ``timeout_s`` until the other process accepts it.

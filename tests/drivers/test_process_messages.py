@@ -40,6 +40,29 @@ def test_messages_arrive_in_order_and_then_the_end(pair: Pair) -> None:
         next(received)
 
 
+@pytest.mark.parametrize("has_ended", [False, True])
+def test_messages_left_from_an_earlier_call_are_delivered_first(pair: Pair, has_ended: bool) -> None:
+    ours, theirs = pair
+    theirs.sendall(encode_message({"n": 1}) + encode_message({"n": 2}) + encode_message({"n": 3}))
+    assert next(ours.receive())[0] == {"n": 1}  # the caller takes only one message
+    assert ours.wait(0.0)
+    if has_ended:
+        theirs.close()
+    received = ours.receive()
+    assert [next(received)[0], next(received)[0]] == [{"n": 2}, {"n": 3}]
+    assert ours.wait(0.0) == has_ended
+    with pytest.raises(EOFError if has_ended else StopIteration):
+        next(received)
+
+
+def test_damaged_message_left_from_an_earlier_call_is_rejected(pair: Pair) -> None:
+    ours, theirs = pair
+    theirs.sendall(encode_message({"n": 1}) + struct.pack("<II", 0, 3))
+    assert next(ours.receive())[0] == {"n": 1}
+    with pytest.raises(ValueError, match="lengths"):
+        list(ours.receive())
+
+
 def test_a_sent_message_has_its_two_lengths(pair: Pair) -> None:
     """The head {"a":1} has 7 bytes, one double has 8 bytes."""
     ours, theirs = pair
