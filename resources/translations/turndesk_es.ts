@@ -5410,6 +5410,11 @@
     </message>
     <message>
       <location filename="app/compose/control/control_client.py" />
+      <source>the memory of the control cannot be opened ({cause}): close other programs, then start TurnDesk again</source>
+      <translation>la memoria del control no se puede abrir ({cause}): cierre otros programas y vuelva a abrir TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/control_client.py" />
       <source>the process of the control does not start</source>
       <translation>el proceso del control no arranca</translation>
     </message>

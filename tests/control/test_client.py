@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import socket
 import subprocess
@@ -12,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, Listener, Pipe
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -484,6 +486,32 @@ def test_control_that_ends_between_hello_and_its_memory_is_not_found(
         end.close()
 
     assert find(tmp_path, path, serve) is None
+
+
+@pytest.mark.parametrize(
+    "error",
+    [ConnectionResetError(errno.ECONNRESET, "reset"), BrokenPipeError(errno.EPIPE, "pipe"), EOFError()],
+)
+def test_control_whose_connection_breaks_before_its_memory_is_not_found(
+    tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    monkeypatch.setattr(control_client, "receive_descriptor", Mock(side_effect=error))
+    assert find(tmp_path, path, lambda end: Peer(end, idle).greet()) is None
+
+
+@pytest.mark.parametrize(
+    "error",
+    [OSError(errno.EMFILE, "Too many open files"), OSError(errno.ENOMEM, "No memory"), ValueError("empty")],
+)
+def test_running_control_whose_memory_cannot_be_opened_is_not_taken_as_ended(
+    tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    """A second control would otherwise be started beside the one that runs."""
+    monkeypatch.setattr(control_client, "SharedMemory", Mock(side_effect=error))
+    with pytest.raises(DriverError) as raised:
+        find(tmp_path, path, lambda end: Peer(end, idle).greet())
+    assert raised.value.reason == ""
+    assert raised.value.__cause__ is error
 
 
 @pytest.mark.parametrize("data", [b"", b"f"])

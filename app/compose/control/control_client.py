@@ -364,12 +364,19 @@ def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
 def _receive_memory(connection: Connection) -> SharedMemory:
     """Return the memory of the scope, which follows the first message.
 
-    Raises DriverError if the control has ended in between.
+    Raises DriverError if the control has ended in between, with the reason ``_ENDED_REASON``. If the control
+    runs but its memory cannot be used, the DriverError has no reason.
     """
     try:
         return SharedMemory(receive_descriptor(connection))
-    except (OSError, EOFError):
+    except (ConnectionResetError, BrokenPipeError, EOFError):
         raise DriverError(_ENDED_TEXT, reason=_ENDED_REASON) from None
+    except (OSError, ValueError) as error:
+        raise DriverError(
+            "the memory of the control cannot be opened ({cause}): close other programs, then start TurnDesk "
+            "again",
+            cause=error.strerror if isinstance(error, OSError) else str(error),
+        ) from error
 
 
 def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
