@@ -259,6 +259,29 @@ def test_driver_host_of_a_killed_control_ends_before_a_new_one_starts(folder: Pa
         ended.close()
 
 
+def test_closing_the_screen_ends_a_control_that_is_still_starting(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(live_control, "KILL_TIMEOUT_S", 1.0)
+    machine = replace(MACHINE, hardware=replace(MACHINE.hardware, uses_driver_host=True))
+    with desk(folder, machine) as screen:
+        (host,) = children(screen.process)
+        os.kill(host, signal.SIGSTOP)
+        try:
+            os.kill(screen.process, signal.SIGKILL)
+            screen.until(MachineState.FAULT)
+            screen.post(Reset())
+            screen.wait(lambda: any(is_at_place(pid) for pid in children(os.getpid())))
+            (new,) = (ProcessHandle(pid) for pid in children(os.getpid()) if is_at_place(pid))
+            screen.live.close()  # while the new control waits for the driver host
+            assert new.wait_for_end(0.0)
+            assert not screen.live.is_restarting
+            assert len(screen.said) == 1  # no failed start is reported
+            new.close()
+        finally:
+            os.kill(host, signal.SIGCONT)
+
+
 def is_at_place(pid: int) -> bool:
     """Whether the process owns a place in the data folder."""
     with suppress(OSError):

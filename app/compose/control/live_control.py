@@ -16,7 +16,7 @@ from app.compose.control.control_client import (
     ControlEventHandlers,
     ControlStationControls,
 )
-from app.compose.control.control_start import start_control
+from app.compose.control.control_start import StartedControl, start_control
 from app.compose.control.posted_state import PostedState
 from app.desk.translation import tr
 from core.executor.commands import Command, Reset
@@ -53,6 +53,7 @@ class LiveControl:
         self._line: socket | None = None  # end of the control of the stop keys' socket
         self._lock = threading.Lock()  # locked briefly while the client is replaced
         self._worker: threading.Thread | None = None
+        self._started: StartedControl | None = None  # a new control that has not responded yet
         self._closing = threading.Event()
         self._events: ControlEventHandlers | None = None
         self._say: ShowText = _log.info
@@ -118,9 +119,21 @@ class LiveControl:
         worker = self._worker
         if worker is not None:
             worker.join(SCREEN_CONTROL_TIMEOUT_S + END_TIMEOUT_S + KILL_TIMEOUT_S)
+            self._kill_started_control(worker)
         self._client.stop_and_close()
         if self._line is not None:
             self._line.close()
+
+    def _kill_started_control(self, worker: threading.Thread) -> None:
+        """Kill a new control that has not responded yet, so that its ``worker`` ends.
+
+        The control has received no command, so it has not moved the machine.
+        """
+        with self._lock:
+            process = self._started.process if self._started is not None else None
+            if process is not None:
+                process.kill()
+        worker.join(KILL_TIMEOUT_S)
 
     # --- replacement --------------------------------------------------------------------------------------
 
@@ -178,14 +191,20 @@ class LiveControl:
             return
         self._say(tr("THE CONTROL IS STARTING AGAIN"))
         started = start_control(self._machine, self._folder, old.clock.origin_s)
+        with self._lock:
+            self._started = started
         try:
             new = ControlClient(started, self._folder, old.control_records)
         except DriverError:
+            with self._lock:
+                self._started = None
             started.kill_process()
+            if self._closing.is_set():
+                return
             raise
         with self._lock:
             self._pass_state(new, old.snapshot)
-            self._client = new
+            self._client, self._started = new, None
         old.close_connection()
         new.start_threads(self._events)
         self._events.on_event(
