@@ -119,8 +119,9 @@ class ProgramReceiveTransfer(_LineTransfer):
     def run_transfer(self) -> ReceivedProgram:
         """Receive a program and prove it.
 
-        If the program cannot be proved, the reason is its finding. Raises FileOperationError or DriverError
-        if the transfer fails. Nothing is then saved.
+        If the program cannot be proved, for example because stored offsets cannot be read, the reason is its
+        finding. Raises DriverError if the transfer fails or is canceled, or if the received data is not a
+        program. This method saves nothing.
         """
         inner = ReceiveTransfer(
             open_serial_port(self._settings.receiving_settings, count_damaged=True),

@@ -126,8 +126,9 @@ def check_is_file(path: Path) -> None:
 def check_file(path: Path, *, is_thorough: bool) -> int:
     """Return the version of the store in ``path``, without writing to the file.
 
-    If ``is_thorough`` is True, every page is checked. Raises StoreError if the file is not a TurnDesk store,
-    has a newer version or is damaged.
+    If ``is_thorough`` is True, every page is checked. Raises StoreError if the file cannot be opened, is
+    not a TurnDesk store, has a newer version or is damaged. Damage that opening the store repairs is not an
+    error.
     """
     return _checked(path, thorough=is_thorough)[0]
 

@@ -376,8 +376,9 @@ class Journal(Persistence):
     def restore(self, source: Path) -> Path | None:
         """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Raises StoreError if the restore fails. In both cases, a store is opened again: the restored store or
-        the old store. If a temporary error prevents this, the journal retries.
+        Raises StoreError if no store is open, and then changes nothing. Raises StoreError also if the restore
+        fails. After a restore and after a failed restore, the store is opened again. If it cannot be opened,
+        ``write_error`` contains the reason, and after a temporary error the journal retries.
         """
         with self._lock:
             store, self._store = self.require_store(), None
