@@ -405,7 +405,8 @@ class ProgramSharing:
         """Return the file name to which a version is copied.
 
         This is the name of an existing local file that differs only in case, or else the name of the
-        version. Raises VersionCopyError if sharing does not accept a local file with that name.
+        version. Raises VersionCopyError if sharing does not accept a local file with that name, or if a new
+        file may not have it.
         """
         names = [each for each in self._files.rejected_files if make_program_key(each) == version.program_key]
         if names:
@@ -414,7 +415,13 @@ class ProgramSharing:
                 "refused-name",
             )
         file = self._files.read_files(is_settled=False).get(version.program_key)
-        return file.name if file is not None else version.program
+        if file is not None:
+            return file.name
+        try:
+            program_records.check_new_program_name(version.program)
+        except StoreError as error:
+            raise VersionCopyError(str(error), get_error_code(error)) from error
+        return version.program
 
 
 def _holders(desks: Sequence[PublishedMachineState]) -> dict[str, tuple[str, ...]]:

@@ -9,7 +9,7 @@ from hashlib import sha256
 
 from core.extras.sharing.shared_versions import SharedVersion
 from core.message import CodedError, Message
-from core.store.program_records import check_new_program_name
+from core.store.program_records import check_program_name
 from core.store.store_errors import StoreError
 
 FORMAT_VERSION = 1
@@ -62,7 +62,7 @@ def decode_version(name: str, record: bytes) -> SharedVersion:
         raise RecordError("the record is not a valid version record", "not-a-version")
     program, text, desk, saved, why = map(str, texts)
     try:
-        check_new_program_name(program)
+        check_program_name(program)
     except StoreError as error:
         raise RecordError(str(error), "invalid-name") from error
     if not is_version_id(text) or not 0 <= size <= MAX_PROGRAM_BYTES:

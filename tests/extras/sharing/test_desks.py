@@ -20,6 +20,7 @@ from core.extras.sharing.version_record import PublishedMachineState
 from tests.coded import raises_code
 from tests.extras.sharing.conftest import MakeDesk
 from tests.extras.sharing.rigs import PowerCut, Rig
+from tests.extras.sharing.test_places import published, state
 
 
 def write(desk: ProgramSharing, text: str, name: str = "PART.NC") -> None:
@@ -207,6 +208,30 @@ def test_names_that_differ_only_in_case_are_one_program(desk_at_folder: MakeDesk
     with raises_code(VersionCopyError, "refused-name"):
         two.copy_version(only(two))
     assert (read(two, "PART.NC"), read(two, "part.NC")) == ("G01\n", "ELSE\n")
+
+
+@pytest.mark.parametrize("name", ["NUL.nc", "Aux.NC"])
+def test_shared_version_with_a_name_windows_reserves_is_listed_but_not_copied(
+    folder_rig: Rig, desk_at_folder: MakeDesk, name: str
+) -> None:
+    """An earlier TurnDesk has published the version. It is not damaged."""
+    earlier = published(1, name)
+    folder_rig.place(3).publish_versions([earlier], state(earlier))
+    one = desk_at_folder(1)
+    together(one)
+    (shared,) = family(one, name.lower()).newest_remote_versions
+    assert shared == earlier.version
+    with raises_code(VersionCopyError, "device-name", repr(name)):
+        one.copy_version(shared)
+    assert list(folder_of(one).iterdir()) == []
+
+
+def test_local_file_with_a_name_windows_reserves_is_not_shared(desk_at_folder: MakeDesk) -> None:
+    one = desk_at_folder(1)
+    write(one, "G00\n", "NUL.nc")
+    write(one, "G00\n")
+    shared = one.synchronize()
+    assert (set(shared.rejected_files), set(shared.programs)) == ({"NUL.nc"}, {"part.nc"})
 
 
 def test_locally_deleted_program_remains_on_the_others(desk_at_folder: MakeDesk) -> None:
