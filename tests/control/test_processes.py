@@ -24,18 +24,24 @@ from app.compose.control.control_client import (
 from app.compose.control.control_start import list_socket_paths, start_control
 from app.compose.control.process_rights_check import READING_PRIORITY, REAL_TIME_PRIORITY
 from app.compose.control.unattended_notes import NOTE_FILE_NAME
+from app.compose.machine.machine_files import load_named_machine
+from app.compose.program_proving import create_line_prover
 from app.compose.runs.receipt import Receipt
+from app.compose.stored_offsets import NO_OFFSETS
 from app.desk.data_folder import HOME_VARIABLE
+from app.desk.programs.prepared_line import ProveLine
 from core.executor.commands import (
     Clearance,
     CycleStart,
     EnableDrives,
     LoadJob,
+    PrepareStart,
     ReplaceClearances,
     SetSwitch,
 )
 from core.executor.job import Proof
-from core.executor.snapshot import LogEvent, MachineState
+from core.executor.snapshot import LogEvent, MachineState, StartAction
+from core.machine.machine_model import Machine
 from tests.control.bench import LONG, job_of, one_button, until
 from tests.killed.bench import until as until_long
 
@@ -84,6 +90,21 @@ class Desk:
         self.client.post_command(CycleStart())
         self.until(MachineState.RUN)
 
+    def enter(self, text: str, prove_line: ProveLine) -> None:
+        """Run an MDI line, and wait until a snapshot shows the state that it has left in force."""
+        before = self.client.snapshot
+        job, proved = prove_line(text, before, lambda _share: None)
+        assert not proved.diagnostics
+        began = self.client.clock.now()
+        until(lambda: self.client.clock.now() > began + 0.4)  # a start right after another is its bounce
+        clearance = Clearance(job.digest, before.demand, before.begun)
+        self.client.post_command(PrepareStart(StartAction.MDI_LINE, job, proved.proof, clearance))
+        self.client.post_command(CycleStart())
+        until_long(
+            lambda: self.see() and self.client.snapshot.kept != before.kept, lambda: self.client.snapshot
+        )
+        self.until(MachineState.IDLE)
+
     def vanish(self) -> None:
         """As a killed screen does."""
         self.client.disconnect(end_control=False)
@@ -96,9 +117,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @contextmanager
-def desk(folder: Path) -> Iterator[tuple[Desk, subprocess.Popen[bytes]]]:
+def desk(folder: Path, machine: Machine = MACHINE) -> Iterator[tuple[Desk, subprocess.Popen[bytes]]]:
     """A control and its first screen; at the end nothing is left of them."""
-    started = start_control(MACHINE, folder)
+    started = start_control(machine, folder)
     process = started.process
     assert process is not None
     made = Desk(ControlClient(started, folder))
@@ -137,6 +158,22 @@ def test_closing_leaves_no_process_or_socket(folder: Path) -> None:
     assert not {thread.name for thread in threading.enumerate()} & {"control-events", "control-posts"}
     assert not [event for event in screen.events if event.alarm is not None]
     assert sockets() == before
+
+
+def test_screen_gets_snapshots_during_and_after_sinumerik_mdi_lines(folder: Path) -> None:
+    """The second line needs the R parameter of the first, and moves Z by 4 mm."""
+    machine = load_named_machine("sinumerik-modulo")
+    prove_line = create_line_prover(machine, lambda: NO_OFFSETS)
+    with desk(folder, machine) as (screen, _):
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
+        screen.enter("R1=4", prove_line)
+        before = screen.client.snapshot.actual
+        screen.enter("G91 G0 Z=-R1", prove_line)
+        assert screen.client.snapshot.actual[1] == pytest.approx(before[1] - 4.0, abs=0.01)
+        screen.enter("G4 F0.1", prove_line)
+        after = screen.client.snapshot.t
+        until(lambda: screen.client.snapshot.t > after)
 
 
 def test_terminated_control_raises_an_alarm_on_its_screen(folder: Path) -> None:

@@ -23,7 +23,7 @@ from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import InterpreterPass
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import Setup, read_no_input
 from core.message import Message
 
 ProgressCallback = Callable[[float], None]
@@ -56,7 +56,7 @@ class BlockSearch:
 
     def __init__(self, program: SharedProgram, setup: Setup, report_progress: ProgressCallback) -> None:
         self._reading = program
-        self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
+        self._setup = replace(setup, begin=None, inputs=read_no_input)
         self.report_progress = report_progress
         self._count = 0
 

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import os
 from copy import deepcopy
+from dataclasses import replace
 from itertools import count
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from core.interpreter.shared.actions import Action
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+from core.interpreter.shared.job_setup import Setup, read_no_input
 from core.interpreter.shared.modal_state import ModalState
 
 PartsType = TypeVar("PartsType")
@@ -32,14 +35,15 @@ class SavedPass(Generic[PartsType]):
 
     Each saved pass has a name that is unique in all processes. A saved pass is equal only to itself and to
     its copies in other processes. ``shared`` contains the objects that are not copied, such as the setup,
-    the log and program texts.
+    the log and program texts. The setup is saved without inputs and start, and the log without findings,
+    because another process cannot use them and the next pass replaces both.
     """
 
     def __init__(
         self, parts: PartsType, shared: tuple[object, ...], state_lines: tuple[StateLine, ...] = ()
     ) -> None:
-        self._shared = shared
-        self._parts = deepcopy(parts, {id(each): each for each in self._shared})
+        self._shared = tuple(_make_stand_in(each) for each in shared)
+        self._parts = deepcopy(parts, {id(old): new for old, new in zip(shared, self._shared, strict=True)})
         self._name = f"{_process}-{next(_numbers)}"
         self.state_lines = state_lines
 
@@ -59,6 +63,13 @@ class SavedPass(Generic[PartsType]):
         """
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
+
+
+def _make_stand_in(shared: object) -> object:
+    """Return what is saved of a shared object: no live inputs, earlier saved states or findings."""
+    if isinstance(shared, Setup):
+        return replace(shared, inputs=read_no_input, begin=None)
+    return DiagnosticLog() if isinstance(shared, DiagnosticLog) else shared
 
 
 class FlowLevel(NamedTuple):

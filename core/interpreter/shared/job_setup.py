@@ -97,7 +97,8 @@ class ControlLimits:
     max_axis_speeds: tuple[float, float, float] = (127.0, 127.0, 1200.0)
 
 
-def _no_inputs(_terminal: str) -> bool:
+def read_no_input(_terminal: str) -> bool:
+    """Return False for every input, for a pass without live inputs."""
     return False
 
 
@@ -123,7 +124,7 @@ class Setup:
     start: tuple[float, ...] = (0.0, 0.0, 0.0)
     metric: bool = False
     last_rapid: float = 100 * 25.4 / 60  # mm/s
-    inputs: Callable[[str], bool] = _no_inputs
+    inputs: Callable[[str], bool] = read_no_input
     kinematics: Kinematics | None = None  # kinematics of a mill with the active preset
     # tool number by name from the tool table, in capitals
     tool_names: Mapping[str, int] = field(default_factory=dict)
