@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from core.interpreter.shared.job_setup import ToolOffset
 from core.language.called_files import load_called_files
 from core.language.source import Dialect, ProgramSource
-from tests.sinumerik.lathe import good, refused, run, source
+from tests.sinumerik.lathe import good, refused, run, setup, source
 
 
 def spf(name: str, text: str) -> ProgramSource:
@@ -27,6 +30,33 @@ def test_warning_in_a_subprogram_file_is_at_the_call() -> None:
     for name, found in zip(("R7", "R8"), passed.found, strict=False):
         assert found.message.startswith("WARN.spf line 2: ")
         assert f"{name} has no value" in found.message
+
+
+def test_warning_of_a_corner_is_at_the_corner_when_the_next_move_is_in_a_subprogram() -> None:
+    """``G1 Z-10 F100 RND=1``: RND starts at column 14."""
+    passed = run(source("G0 X20 Z2\nM3 S500\nG1 Z-10 F100 RND=1\nNEXT", spf("NEXT", "G1 Z-20\nRET\n")))
+    (found,) = passed.found
+    assert (found.code, found.line, found.column) == ("corner-straight", 3, 14)
+    assert not found.message.startswith("NEXT")
+
+
+def test_warning_of_a_corner_in_a_subprogram_is_at_the_call_when_the_next_move_is_outside() -> None:
+    passed = run(
+        source("G0 X20 Z2\nM3 S500\nBEND\nG1 Z-20", spf("BEND", "G1 Z-5 F100\nG1 Z-10 RND=1\nRET\n"))
+    )
+    (found,) = passed.found
+    assert (found.code, found.line) == ("corner-straight", 3)
+    assert found.message.startswith("BEND.spf line 2: ")
+
+
+def test_warning_of_radius_compensation_names_the_line_of_the_call_once() -> None:
+    """The block of G42 is displayed at line 4, the line of the call."""
+    without_radius = replace(setup(), tools={1: ToolOffset(quadrant=3)})
+    turn = spf("FINISH", "G42 G1 X20 Z2 F100\nG1 Z-10\nG40 G0 X40\nRET\n")
+    passed = run(source("T1 D1\nM3 S500\nG0 X60 Z10\nFINISH", turn), without_radius)
+    (found,) = passed.found
+    assert (found.code, found.line) == ("comp-no-radius", 4)
+    assert found.message.startswith("channel 1 block in line 4: ")
 
 
 STEP = spf("STEP", "PROC STEP(REAL DEPTH, INT TIMES=2, REAL MORE)\nG0 Z=DEPTH*TIMES+MORE\nRET\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from core.language.diagnostics import Diagnostic
 from core.message import Message
@@ -13,6 +13,34 @@ ENDLESS_LOOP_CODE = "endless-loop"
 """Error code of an endless loop, in every program language."""
 
 RoutineType = TypeVar("RoutineType")
+
+
+class CallSite(NamedTuple):
+    """The place in the main file at which the lines of the active program are displayed.
+
+    ``file_name`` is the name of a program from another file, and ``line`` is the line of its call. Both are
+    empty in the main file.
+    """
+
+    file_name: str = ""
+    line: int = 0
+
+    def relocate_finding(self, finding: Diagnostic) -> Diagnostic:
+        """Return a finding with its location in the main file.
+
+        A finding in another file is moved to the line of the call, and the file and line are added to its
+        text.
+        """
+        if not self.line:
+            return finding
+        message = Message(
+            "{source} line {line}: {value}", source=self.file_name, line=finding.line, value=finding.message
+        )
+        return replace(finding, line=self.line, column=0, message=message)
+
+
+MAIN_FILE = CallSite()
+"""The place of lines that are in the main file."""
 
 
 @dataclass(slots=True)
@@ -90,19 +118,14 @@ class ControlFlow(Generic[FrameType]):
         """Return the line of the main file at which line ``number`` of the active program is displayed."""
         return self.active_frame.call_line or number
 
-    def relocate_finding(self, finding: Diagnostic) -> Diagnostic:
-        """Return a finding with its location in the main file.
+    @property
+    def call_site(self) -> CallSite:
+        """Return the place in the main file at which the active program is displayed."""
+        return CallSite(self.active_frame.file_name, self.active_frame.call_line)
 
-        A finding in another file is moved to the line of the call, and the file and line are added to its
-        text.
-        """
-        here = self.active_frame
-        if not here.call_line:
-            return finding
-        message = Message(
-            "{source} line {line}: {value}", source=here.file_name, line=finding.line, value=finding.message
-        )
-        return replace(finding, line=here.call_line, column=0, message=message)
+    def relocate_finding(self, finding: Diagnostic) -> Diagnostic:
+        """Return a finding of the active program with its location in the main file."""
+        return self.call_site.relocate_finding(finding)
 
 
 class EndlessLoopDetector:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 
 from core.language.diagnostics import Diagnostic, Severity
@@ -59,10 +59,7 @@ class DiagnosticLog:
     """Log of findings.
 
     The log stores each combination of line, code and column once, up to 100 errors and 100 other findings.
-    ``relocate`` returns a finding with its location in the main file. It is called for each added finding.
     """
-
-    relocate: Callable[[Diagnostic], Diagnostic] | None = None
 
     def __init__(self, initial_findings: Iterable[Diagnostic] = ()) -> None:
         self.findings: list[Diagnostic] = list(initial_findings)
@@ -82,11 +79,13 @@ class DiagnosticLog:
         """Return whether the log has reached its limit of warnings and notes."""
         return self._others >= MAX_FINDINGS_PER_KIND or self._counted >= MAX_REPEAT_COUNT
 
-    def add_finding(self, finding: Diagnostic) -> None:
-        """Store a finding, unless the log already contains it or the limit of its kind is reached."""
-        original, finding = finding, finding if self.relocate is None else self.relocate(finding)
-        # All findings of a subprogram in another file have the line of its call.
-        place = "" if finding is original else f"{original.line}:{original.column}"
+    def add_finding(self, finding: Diagnostic, original: Diagnostic | None = None) -> None:
+        """Store a finding, unless the log already contains it or the limit of its kind is reached.
+
+        ``original`` is the finding before it was moved from another file to the line of the call. All
+        findings of that file have this line, and their original locations distinguish them.
+        """
+        place = "" if original is None or finding is original else f"{original.line}:{original.column}"
         key = (finding.line, finding.code, finding.column, place)
         if key in self._known:
             return

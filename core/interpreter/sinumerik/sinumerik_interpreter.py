@@ -101,7 +101,6 @@ class Interpreter(LinePass[LexedBlock]):
         self._corners = SinumerikCornerStage(self._state, self._log)
         self._compensation = CompensationStage(self._state, self._log)
         self._flow = Flow(source, self._state)
-        self._log.relocate = self._relocate_finding
         self._setup = setup
         self._missing_axes = MissingAxes()
         if setup.begin is not None:
@@ -202,6 +201,7 @@ class Interpreter(LinePass[LexedBlock]):
 
     def _line(self, line: LexedBlock) -> Iterator[Block]:
         """Yield the blocks of a line, up to the first error."""
+        self._state.call_site = self._flow.call_site
         for found in line.errors:
             self._log_error(found)
         if line.errors:
@@ -251,7 +251,7 @@ class Interpreter(LinePass[LexedBlock]):
             self._state.modal_call_line = line if line.called_name else None
             return
         if line.called_name in IGNORED_CYCLES and not self._flow.has_routine(line.called_name):
-            note_ineffective_cycle(self._state, self._log, line)
+            note_ineffective_cycle(self._state, line)
             return
         if line.called_name not in CYCLE_PARAMETERS or self._flow.has_routine(line.called_name):
             self._flow.call_subprogram(line, is_modal=modal)
@@ -438,15 +438,11 @@ class Interpreter(LinePass[LexedBlock]):
         except ProgramError as problem:
             self._log_error(problem.diagnostic)
 
-    def _relocate_finding(self, finding: Diagnostic) -> Diagnostic:
-        """Return a finding with its location in the main file, also after a restart has replaced the flow."""
-        return self._flow.relocate_finding(finding)
-
     def _log_error(self, finding: Diagnostic) -> None:
         """Log the error, unless it is only a consequence of an earlier error."""
         follows = self._stopped and depends_on_state(finding)
         if not follows and not self._missing_axes.is_axis_reported(finding):
-            self._log.add_finding(finding)
+            self._log.add_finding(self._flow.relocate_finding(finding), finding)
         self._stopped = True
         self._left = min(self._left, _LINES_AFTER_ERROR + 1)
         self._corners.discard_move()

@@ -7,6 +7,7 @@ from enum import IntEnum
 from typing import Protocol
 
 from core.interpreter.shared.actions import Action, Dwell, ProgramStop
+from core.interpreter.shared.control_flow import MAIN_FILE
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.formula_values import compute_formula
@@ -119,6 +120,7 @@ class State:
     def __init__(self, setup: Setup, log: DiagnosticLog) -> None:
         self.setup = setup
         self.log = log
+        self.call_site = MAIN_FILE  # of the block that is being executed
         self.x, self.z, self.c = setup.start
         self.motion = MotionKind.LINE
         self.plane = 18
@@ -243,13 +245,20 @@ class State:
 
         return compute_formula(formula, parameter, no_value)
 
+    def log_finding(self, finding: Diagnostic) -> None:
+        """Log a finding of the block that is being executed, at its location in the main file.
+
+        Findings of buffered blocks must not use this method, because another file may be active.
+        """
+        self.log.add_finding(self.call_site.relocate_finding(finding), finding)
+
     def _warn_unset(self, finding: Diagnostic) -> None:
         """Log one warning for each R parameter that has no value and is therefore treated as 0."""
         if (
             finding.hint not in self.logged_functions
         ):  # the hint identifies the parameter, independent of the line
             self.logged_functions.add(finding.hint)
-            self.log.add_finding(replace(finding, severity=Severity.WARNING))
+            self.log_finding(replace(finding, severity=Severity.WARNING))
 
     def compute_rpm_at(self, x: float) -> float:
         """Return the commanded signed speed in rpm with the tip at radius ``x``.

@@ -99,7 +99,7 @@ def _contour(cycle: CycleCall, flow: Flow) -> list[Element]:
         raise ProgramError(_relocate_finding(cycle.line, file_name, problem.diagnostic)) from None
     finally:
         for each in log.findings:
-            cycle.state.log.add_finding(_relocate_finding(cycle.line, file_name, each) if file_name else each)
+            cycle.state.log_finding(_relocate_finding(cycle.line, file_name, each) if file_name else each)
 
 
 def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> Diagnostic:
@@ -110,7 +110,7 @@ def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> 
     return replace(finding, line=line.number, column=line.call_column, message=message)
 
 
-def note_ineffective_cycle(state: State, log: DiagnosticLog, line: LexedBlock) -> None:
+def note_ineffective_cycle(state: State, line: LexedBlock) -> None:
     """Log a single note that a cycle has no effect on this machine.
 
     Raises ProgramError if the parameters of the cycle are not supported.
@@ -126,4 +126,4 @@ def note_ineffective_cycle(state: State, log: DiagnosticLog, line: LexedBlock) -
             why=IGNORED_CYCLES[line.called_name],
         )
         found = line.make_error(line.call_column, "no-effect", why, "").diagnostic
-        log.add_finding(replace(found, severity=Severity.NOTE))
+        state.log_finding(replace(found, severity=Severity.NOTE))

@@ -323,7 +323,7 @@ class CycleCall:
     def log_warning(self, code: str, text: str, hint: str, /, **values: object) -> None:
         """Log a warning about the call."""
         found = self.make_call_error(code, text, hint, **values).diagnostic
-        self.state.log.add_finding(replace(found, severity=Severity.WARNING))
+        self.state.log_finding(replace(found, severity=Severity.WARNING))
 
     def make_blocks(self, steps: Sequence[CycleStep]) -> Iterator[Block]:
         """Yield the motions as blocks.

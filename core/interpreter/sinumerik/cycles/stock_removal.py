@@ -24,6 +24,7 @@ from core.interpreter.shared.contour_passes import (
     make_contour_frame,
 )
 from core.interpreter.shared.contour_stage import make_element
+from core.interpreter.shared.control_flow import MAIN_FILE
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.cycles.cycle_parameters import (
@@ -108,6 +109,7 @@ class _Reader:
     def __init__(self, state: State, log: DiagnosticLog) -> None:
         own = copy.copy(state)
         own.log, own.moved_by_tool = log, set(state.moved_by_tool)
+        own.call_site = MAIN_FILE  # the cycle call relocates the findings
         own.variables = copy.copy(state.variables)
         own.variables.variable_scope = state.variables.variable_scope.copy()
         own.variables.r_parameters = dict(state.variables.r_parameters)

@@ -13,6 +13,7 @@ from core.geometry.chamfer_and_rounding import CornerError, chamfer, find_chamfe
 from core.geometry.lines_and_arcs import Element
 from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.contour_stage import CONTOUR_KINDS, BufferedMove, CornerStage, make_element
+from core.interpreter.shared.control_flow import MAIN_FILE, CallSite
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import PlainMoveFactory
@@ -31,7 +32,8 @@ class Corner:
     """A corner at the end of a block.
 
     ``size_mm`` is the chamfer length (CHF), the chamfer leg (CHR) or the radius (RND). At an arc, the leg
-    is a chord.
+    is a chord. ``call_site`` is the location of its block, because another file may be active at the next
+    move.
     """
 
     statement: Statement
@@ -39,6 +41,7 @@ class Corner:
     size_mm: float
     feed: float | None = None  # FRC, FRCM
     is_modal: bool = False  # RNDM: blocks that form no corner are not an error
+    call_site: CallSite = MAIN_FILE
 
     def make_error(self, code: str, reason: str, hint: str) -> ProgramError:
         """Return an error at the position of the word that programs the corner."""
@@ -56,7 +59,7 @@ def make_corner(state: State, statement: Statement, block: Block) -> Corner | No
     if word is None:
         return _modal_corner(state, statement, block)
     size = check_positive(statement, word, state.length(statement, word), "the corner size")
-    corner = Corner(statement, word, size, _feed(state, statement))
+    corner = Corner(statement, word, size, _feed(state, statement), call_site=state.call_site)
     if block.kind not in _CUT or not _moves(block):
         hint = "Use CHF, CHR and RND only with G1, G2 and G3."
         raise corner.make_error("corner-next", "the block is not a line or an arc", hint)
@@ -134,8 +137,9 @@ class SinumerikCornerStage(CornerStage[Corner, Never]):
             line=buffered.block.line,
             line2=after.line,
         )
-        statement, hint = buffered.corner.statement, "Remove this text from the program."
-        self._log.add_finding(statement.make_warning(buffered.corner.word, "corner-straight", text, hint))
+        corner, hint = buffered.corner, "Remove this text from the program."
+        found = corner.statement.make_warning(corner.word, "corner-straight", text, hint)
+        self._log.add_finding(corner.call_site.relocate_finding(found), found)
 
     def _make_size_error(self, buffered: _BufferedMove, block: Block, needed_mm: float) -> ProgramError:
         why = Message(

@@ -112,7 +112,7 @@ def _warn_ignored_value(state: State, statement: Statement, word: Word, end: flo
         word=word.text,
         end=f"{end:g}",
     )
-    state.log.add_finding(
+    state.log_finding(
         statement.make_warning(word, "fixed-point-value", text, Message("Write {word}0.", word=word.name[0]))
     )
 

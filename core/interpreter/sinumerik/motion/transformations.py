@@ -48,7 +48,7 @@ def switch_transformation(state: State, log: DiagnosticLog, statement: Statement
     if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.logged_functions:
         state.logged_functions.add("DIAMON")
         text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
-        log.add_finding(
+        state.log_finding(
             statement.make_warning(word, "transmit-diameter", text, "Write DIAMOF before this block.")
         )
     state.transformation = ActiveTransformation(state, log, frame)

@@ -96,7 +96,7 @@ def _warn_missing_function(state: State, statement: Statement, code: int, word: 
     what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
     text = Message("{what}, so the machine will not start.", what=what)
     hint = format_binding_lines(code)
-    state.log.add_finding(
+    state.log_finding(
         statement.make_warning(
             word, "m-unanswered", text, Message("{hint}.", hint=hint.capitalize_first_letter())
         )

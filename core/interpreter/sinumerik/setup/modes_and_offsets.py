@@ -218,7 +218,7 @@ def note_ineffective_word(state: State, statement: Statement, word: Word, name: 
         found = statement.make_warning(
             word, "no-effect", Message("{name} has no effect because {why}.", name=name, why=reason), ""
         )
-        state.log.add_finding(replace(found, severity=Severity.NOTE))
+        state.log_finding(replace(found, severity=Severity.NOTE))
 
 
 def execute_frame_block(state: State, statement: Statement) -> bool:

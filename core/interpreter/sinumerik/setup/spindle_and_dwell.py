@@ -410,7 +410,7 @@ def _live_speed(state: State, statement: Statement, word: Word) -> None:
             "the drive of the live tool.",
             word=word.text,
         )
-        state.log.add_finding(
+        state.log_finding(
             statement.make_warning(
                 word,
                 "live-speed",

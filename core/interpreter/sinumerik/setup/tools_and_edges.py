@@ -132,7 +132,7 @@ def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> T
             key=format_edge_name(key),
         )
         hint = _hint(word)
-        state.log.add_finding(statement.make_warning(word, "tool-offset-missing", text, hint))
+        state.log_finding(statement.make_warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
 
 
