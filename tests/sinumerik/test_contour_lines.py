@@ -57,6 +57,13 @@ def test_arc_without_end_point_belongs_to_the_contour() -> None:
     assert _corners(text)[-3:] == [(10.0, 0.0), (15.0, -5.0), (20.0, -5.0)]
 
 
+@pytest.mark.parametrize("word", ["RNDM=0", "OFFN=0", "RNDM=0 OFFN=0", "RNDM=R7"])
+def test_word_that_cancels_an_inactive_function_is_accepted_in_a_contour(word: str) -> None:
+    """R7 is 0, and RNDM=1 before the cycle does not apply in it. Diameter 20 is the radius 10."""
+    text = _program(f"G1 X0 Z2\nZ0 {word}\nX20\nX40 Z-5").replace("R0=33", "R7=0 RNDM=1")
+    assert _corners(text)[-4:] == [(0.0, 2.0), (0.0, 0.0), (10.0, 0.0), (20.0, -5.0)]
+
+
 @pytest.mark.parametrize(
     ("lines", "code"),
     [
@@ -67,6 +74,9 @@ def test_arc_without_end_point_belongs_to_the_contour() -> None:
         ("R[1.5]=7\nG1 X0 Z2\nX20", "17020"),
         ("R7=-2\nG1 X0 Z2\nZ0 RND=R7\nX20", "out-of-range"),
         ("RNDM=2\nG1 X0 Z2\nZ0\nX20", "61605"),
+        ("R7=2\nG1 X0 Z2\nZ0 RNDM=R7\nX20", "61605"),
+        ("OFFN=0.5\nG1 X0 Z2\nZ0\nX20", "61605"),
+        ("R7=-1\nG1 X0 Z2\nZ0 RNDM=R7\nX20", "out-of-range"),
         ("G1 X0 Z2\nZ0 Y5\nX20", "61605"),
         ("G1 X0 Z2\nT2\nX20", "61605"),
         ("G1 X0 Z2\nX20 SF=90", "61605"),

@@ -62,6 +62,9 @@ _WORDS = (POSITION_WORDS | ARC_WORDS | CORNER_WORDS) - {"C", "Y", "J"} | {
 }
 """Words that are allowed in a contour. Only positions, arcs and corners have an effect."""
 
+_CANCELED_BY_ZERO = frozenset({"RNDM", "OFFN"})
+"""Words that are allowed with the value 0, because the function is off in a contour."""
+
 _END = frozenset({2, 17, 30})
 
 
@@ -159,8 +162,10 @@ class _Reader:
         motion = statement.get_g_code(MOTION_GROUP)
         if motion is not None and motion not in _MOTIONS:
             raise _refused(statement.line, "a contour can contain only G0, G1, G2 and G3")
-        if words := statement.words.keys() - _WORDS - {"C"}:
-            word = statement.words[min(words)]
+        for name in sorted(statement.words.keys() - _WORDS - {"C"}):
+            word = statement.words[name]
+            if name in _CANCELED_BY_ZERO and self._state.number(statement, word) == 0.0:
+                continue
             raise _refused(statement.line, Message("{line} is not allowed in a contour", line=word.text))
         if "C" in statement.words or statement.frame_word is not None:
             raise _refused(statement.line, "C and frames are not allowed in a contour")
