@@ -83,6 +83,10 @@ def test_tool_without_offset_is_reported_and_blocks_start(word: str) -> None:
         ("T1\nD0\nN30 T2 D2", "17180"),
         ("G0 X1\nN30 D1", "17180"),
         ("G0 X1\nN30 T=1/2", "17190"),
+        ("R1=32001\nN30 T=R1", "17190"),
+        ("R1=-1\nN30 T=R1", "17190"),
+        ("T1 R1=10\nN30 D=R1", "17180"),
+        ("T1\nN30 D=3/2", "17180"),
         ("T1\nN30 G91 X5", None),
     ],
 )
@@ -93,6 +97,14 @@ def test_invalid_tools_and_edges_are_rejected(text: str, code: str | None) -> No
     error = refused(text, around())
     assert (error.code, error.line) == (code, text.count("\n") + 1)
     assert error.hint
+
+
+def test_tool_and_edge_from_a_formula_ignore_its_rounding_error() -> None:
+    """0.1 + 0.2 is 0.30000000000000004, so T is 1.0000000000000004 and D is 2.0000000000000004.
+
+    T1 D2 is at radius 10 + 31 and Z5 + 36.
+    """
+    assert ends("R1=0.1+0.2\nT=R1*10-2 D=R1*10-1\nG0 X20 Z5") == [(41.0, 41.0)]
 
 
 def test_incremental_move_after_absolute_move_is_accepted() -> None:

@@ -194,12 +194,9 @@ class State:
 
         Raises ProgramError if the formula has no value, or if its value is outside the limits of the word.
         """
+        value = self.compute_word_value(statement, word)
         if word.value is not None:
-            return word.value
-        assert word.formula is not None
-        value = self.evaluate_formula(
-            word.formula, lambda code, text, hint: statement.make_error(word, code, text, hint)
-        )
+            return value
         limits = None if is_variable(word.name) else find_violated_limits(word.name, value)
         if limits is not None:
             text = Message(
@@ -207,6 +204,18 @@ class State:
             )
             raise statement.make_error(word, "out-of-range", text, make_limit_hint(word.name, limits))
         return value
+
+    def compute_word_value(self, statement: Statement, word: Word) -> float:
+        """Return the number of a word or the value of its formula, without a check of the word's limits.
+
+        Raises ProgramError if the formula has no value.
+        """
+        if word.value is not None:
+            return word.value
+        assert word.formula is not None
+        return self.evaluate_formula(
+            word.formula, lambda code, text, hint: statement.make_error(word, code, text, hint)
+        )
 
     def evaluate_formula(self, formula: Formula, make_error: ErrorFactory) -> float:
         """Return the value of a formula.

@@ -7,11 +7,13 @@ from collections.abc import Iterator
 
 from core.interpreter.shared.actions import ToolChange
 from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.shared.interpretation import ToolUsage
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.sinumerik.sinumerik_words import Word
+from core.language.sinumerik.sinumerik_words import VALUE_RANGES, Word
+from core.language.sinumerik.word_values import find_violated_limits
 from core.message import Message
 from core.tool_edges import (
     EDGE_NUMBERS,
@@ -63,12 +65,23 @@ def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> 
 
 def _number(state: State, statement: Statement, word: Word) -> int:
     if not word.quoted_name:
-        value = state.number(statement, word)
-        if not value.is_integer():
+        value = state.compute_word_value(statement, word)
+        whole = convert_to_whole_number(value)
+        if whole is None or find_violated_limits(word.name, whole) is not None:
             text = "{word} results in {value}, which is not a tool number."
-            hint = "Enter the tool number as a whole number."
-            raise statement.make_error(word, WRONG_TOOL_NUMBER, text, hint, word=word.text, value=value)
-        return int(value)
+            low, high = VALUE_RANGES[word.name]
+            hint = "Enter the tool number as a whole number from {low} to {high}."
+            raise statement.make_error(
+                word,
+                WRONG_TOOL_NUMBER,
+                text,
+                hint,
+                word=word.text,
+                value=f"{value:g}",
+                low=f"{low:g}",
+                high=f"{high:g}",
+            )
+        return whole
     wanted = word.quoted_name.casefold()
     for key, offset in sorted(state.setup.tools.items()):
         if offset.name.casefold() == wanted:
@@ -79,12 +92,11 @@ def _number(state: State, statement: Statement, word: Word) -> int:
 
 
 def _edge(state: State, statement: Statement, word: Word) -> int:
-    value = state.number(statement, word)
+    whole = convert_to_whole_number(state.compute_word_value(statement, word))
     text = "{word}: cutting edges are D1 to D9; D0 deselects the cutting edge."
-    statement.check_condition(
-        value == 0 or value in EDGE_NUMBERS, word, WRONG_EDGE_NUMBER, text, "Correct D.", word=word.text
-    )
-    return int(value)
+    if whole is None or (whole and whole not in EDGE_NUMBERS):
+        raise statement.make_error(word, WRONG_EDGE_NUMBER, text, "Correct D.", word=word.text)
+    return whole
 
 
 def _activate_edge(state: State, statement: Statement, number: int, edge: int, usage: ToolUsage) -> None:
