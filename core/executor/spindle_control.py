@@ -73,6 +73,7 @@ class SpindleControl:
         self.operator_limit_rpm: float | None = None  # limit of page F10 until the restart of TurnDesk, rpm
         self.commanded_rpm = 0.0  # signed rpm as sent to the drive
         self.measured_rpm = 0.0
+        self.is_c_refused_by_turning = False  # the drive rejected C-axis mode because the spindle turns
         self.is_speed_known = True  # if False, ``measured_rpm`` is the last known speed
         self.angle = SpindleAnglePredictor()
         self.override = 1.0
@@ -233,7 +234,8 @@ class SpindleControl:
         if self._lock is None:
             return True
         if not self._lock.is_c_ready():
-            try_at_standstill(partial(self._lock.set_c_mode, True, should_orient))
+            command = partial(self._lock.set_c_mode, True, should_orient)
+            self.is_c_refused_by_turning = not try_at_standstill(command)
         return self._lock.is_c_ready()
 
     def orient_spindle(self, angle: float, direction: int) -> bool:

@@ -18580,6 +18580,11 @@
     </message>
     <message>
       <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the spindle drive reports that the spindle is still turning; release the key or button and jog again when the spindle has stopped</source>
+      <translation>el variador del husillo notifica que el husillo todavía gira; suelte la tecla o el botón y mueva a mano otra vez cuando el husillo se haya parado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
       <source>this machine has no axis {name} to jog</source>
       <translation>esta máquina no tiene eje {name} que mover a mano</translation>
     </message>

@@ -187,6 +187,19 @@ def test_drive_that_still_turns_is_asked_for_c_again() -> None:
     assert lock.asked == [(True, True)]
 
 
+def test_jog_of_c_names_whether_the_drive_rejects_c_or_switches_to_it() -> None:
+    context = context_of(None)
+    context.spindle, lock = locked()
+    jogger = Jogger(context)
+    lock.refusal = DriverError("the spindle is turning", "c-coupling", reason=SPINDLE_TURNS)
+    assert jogger.request_c_axis("C") == text("executor.c-still-turns")
+    lock.refusal = None
+    assert jogger.request_c_axis("C") == text("executor.becomes-c")
+    assert lock.asked == [(True, False)]
+    lock.ready = True
+    assert jogger.request_c_axis("C") == ""
+
+
 def test_drive_that_rejects_c_for_another_reason_is_an_error() -> None:
     spindle, lock = locked()
     lock.refusal = DriverError("the drives are off", "c-coupling", reason="drives-off")

@@ -137,12 +137,18 @@ class Jogger:
 
     def request_c_axis(self, name: str) -> str:
         """Start the change to C-axis mode if necessary; return why C cannot move yet, or an empty string."""
+        spindle = self._context.spindle
         if (
             name != "C"
             or not self._context.machine.is_spindle_c_axis
-            or self._context.spindle.engage_c_axis(should_orient=False)
+            or spindle.engage_c_axis(should_orient=False)
         ):
             return ""
+        if spindle.is_c_refused_by_turning:
+            return (
+                "the spindle drive reports that the spindle is still turning; release the key or button and "
+                "jog again when the spindle has stopped"
+            )
         return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
 
     def _find_travel_refusal(self, name: str, distance: float, direction: Direction | None) -> str:
