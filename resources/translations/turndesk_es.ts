@@ -28130,6 +28130,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
+      <source>Correct D.</source>
+      <translation>Corrija D.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/setup/tools_and_edges.py" />
       <source>Enter the tool number as a whole number from {low} to {high}.</source>
       <translation>Indique el número de herramienta como número entero de {low} a {high}.</translation>
     </message>
