@@ -83,6 +83,7 @@ NO_CHANGE = {
     "cli/proofs/proof_cache.py": "proofs that can be made again",
     "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "extras/quality/shift_command.py": "a report",
+    "extras/tool_tables/export_command.py": "a tool table, to a file that the user names",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
     "compose/control/control_slot.py": "the socket of a control",
     "compose/control/live_control.py": "inputs of a machine that is simulated",

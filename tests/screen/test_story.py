@@ -258,4 +258,6 @@ def test_readout_and_theme_change_by_key(hands: Hands) -> None:
     hands.key(Key.Key_T)
     assert hands.window.theme.palette.name == "light"
     hands.key(Key.Key_T)
+    assert hands.window.theme.palette.name == "contrast"
+    hands.key(Key.Key_T)
     assert hands.window.theme.palette.name == "dark"

@@ -35,8 +35,7 @@ from app.compose.control.control_messages import (
     ThreadEndedMessage,
     is_own_user,
 )
-from app.compose.control.control_slot import DRIVERS_TIMEOUT_S
-from app.compose.control.control_start import StartedControl
+from app.compose.control.control_start import DRIVERS_TIMEOUT_S, StartedControl
 from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor, send_descriptor
 from app.compose.control.process_handle import ProcessHandle
 from app.compose.runs.receipt import Receipt

@@ -15,11 +15,9 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from app.compose.control.control_start import SLOT_NAMES, list_socket_paths
+from app.compose.control.control_start import DRIVERS_TIMEOUT_S, SLOT_NAMES, list_socket_paths
 from core.ports import DriverError
 
-# s for the driver host of a killed control to end: 2 s for its queue, 8 s for the spindle, 15 s for HAL
-DRIVERS_TIMEOUT_S = 25.0
 _LOOK = 0.05  # s between two attempts to lock
 
 

@@ -22,6 +22,8 @@ from core.process_environment import make_module_environment
 _PATH_LENGTH = 100  # =
 # names of the places of controls in a data folder; see control_slot.py
 SLOT_NAMES = ("control", "control-2", "control-3", "control-4")
+# s for the driver host of a killed control to end: 2 s for its queue, 8 s for the spindle, 15 s for HAL
+DRIVERS_TIMEOUT_S = 25.0
 
 
 class StartedControl(NamedTuple):
