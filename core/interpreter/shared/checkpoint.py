@@ -8,13 +8,10 @@ from __future__ import annotations
 
 import os
 from copy import deepcopy
-from dataclasses import replace
 from itertools import count
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from core.interpreter.shared.actions import Action
-from core.interpreter.shared.diagnostic_log import DiagnosticLog
-from core.interpreter.shared.job_setup import Setup, read_no_input
 from core.interpreter.shared.modal_state import ModalState
 
 PartsType = TypeVar("PartsType")
@@ -28,6 +25,14 @@ class StateLine(NamedTuple):
 
     key: str
     value: str
+
+
+@runtime_checkable
+class ReplacedWhenSaved(Protocol):
+    """A shared object of which a saved pass contains only a stand-in."""
+
+    def make_stand_in(self) -> object:
+        """Return an object that another process can use until the next pass replaces it."""
 
 
 class SavedPass(Generic[PartsType]):
@@ -67,9 +72,7 @@ class SavedPass(Generic[PartsType]):
 
 def _make_stand_in(shared: object) -> object:
     """Return what is saved of a shared object: no live inputs, earlier saved states or findings."""
-    if isinstance(shared, Setup):
-        return replace(shared, inputs=read_no_input, begin=None)
-    return DiagnosticLog() if isinstance(shared, DiagnosticLog) else shared
+    return shared.make_stand_in() if isinstance(shared, ReplacedWhenSaved) else shared
 
 
 class FlowLevel(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -132,3 +132,7 @@ class Setup:
     presets: Mapping[int, DatumPreset] = field(default_factory=dict)  # by number; 0 is from the machine file
     preset: int = 0  # number of the active preset
     begin: PassStart | None = None
+
+    def make_stand_in(self) -> Setup:
+        """Return the setup without live inputs and without the state at which the pass starts."""
+        return replace(self, inputs=read_no_input, begin=None)
