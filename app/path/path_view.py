@@ -1,4 +1,4 @@
-"""View of a program's path, as shown on the run, editor, list and offset pages.
+"""View of a program's path on the Automatic page, in the editor, the program list and the offset pages.
 
 The view from above has X+ down and Z+ to the right, with both sides of X0. Cuts with C locked are shown
 next to it, on the face or the unrolled side of the part. Set the content with ``show_picture`` or

@@ -68,7 +68,7 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_X, NO_MODIFIER): "X",
 }
 MENU_KEYS = {"J": "Step back"}
-"""Main menu letters whose key has another name, with the name of its action during part playback."""
+"""Letters of the main menu whose key is named after its function in the part playback, by letter."""
 REPEATING_KEYS = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
     | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step forward"}
